@@ -91,6 +91,7 @@ class FitRequest:
     displacement_noise: Optional[float]
     reversal_gate: Optional[float]
     columns: RecordColumns
+    files: list[str]
     join: bool
     contact: ContactOptions
     def set_term(self, name: str, value: Optional[float], form: str,
@@ -144,11 +145,9 @@ class TrackRequest:
     every: int
     threads: int
     shares_alpha: bool
+    skips_broken_rows: bool
 
-def track_files(request: TrackRequest, files: Sequence[str],
-                skip_broken_rows: bool) -> Tracked: ...
-def track_records(request: TrackRequest,
-                  records: Sequence[Record]) -> Tracked: ...
+def track(request: TrackRequest, records: Sequence[Record]) -> Tracked: ...
 class Answer:
     @property
     def json(self) -> str: ...

@@ -184,13 +184,15 @@ def track(
     if files is None:
         if broken_rows == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
-        found = _mindahl.track_records(request, records_of(source, force, arguments))
+        found = _mindahl.track(request, records_of(source, force, arguments))
     else:
         arguments.roles["force"] = force
         fit = request.fit
         fit.columns = arguments.columns()
+        fit.files = list(files)
         request.fit = fit
-        found = _mindahl.track_files(request, files, broken_rows == "skip")
+        request.skips_broken_rows = broken_rows == "skip"
+        found = _mindahl.track(request, [])
     columns, units, doubts, test = found
     for doubt in (*arguments.assumed, *doubts):
         warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)

@@ -160,6 +160,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("displacement_noise", &FitRequest::displacement_noise)
       .def_readwrite("reversal_gate", &FitRequest::reversal_gate)
       .def_readwrite("columns", &FitRequest::columns)
+      .def_readwrite("files", &FitRequest::files)
       .def_readwrite("join", &FitRequest::join)
       .def_readwrite("contact", &FitRequest::contact)
       .def("set_term", &SetTerm, py::arg("name"), py::arg("value"), py::arg("form"),

@@ -9,11 +9,7 @@
 
 namespace mindahl::python {
 
-/// A record and what it is called in messages and reports.
-struct NamedRecord {
-  std::string name;
-  io::RecordFile file;
-};
+using io::NamedRecord;
 
 /// Makes columns of arrays, a name each.
 std::vector<io::NamedColumn> ColumnsOfArrays(const std::vector<std::string>& names,

@@ -6,19 +6,16 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "mindahl/campaign/cycle_fit.h"
-#include "mindahl/campaign/cycle_splitter.h"
-#include "mindahl/campaign/test_summary.h"
-#include "mindahl/campaign/tracker.h"
-#include "mindahl/core/error.h"
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/units.h"
 #include "mindahl/request/fit_request.h"
@@ -28,19 +25,11 @@ namespace mindahl::python {
 
 namespace py = pybind11;
 using campaign::CycleFit;
-using request::FitRequest;
+using request::TrackRequest;
 
 namespace {
 
-struct TrackRequest {
-  FitRequest fit;
-  std::optional<double> normal_load;
-  std::size_t together = 1;
-  std::size_t every = 1;
-  std::size_t threads = 1;
-  bool shares_alpha = false;
-};
-
+/// A test that was tracked, with its rows.
 struct Tracked {
   std::vector<CycleFit> fits;
   std::vector<double> accumulated_energy;  // [J], with each fit
@@ -48,177 +37,28 @@ struct Tracked {
   std::vector<std::string> warnings;
 };
 
-/// Fits of one test, whose samples come as the function gives them.
-class Run {
- public:
-  /// @param shared_alpha  held in all fits; empty where each cycle has its own
-  explicit Run(const TrackRequest& request,
-               const std::optional<campaign::PooledValue>& shared_alpha = {})
-      : request_(request),
-        fit_(request::MakeCycleFitOptions(request.fit)),
-        tracked_{.fits = {},
-                 .accumulated_energy = {},
-                 .test = request::TrackedTest(request.together * request.every),
-                 .warnings = {}} {
-    tracked_.test.shared_alpha = shared_alpha;
-    if (shared_alpha) fit_.fixed["alpha"] = shared_alpha->mean();
-    if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
-    if (request.normal_load) fit_.normal_loads = {*request.normal_load};
-  }
-
-  [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
-  [[nodiscard]] bool is_torsional() const { return tracked_.test.is_torsional; }
-
-  void Begin(const loop::RecordView& head, bool is_torsional, std::string_view source) {
-    tracked_.test.is_torsional = is_torsional;
-    reading_ = campaign::ChooseReading(head, fit_);
-    request::ChooseTermsOfCycles(request_.fit, head, fit_);
-    if (auto doubt = campaign::DoubtAbout(reading_, source)) Warn(std::move(*doubt));
-    tracker_.emplace(campaign::TrackOptions{.fit = fit_,
-                                            .together = request_.together,
-                                            .every = request_.every,
-                                            .threads = request_.threads},
-                     [this](std::span<const CycleFit> fits) {
-                       tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
-                       for (const CycleFit& fit : fits) {
-                         tracked_.test.Add(fit);
-                         tracked_.test.energy.Add(fit);
-                         tracked_.accumulated_energy.push_back(tracked_.test.energy.total());
-                       }
-                     });
-  }
-
-  void Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
-    tracked_.test.samples += samples.size();
-    tracker_->Add(samples, lines);
-  }
-
-  void NextFile() { tracked_.test.unused_samples += tracker_->NextFile(); }
-
-  void SkipRows(std::size_t count) { tracked_.test.broken_rows += count; }
-
-  void Warn(std::string message) { tracked_.warnings.push_back(std::move(message)); }
-
-  Tracked Finish(std::string_view source, std::vector<std::string> files) {
-    tracker_->Finish();
-    request::TrackedTest& test = tracked_.test;
-    test.files = std::move(files);
-    test.cycles = tracker_->cycles();
-    test.reversal_gate = *fit_.preparation.reversal_gate;
-    test.is_gate_certain = reading_.gate.certain;
-    campaign::RequireCycles(tracker_->cycles(), request_.together, reading_,
-                            *fit_.preparation.reversal_gate, source);
-    return std::move(tracked_);
-  }
-
- private:
-  const TrackRequest& request_;
-  identification::FitOptions fit_;
-  campaign::Reading reading_;
-  std::optional<campaign::Tracker> tracker_;
-  Tracked tracked_;
-};
-
-void RequireOneKind(const Run& run, bool is_torsional, const std::string& first,
-                    const std::string& other) {
-  if (!run.has_begun() || run.is_torsional() == is_torsional) return;
-  throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", first,
-                               run.is_torsional() ? "torque" : "force", other,
-                               is_torsional ? "torque" : "force"));
-}
-
-/// What all cycles of a first pass have in common.
-campaign::PooledValue AlphaOf(const Tracked& first_pass) {
-  campaign::PooledValue alpha;
-  for (const CycleFit& fit : first_pass.fits) campaign::PoolAlpha(fit, alpha);
-  campaign::RequireSharedAlpha(alpha);
-  return alpha;
-}
-
-/// By one pass, or where alpha is shared by a second with that of the first.
-/// @param pass   tracks all samples once with the alpha that is given
-/// @param files  that it reads
-template <typename Pass>
-Tracked TrackInPasses(const TrackRequest& request, const std::vector<std::string>& files,
-                      Pass pass) {
-  if (!request.shares_alpha) return pass(std::optional<campaign::PooledValue>());
-  campaign::RequireThatAlphaCanBeShared(request::MakeCycleFitOptions(request.fit), files);
-  const campaign::PooledValue alpha = AlphaOf(pass(std::optional<campaign::PooledValue>()));
-  return pass(std::optional(alpha));
-}
-
-Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& files,
-                   bool skip_broken_rows,
-                   const std::optional<campaign::PooledValue>& shared_alpha) {
-  Run run(request, shared_alpha);
-  const io::BrokenRows broken = skip_broken_rows ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
-  io::JoinedTimes times;
-  for (const std::string& file : files) {
-    io::RecordStream stream(file, request.fit.columns, broken);
-    RequireOneKind(run, stream.layout().is_torsional, files.front(), file);
-    for (const std::string& note : stream.layout().notes) run.Warn(note);
-    io::Samples piece;
-    if (run.has_begun()) {
-      stream.Next(piece);
-    } else {
-      piece = campaign::ReadHead(stream);
-      run.Begin(campaign::ViewOf(piece), stream.layout().is_torsional, file);
+/// Tracks records in memory, or without any the files of the request.
+Tracked Track(const TrackRequest& request, const std::vector<NamedRecord>& records) {
+  request::Validate(request);
+  Tracked tracked;
+  const auto warn = [&](std::string_view text) { tracked.warnings.emplace_back(text); };
+  std::optional<request::TrackRun> run;
+  const auto take = [&](std::span<const CycleFit> fits) {
+    tracked.fits.insert(tracked.fits.end(), fits.begin(), fits.end());
+    for (const CycleFit& fit : fits) {
+      run->test().Add(fit);
+      run->test().energy.Add(fit);
+      tracked.accumulated_energy.push_back(run->test().energy.total());
     }
-    while (piece.size() > 0) {
-      times.Shift(piece.time);
-      run.Add(campaign::ViewOf(piece), piece.lines);
-      if (!stream.Next(piece)) break;
-    }
-    if (request.fit.join) {
-      times.NextFile();
-    } else {
-      run.NextFile();
-      times = {};
-    }
-    run.SkipRows(stream.broken_rows());
-    if (stream.footer_lines() > 0) {
-      run.Warn(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
-                           file, stream.footer_lines()));
-    }
-    if (stream.broken_rows() > 0) {
-      run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
-                           file, stream.first_broken_row()));
-    }
-  }
-  return run.Finish(fmt::format("{}", fmt::join(files, ", ")), files);
-}
-
-Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>& records,
-                     const std::optional<campaign::PooledValue>& shared_alpha) {
-  constexpr std::size_t kMostOfHead = 1'000'000;
-  Run run(request, shared_alpha);
-  io::JoinedTimes times;
-  for (const NamedRecord& record : records) {
-    const bool is_torsional = record.file.is_torsional;
-    RequireOneKind(run, is_torsional, records.front().name, record.name);
-    const loop::Record& samples = record.file.record;
-    if (!run.has_begun()) {
-      const std::size_t head = std::min(samples.size(), kMostOfHead);
-      const auto first = [head](const std::vector<double>& column) {
-        return std::span(column).first(std::min(head, column.size()));
-      };
-      run.Begin({first(samples.displacement), first(samples.force), first(samples.time),
-                 first(samples.normal_load)},
-                is_torsional, record.name);
-    }
-    std::vector<double> time = samples.time;
-    times.Shift(time);
-    run.Add({samples.displacement, samples.force, time, samples.normal_load}, record.file.lines);
-    if (request.fit.join) {
-      times.NextFile();
-    } else {
-      run.NextFile();
-      times = {};
-    }
-  }
-  std::vector<std::string> names;
-  for (const NamedRecord& record : records) names.push_back(record.name);
-  return run.Finish(records.front().name, names);
+  };
+  run.emplace(request,
+              request::TrackEvents{
+                  .fits = take, .note = warn, .warn = warn, .begins = {}, .piece_is_read = {}});
+  if (request.shares_alpha) run->PoolAlpha(records);
+  run->Read(records);
+  run->Finish();
+  tracked.test = std::move(run->test());
+  return tracked;
 }
 
 template <typename Value, typename Of>
@@ -295,32 +135,23 @@ void AddTrack(py::module_& module) {
       .def(py::init<>())
       .def_readwrite("fit", &TrackRequest::fit)
       .def_readwrite("normal_load", &TrackRequest::normal_load)
-      .def_readwrite("average", &TrackRequest::together)
+      .def_readwrite("average", &TrackRequest::average)
       .def_readwrite("every", &TrackRequest::every)
       .def_readwrite("threads", &TrackRequest::threads)
-      .def_readwrite("shares_alpha", &TrackRequest::shares_alpha);
-  module.def(
-      "track_files",
-      [](const TrackRequest& request, const std::vector<std::string>& files, bool skip) {
-        Tracked tracked;
-        {
-          const py::gil_scoped_release others_may_run;
-          tracked = TrackInPasses(request, files, [&](const auto& alpha) {
-            return TrackFiles(request, files, skip, alpha);
+      .def_readwrite("shares_alpha", &TrackRequest::shares_alpha)
+      .def_property(
+          "skips_broken_rows",
+          [](const TrackRequest& self) { return self.broken_rows == io::BrokenRows::kSkip; },
+          [](TrackRequest& self, bool skips) {
+            self.broken_rows = skips ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
           });
-        }
-        return TrackedColumns(std::move(tracked));
-      },
-      py::arg("request"), py::arg("files"), py::arg("skip_broken_rows"));
   module.def(
-      "track_records",
+      "track",
       [](const TrackRequest& request, const std::vector<NamedRecord>& records) {
         Tracked tracked;
         {
           const py::gil_scoped_release others_may_run;
-          tracked = TrackInPasses(request, {}, [&](const auto& alpha) {
-            return TrackRecords(request, records, alpha);
-          });
+          tracked = Track(request, records);
         }
         return TrackedColumns(std::move(tracked));
       },

@@ -155,30 +155,21 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   AddFilesFrom(*command, options->list);
   AddShard(*command, options->list);
   AddFitOptions(*command, options->request, NormalLoads::kOne);
-  const std::string group = "Results";
-  command->add_option("--output", options->output, "table as CSV, one row a file, in SI units")
-      ->type_name("PATH")
-      ->required()
-      ->group(group);
-  command
-      ->add_option("--json", options->json_path,
-                   "the answer of fit for each file as JSON; - for standard output alone")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--report", options->report_directory,
-                   "directory for a page of HTML per file and index.html with all of\n"
-                   "them; created if absent")
-      ->type_name("DIR")
-      ->group(group);
-  command
-      ->add_option("--threads", options->threads,
-                   "number of worker threads (default: one per core); they do not change\n"
-                   "the results")
-      ->check(WholeNumber(1, 1024))
-      ->group(group);
-  command->add_flag("--overwrite", options->overwrite, "replace an existing table")->group(group);
-  AddStrict(*command, options->strict, "a file fails too", group);
+  const OptionGroup group(*command, "Results");
+  group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
+      ->required();
+  group.Add("--json", options->json_path,
+            "the answer of fit for each file as JSON; - for standard output alone", "PATH");
+  group.Add(
+      "--report", options->report_directory,
+      "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
+      "DIR");
+  group
+      .Add("--threads", options->threads,
+           "number of worker threads (default: one per core); they do not change\nthe results")
+      ->check(WholeNumber(1, 1024));
+  group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
+  AddStrict(group, options->strict, "a file fails too");
   command->callback([options, command, &console] {
     options->request.files = FilesOf(options->request.files, options->list);
     RunBatch(*options, *command, console);

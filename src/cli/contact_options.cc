@@ -102,11 +102,6 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
   return {*value, *standard_error};
 }
 
-CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,
-                         const std::string& description, const std::string& unit) {
-  return command.add_option(name, target, description)->type_name(unit);
-}
-
 void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
   if (loads == NormalLoads::kOneAFile) {
     command
@@ -139,14 +134,11 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
 }
 
 void AddLawOptions(CLI::App& command, LawOptions& request) {
-  const std::string parameters = "Parameters";
-  AddOptional(command, "--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M")
-      ->group(parameters);
-  AddOptional(command, "--alpha", request.alpha,
-              "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA")
-      ->group(parameters);
-  AddOptional(command, "--slip-force", request.slip_force, "slip force Tc [N]", "N")
-      ->group(parameters);
+  const OptionGroup parameters(command, "Parameters");
+  parameters.Add("--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M");
+  parameters.Add("--alpha", request.alpha,
+                 "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA");
+  parameters.Add("--slip-force", request.slip_force, "slip force Tc [N]", "N");
   AddContactOptions(command, request.contact);
   AddFrictionOption(command, request.contact);
 }

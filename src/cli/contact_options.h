@@ -33,10 +33,6 @@ void AddContactOptions(CLI::App& command, ContactOptions& options,
 /// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
 
-/// A value that may be missing, read from one option.
-CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,
-                         const std::string& description, const std::string& unit);
-
 /// Adds --sigma, --alpha, --slip-force and what describes a contact, --friction included.
 /// @param request  must outlive the application
 void AddLawOptions(CLI::App& command, LawOptions& request);

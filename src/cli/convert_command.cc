@@ -47,93 +47,56 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
 
 void AddConvertCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ConvertCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert",
-                         "Converts a contact's steady loop to another law or program: parameters,\n"
-                         "the remaining error, and the amplitudes at which it is small.");
+  CLI::App* command = app.add_subcommand(
+      "convert",
+      "Converts a contact's steady loop to another law or program: parameters,\nthe remaining "
+      "error, and the amplitudes at which it is small.");
   AddExamples(
       *command, app,
       {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
        "    --input-lines contact.tcl"});
-  const std::string contact = "The contact";
-  command
-      ->add_option("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]")
-      ->required()
-      ->type_name("N/M")
-      ->group(contact);
-  command
-      ->add_option("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3")
-      ->type_name("ALPHA")
-      ->group(contact);
-  command->add_option("--slip-force", options->asked.law.slip_force, "slip force Tc [N]")
-      ->required()
-      ->type_name("N")
-      ->group(contact);
-  command
-      ->add_option("--from", options->asked.from,
-                   "law of these parameters: of fit --model mindlin-dahl or --model dahl")
-      ->capture_default_str()
-      ->check(OneOf({"masing", "dahl"}))
-      ->group(contact);
-  command
-      ->add_option("--amplitude", options->asked.options.amplitude,
-                   "amplitude X of the contact's steady loop [m], without the rig's travel")
-      ->required()
-      ->type_name("M")
-      ->group(contact);
-  const std::string result = "What it becomes";
+  const OptionGroup contact(*command, "The contact");
+  contact
+      .Add("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]", "N/M")
+      ->required();
+  contact.Add("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3",
+              "ALPHA");
+  contact.Add("--slip-force", options->asked.law.slip_force, "slip force Tc [N]", "N")->required();
+  contact
+      .AddShown("--from", options->asked.from,
+                "law of these parameters: of fit --model mindlin-dahl or --model dahl")
+      ->check(OneOf({"masing", "dahl"}));
+  contact
+      .Add("--amplitude", options->asked.options.amplitude,
+           "amplitude X of the contact's steady loop [m], without the rig's travel", "M")
+      ->required();
+  const OptionGroup result(*command, "What it becomes");
   std::vector<std::string> names;
   for (const convert::TargetRow& row : convert::Targets()) names.emplace_back(row.name);
-  command->add_option("--to", options->asked.to, "law or program")
-      ->required()
-      ->check(OneOf(names))
-      ->group(result);
-  AddOptional(*command, "--least-amplitude", options->asked.least_amplitude,
-              "from this amplitude [m] on a target that is not exact is fitted;\n"
-              "default --amplitude",
-              "M")
-      ->group(result);
-  AddOptional(*command, "--largest-amplitude", options->asked.largest_amplitude,
-              "up to this amplitude [m] it is fitted; default --amplitude", "M")
-      ->group(result);
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%")
-      ->capture_default_str()
-      ->type_name("E")
-      ->group(result);
-  command
-      ->add_option("--elements", options->asked.options.elements, "number of elements of --to iwan")
-      ->capture_default_str()
-      ->check(WholeNumber(1, kMostElements))
-      ->group(result);
-  command
-      ->add_option("--beta", options->asked.options.beta,
-                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta")
-      ->capture_default_str()
-      ->type_name("BETA")
-      ->group(result);
-  AddOptional(*command, "--normal-load", options->asked.normal.normal_load,
-              "normal load [N] for --to lammps, liggghts and yade: friction\ncoefficient Tc/N", "N")
-      ->group(result);
-  AddOptional(*command, "--contact-radius", options->asked.normal.contact_radius,
-              "contact radius [m] for --to lammps: the stiffness follows it", "M")
-      ->group(result);
-  command
-      ->add_option("--viscous", options->asked.normal.viscous,
-                   "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf")
-      ->type_name("C")
-      ->group(result);
-  const std::string outputs = "Output";
-  command
-      ->add_option("--input-lines", options->input_lines_path,
-                   "lines as the other program reads them; - for standard output")
-      ->type_name("PATH")
-      ->group(outputs);
-  command->add_option("--json", options->json_path, "result as JSON; - for standard output")
-      ->type_name("PATH")
-      ->group(outputs);
+  result.Add("--to", options->asked.to, "law or program")->required()->check(OneOf(names));
+  result.Add(
+      "--least-amplitude", options->asked.least_amplitude,
+      "from this amplitude [m] on a target that is not exact is fitted;\ndefault --amplitude", "M");
+  result.Add("--largest-amplitude", options->asked.largest_amplitude,
+             "up to this amplitude [m] it is fitted; default --amplitude", "M");
+  result.AddShown("--tolerance", options->tolerance,
+                  "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
+                  "E");
+  result.AddShown("--elements", options->asked.options.elements, "number of elements of --to iwan")
+      ->check(WholeNumber(1, kMostElements));
+  result.AddShown("--beta", options->asked.options.beta,
+                  "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
+  result.Add("--normal-load", options->asked.normal.normal_load,
+             "normal load [N] for --to lammps, liggghts and yade: friction\ncoefficient Tc/N", "N");
+  result.Add("--contact-radius", options->asked.normal.contact_radius,
+             "contact radius [m] for --to lammps: the stiffness follows it", "M");
+  result.Add("--viscous", options->asked.normal.viscous,
+             "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
+  const OptionGroup outputs(*command, "Output");
+  outputs.Add("--input-lines", options->input_lines_path,
+              "lines as the other program reads them; - for standard output", "PATH");
+  outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
   command->callback([options, &console] { RunConvert(*options, console); });
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/options.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -50,21 +51,19 @@ void ReadList(std::istream& stream, std::vector<std::string>& files) {
 }  // namespace
 
 void AddFilesFrom(CLI::App& command, FileList& options) {
-  command
-      .add_option("--files-from", options.list,
-                  "read further file names from LIST, one a line; lines that are empty or\n"
-                  "begin with # are skipped; - is standard input")
-      ->type_name("LIST")
-      ->group(kFilesGroup);
+  OptionGroup(command, kFilesGroup)
+      .Add("--files-from", options.list,
+           "read further file names from LIST, one a line; lines that are empty or\nbegin with # "
+           "are skipped; - is standard input",
+           "LIST");
 }
 
 void AddShard(CLI::App& command, FileList& options) {
-  command
-      .add_option("--shard", options.shard,
-                  "process only the K-th of N parts of the files: the tables of all\n"
-                  "parts, one after the other, are the table of all files")
-      ->type_name("K/N")
-      ->group(kFilesGroup);
+  OptionGroup(command, kFilesGroup)
+      .Add("--shard", options.shard,
+           "process only the K-th of N parts of the files: the tables of all\nparts, one after the "
+           "other, are the table of all files",
+           "K/N");
 }
 
 std::vector<std::string> FilesOf(const std::vector<std::string>& named, const FileList& options) {

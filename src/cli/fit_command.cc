@@ -160,57 +160,37 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->required();
   AddJoin(*command, options->request);
   AddFitOptions(*command, options->request, NormalLoads::kOneAFile);
-  const std::string sweeps = "Amplitude sweeps";
-  command
-      ->add_option("--sweep", options->sweep,
-                   "the file has stiffness or compliance against the amplitude of force or\n"
-                   "displacement, as lock-in rigs report: secant, of the loop from end to\n"
-                   "end, or tangent, of a small oscillation about a force that was reached")
-      ->check(OneOf({"secant", "tangent"}))
-      ->group(sweeps);
-  command
-      ->add_option("--response", options->response.column,
-                   "column of the stiffness or compliance; default a recognised name;\n"
-                   "--displacement or --force names the column of the amplitude")
-      ->type_name("COL")
-      ->group(sweeps);
-  command
-      ->add_option("--response-unit", options->response.unit,
-                   "unit of the response, as N/um or um/N; default the header's, else N/m\nor m/N")
-      ->type_name("UNIT")
-      ->group(sweeps);
-  AddOptional(*command, "--response-noise", options->response_noise,
-              "known standard deviation of a response [N/m] or [m/N]", "S")
-      ->group(sweeps);
-  const std::string group = "Results";
-  command->add_option("--json", options->json_path, "result as JSON; - for standard output alone")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--residuals", options->residuals_path,
-                   "measured and fitted force of every sample as CSV")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--backbone", options->backbone_path,
-                   "force against displacement of first loading, without assuming a law,\n"
-                   "with its confidence band and the fitted law, as CSV")
-      ->type_name("PATH")
-      ->group(group);
-  command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--report", options->report_path,
-                   "everything with its figures on one self-contained page of HTML")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_flag("--regions", options->request.regions,
-                 "compute joint confidence regions of sigma and alpha and of slip_force\n"
-                 "and alpha, for the JSON; --report implies it")
-      ->group(group);
-  AddStrict(*command, options->strict, "exit status 3", group);
+  const OptionGroup sweeps(*command, "Amplitude sweeps");
+  sweeps
+      .Add("--sweep", options->sweep,
+           "the file has stiffness or compliance against the amplitude of force or\ndisplacement, "
+           "as lock-in rigs report: secant, of the loop from end to\nend, or tangent, of a small "
+           "oscillation about a force that was reached")
+      ->check(OneOf({"secant", "tangent"}));
+  sweeps.Add("--response", options->response.column,
+             "column of the stiffness or compliance; default a recognised name;\n--displacement or "
+             "--force names the column of the amplitude",
+             "COL");
+  sweeps.Add("--response-unit", options->response.unit,
+             "unit of the response, as N/um or um/N; default the header's, else N/m\nor m/N",
+             "UNIT");
+  sweeps.Add("--response-noise", options->response_noise,
+             "known standard deviation of a response [N/m] or [m/N]", "S");
+  const OptionGroup group(*command, "Results");
+  group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
+  group.Add("--residuals", options->residuals_path,
+            "measured and fitted force of every sample as CSV", "PATH");
+  group.Add("--backbone", options->backbone_path,
+            "force against displacement of first loading, without assuming a law,\nwith its "
+            "confidence band and the fitted law, as CSV",
+            "PATH");
+  group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
+  group.Add("--report", options->report_path,
+            "everything with its figures on one self-contained page of HTML", "PATH");
+  group.AddFlag("--regions", options->request.regions,
+                "compute joint confidence regions of sigma and alpha and of slip_force\nand alpha, "
+                "for the JSON; --report implies it");
+  AddStrict(group, options->strict, "exit status 3");
   command->callback([options, command, &console] { RunFit(*options, *command, console); });
 }
 

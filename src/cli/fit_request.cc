@@ -138,57 +138,48 @@ CLI::Option* AddRange(CLI::App& command, const std::string& name, std::optional<
 }
 
 void AddLimitOptions(CLI::App& command, FitRequest& options) {
-  const std::string group(kColumnGroup);
-  command
-      .add_option("--max-rows", options.max_rows, "refuse files with more rows than this in total")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1'000'000'000'000))
-      ->group(group);
-  command
-      .add_option("--max-memory", options.max_memory,
-                  "refuse files whose fit needs more memory [B], as 4GB or 500MB;\n"
-                  "default: the machine's memory, or the limit of the process")
+  const OptionGroup group(command, std::string(kColumnGroup));
+  group.AddShown("--max-rows", options.max_rows, "refuse files with more rows than this in total")
+      ->check(WholeNumber(1, 1'000'000'000'000));
+  group
+      .Add("--max-memory", options.max_memory,
+           "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
+           "memory, or the limit of the process",
+           "SIZE")
       ->check(WholeNumber(1, 1'000'000'000'000'000'000))
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
-      ->type_name("SIZE")
-      ->group(group);
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
 }
 
 void AddWindowOptions(CLI::App& command, FitRequest& options) {
-  const std::string group(kColumnGroup);
+  const OptionGroup group(command, std::string(kColumnGroup));
   AddRange(command, "--time-window", options.time_window, "LO:HI in seconds",
            "fit only samples from LO to HI [s]", &ParseInterval)
-      ->group(group);
+      ->group(group.name());
   AddRange(command, "--load-window", options.load_window, "LO:HI in newtons",
-           "fit only samples under a normal load from LO to HI [N];\n"
-           "the others still count as loading history",
+           "fit only samples under a normal load from LO to HI [N];\nthe others still count as "
+           "loading history",
            &ParseInterval)
-      ->group(group);
+      ->group(group.name());
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
   AddRange(command, "--cycles", options.cycles, counted,
-           "fit only samples of the cycles LO to HI, counted from 1;\n"
-           "the others still count as loading history",
+           "fit only samples of the cycles LO to HI, counted from 1;\nthe others still count as "
+           "loading history",
            &ParseCountRange)
-      ->group(group);
+      ->group(group.name());
   AddRange(command, "--samples", options.samples, counted,
-           "fit only the samples LO to HI of each record, counted from 1;\n"
-           "the others still count as loading history",
+           "fit only the samples LO to HI of each record, counted from 1;\nthe others still count "
+           "as loading history",
            &ParseCountRange)
-      ->group(group);
-  command
-      .add_option("--skip-cycles", options.skip_cycles,
-                  "number of cycles to leave out at the start;\n"
-                  "they still count as loading history")
-      ->capture_default_str()
-      ->check(WholeNumber(0, 1'000'000'000))
-      ->group(group);
-  command
-      .add_option("--trim", options.trim,
-                  "auto leaves out what at the ends of a record is not the test, with a\n"
-                  "note: rests, ramps of load and amplitude, cycles of running in")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kTrims))
-      ->group(group);
+      ->group(group.name());
+  group
+      .AddShown("--skip-cycles", options.skip_cycles,
+                "number of cycles to leave out at the start;\nthey still count as loading history")
+      ->check(WholeNumber(0, 1'000'000'000));
+  group
+      .AddShown("--trim", options.trim,
+                "auto leaves out what at the ends of a record is not the test, with a\nnote: "
+                "rests, ramps of load and amplitude, cycles of running in")
+      ->check(OneOfWords(request::kTrims));
 }
 
 void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& group) {
@@ -254,24 +245,23 @@ std::string DescribeParameters() {
 }  // namespace
 
 void AddJoin(CLI::App& command, FitRequest& options) {
-  command
-      .add_flag("--join", options.join,
-                "join the files, in their order, into one record, as of a logger that\n"
-                "begins a file every stroke; a clock that starts anew is continued")
-      ->group("Files");
+  OptionGroup(command, "Files")
+      .AddFlag("--join", options.join,
+               "join the files, in their order, into one record, as of a logger that\nbegins a "
+               "file every stroke; a clock that starts anew is continued");
 }
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
-  const std::string group(kColumnGroup);
+  const OptionGroup group(command, std::string(kColumnGroup));
   const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.column, description)->type_name("COL")->group(group);
+    group.Add(name, choice.column, description, "COL");
   };
   const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
+    group.Add(name, choice.unit, description, "UNIT");
   };
   column("--displacement", columns.displacement,
-         "displacement column by header name or 1-based number; default a\n"
-         "recognised name, else column 1");
+         "displacement column by header name or 1-based number; default a\nrecognised name, else "
+         "column 1");
   column("--force", columns.force,
          "force column, likewise; default a recognised name, else column 2");
   column("--time", columns.time, "time column; optional");
@@ -287,27 +277,21 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
        "unit of the normal load, a force of --force-unit");
   const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
                                const std::string& description) {
-    AddOptional(command, name + "-gain", choice.gain,
-                "gain [unit of the " + description + "/number]: the " + description +
-                    " is\nG*(number - zero) in " + name +
-                    "-unit, else in\nthe header's unit where that is one, else in SI",
-                "G")
-        ->group(group);
-    command
-        .add_option(name + "-zero", choice.zero, "number [-] in the column that stands for zero")
-        ->type_name("Z")
-        ->group(group);
+    group.Add(name + "-gain", choice.gain,
+              "gain [unit of the " + description + "/number]: the " + description +
+                  " is\nG*(number - zero) in " + name +
+                  "-unit, else in\nthe header's unit where that is one, else in SI",
+              "G");
+    group.Add(name + "-zero", choice.zero, "number [-] in the column that stands for zero", "Z");
   };
   calibration("--displacement", columns.displacement, "displacement");
   calibration("--force", columns.force, "force");
   calibration("--time", columns.time, "time");
   calibration("--normal-load", columns.normal_load, "normal load");
-  command
-      .add_option("--encoding", columns.encoding,
-                  "encoding of the files, as iconv names it [latin1, sjis, utf-16le];\n"
-                  "default UTF-8, or found from their first bytes")
-      ->type_name("NAME")
-      ->group(group);
+  group.Add("--encoding", columns.encoding,
+            "encoding of the files, as iconv names it [latin1, sjis, utf-16le];\ndefault UTF-8, or "
+            "found from their first bytes",
+            "NAME");
 }
 
 void RequireNoColumns(const io::RecordColumns& columns) {
@@ -337,7 +321,7 @@ std::string InLines(std::string names, int in_a_line) {
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
-  const std::string group = "Model";
+  const OptionGroup group(command, "Model");
   const std::vector<std::string_view> models = request::ModelNames();
   std::string description = "friction model:";
   for (const models::FrictionModel& model : models::FrictionModels()) {
@@ -345,45 +329,32 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
     description += fmt::format(" {} ({});", model.name, model.title);
   }
   description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
-  command.add_option("--model", options.model, description)
-      ->capture_default_str()
-      ->check(OneOfWords(models))
-      ->group(group);
-  command
-      .add_option("--initial-state", options.initial_state,
-                  "virgin: the record starts from an unloaded contact; steady: from a\n"
-                  "cycled one; auto fits both and keeps the smaller AICc")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kInitialStates))
-      ->group(group);
-  command
-      .add_option("--force-sign", options.force_sign,
-                  "sign of the force in the file relative to the displacement; auto\n"
-                  "decides by the sign of the loop's energy")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kForceSigns))
-      ->group(group);
-  command
-      .add_option("--noise-in", options.noise_in,
-                  "channel that has the noise and is fitted; the other one is taken as\n"
-                  "exact: give displacement where the machine imposes the force")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kNoiseIn))
-      ->group(group);
-  command.add_option("--offsets", options.offsets, "fit offsets of force and displacement")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kOnOff))
-      ->group(group);
-  AddTermOptions(command, options, group);
-  command
-      .add_option("--terms", options.term_choice,
-                  "auto adds the terms that the record requires, one at a time, as\n"
-                  "judged by held-out cycles; NAME,NAME,... fits these:\n" +
-                      InLines(TermGroupNames(), 4) +
-                      "\ndefault: auto for a single record that the law alone misses by more\n"
-                      "than 5 %, without options for terms; else none; in track none")
-      ->type_name("auto|none|NAME,...")
-      ->group(group);
+  group.AddShown("--model", options.model, description)->check(OneOfWords(models));
+  group
+      .AddShown("--initial-state", options.initial_state,
+                "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
+                "auto fits both and keeps the smaller AICc")
+      ->check(OneOfWords(request::kInitialStates));
+  group
+      .AddShown("--force-sign", options.force_sign,
+                "sign of the force in the file relative to the displacement; auto\ndecides by the "
+                "sign of the loop's energy")
+      ->check(OneOfWords(request::kForceSigns));
+  group
+      .AddShown("--noise-in", options.noise_in,
+                "channel that has the noise and is fitted; the other one is taken as\nexact: give "
+                "displacement where the machine imposes the force")
+      ->check(OneOfWords(request::kNoiseIn));
+  group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
+      ->check(OneOfWords(request::kOnOff));
+  AddTermOptions(command, options, group.name());
+  group.Add("--terms", options.term_choice,
+            "auto adds the terms that the record requires, one at a time, as\njudged by held-out "
+            "cycles; NAME,NAME,... fits these:\n" +
+                InLines(TermGroupNames(), 4) +
+                "\ndefault: auto for a single record that the law alone misses by more\nthan 5 %, "
+                "without options for terms; else none; in track none",
+            "auto|none|NAME,...");
   command
       .add_flag_callback(
           "--follow-load",
@@ -404,7 +375,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             },
             help)
         ->type_name(type)
-        ->group(group);
+        ->group(group.name());
   };
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
   add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
@@ -422,39 +393,27 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             value));
       },
       "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
-  command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
-      ->type_name("C")
-      ->capture_default_str()
-      ->group(group);
-  AddOptional(command, "--force-noise", options.force_noise,
-              "known standard deviation of the force [N]; default from the residuals", "N")
-      ->group(group);
-  AddOptional(command, "--displacement-noise", options.displacement_noise,
-              "known standard deviation of the displacement [m]; default from the data where "
-              "they show any",
-              "M")
-      ->group(group);
-  command
-      .add_option("--loss", options.loss,
-                  "weight of residuals that are large against their scatter: huber and\n"
-                  "cauchy reduce it, tukey reduces it to zero")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kLosses))
-      ->group(group);
-  command
-      .add_option("--starts", options.starts,
-                  "number of starting points that are refined: the four most promising,\n"
-                  "the others drawn at random")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1000))
-      ->group(group);
-  command.add_option("--seed", options.seed, "seed of the starting points drawn at random")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
-      ->group(group);
-  AddOptional(command, "--reversal-gate", options.reversal_gate,
-              "excursions up to this [m] are noise, not reversals; default from the data", "M")
-      ->group(group);
+  group.AddShown("--confidence", options.confidence, "confidence of every interval [-]", "C");
+  group.Add("--force-noise", options.force_noise,
+            "known standard deviation of the force [N]; default from the residuals", "N");
+  group.Add("--displacement-noise", options.displacement_noise,
+            "known standard deviation of the displacement [m]; default from the data where "
+            "they show any",
+            "M");
+  group
+      .AddShown("--loss", options.loss,
+                "weight of residuals that are large against their scatter: huber and\ncauchy "
+                "reduce it, tukey reduces it to zero")
+      ->check(OneOfWords(request::kLosses));
+  group
+      .AddShown("--starts", options.starts,
+                "number of starting points that are refined: the four most promising,\nthe others "
+                "drawn at random")
+      ->check(WholeNumber(1, 1000));
+  group.AddShown("--seed", options.seed, "seed of the starting points drawn at random")
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  group.Add("--reversal-gate", options.reversal_gate,
+            "excursions up to this [m] are noise, not reversals; default from the data", "M");
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
@@ -465,8 +424,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddContactOptions(command, request.contact, loads);
 }
 
-void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
-               const std::string& group) {
+void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {
   // A configuration has `strict = true`.
   static const std::map<std::string, Strictness> levels = {{"adequate", Strictness::kAdequate},
                                                            {"true", Strictness::kAdequate},
@@ -481,14 +439,13 @@ void AddStrict(CLI::App& command, Strictness& strictness, const std::string& oth
     }
     strictness = level->second;
   };
-  command
-      .add_flag("--strict{adequate}", *text,
-                otherwise +
-                    " unless the model is adequate and every free\n"
-                    "parameter identifiable; --strict=doubtful accepts a doubtful\n"
-                    "model and parameters that are effective")
-      ->each(read)
-      ->group(group);
+  group
+      .AddFlag("--strict{adequate}", *text,
+               otherwise +
+                   " unless the model is adequate and every free\n"
+                   "parameter identifiable; --strict=doubtful accepts a doubtful\n"
+                   "model and parameters that are effective")
+      ->each(read);
 }
 
 void Messages::Note(std::string_view text) const {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "cli/contact_options.h"
+#include "cli/options.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
@@ -35,8 +36,7 @@ void AddModelOptions(CLI::App& command, FitRequest& request);
 
 /// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
 /// @param otherwise  what happens to a fit that is not: "exit status 3"
-void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
-               const std::string& group);
+void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise);
 
 /// Receives the notes on assumptions and the warnings of a command.
 struct Messages {

@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mindahl::cli {
@@ -17,6 +18,36 @@ namespace mindahl::cli {
 /// blanks.
 void AddExamples(CLI::App& command, const CLI::App& app,
                  std::initializer_list<std::string_view> lines);
+
+/// Adds options to one group of a command's help.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& command, std::string name) : command_(command), name_(std::move(name)) {}
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  /// @param type  stands for the value in the help: "PATH"; empty for CLI11's own word
+  template <typename Value>
+  CLI::Option* Add(const std::string& option, Value& value, const std::string& help,
+                   const std::string& type = "") const {
+    CLI::Option* added = command_.add_option(option, value, help)->group(name_);
+    return type.empty() ? added : added->type_name(type);
+  }
+  /// Adds an option whose default the help shows.
+  template <typename Value>
+  CLI::Option* AddShown(const std::string& option, Value& value, const std::string& help,
+                        const std::string& type = "") const {
+    return Add(option, value, help, type)->capture_default_str();
+  }
+  template <typename Value>
+  CLI::Option* AddFlag(const std::string& option, Value& value, const std::string& help) const {
+    return command_.add_flag(option, value, help)->group(name_);
+  }
+
+ private:
+  CLI::App& command_;
+  std::string name_;
+};
 
 /// A text without blanks and ends of lines around it.
 inline std::string_view Trimmed(std::string_view text) {

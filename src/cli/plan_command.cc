@@ -102,89 +102,54 @@ void RunPlan(const PlanOptions& options, Console& console) {
 
 void AddPlanCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command =
-      app.add_subcommand("plan",
-                         "Plans a measurement: the standard errors that a loop of each amplitude\n"
-                         "would give, and the smallest amplitude that reaches a wanted precision.\n"
-                         "Exit status 3 when none does.");
+  CLI::App* command = app.add_subcommand(
+      "plan",
+      "Plans a measurement: the standard errors that a loop of each amplitude\nwould give, and the "
+      "smallest amplitude that reaches a wanted precision.\nExit status 3 when none does.");
   AddExamples(
       *command, app,
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json",
        "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
   AddLawOptions(*command, options->plan.law);
-  const std::string expected = "What is expected";
-  command
-      ->add_option("--record", options->record,
-                   "take contact and noise from a fit of this record; --alpha is used\n"
-                   "where the record does not determine it")
-      ->type_name("FILE")
-      ->group(expected);
+  const OptionGroup expected(*command, "What is expected");
+  expected.Add("--record", options->record,
+               "take contact and noise from a fit of this record; --alpha is used\n"
+               "where the record does not determine it",
+               "FILE");
   AddColumnOptions(*command, options->columns);
-  AddOptional(*command, "--rig-stiffness", options->plan.rig_stiffness,
-              "stiffness of the rig in series [N/m]; known unless --with fits it", "K")
-      ->group(expected);
-  AddOptional(*command, "--force-noise", options->plan.force_noise,
-              "standard deviation of the force noise [N]", "S")
-      ->group(expected);
-  command
-      ->add_option("--displacement-noise", options->plan.displacement_noise,
-                   "standard deviation of the displacement noise [m], white; default 0")
-      ->type_name("S")
-      ->group(expected);
-  command
-      ->add_option("--autocorrelation", options->plan.autocorrelation,
-                   "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0")
-      ->type_name("RHO")
-      ->group(expected);
-  AddOptional(*command, "--load-exponent", options->plan.load_exponent,
-              "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P")
-      ->group(expected);
-  const std::string loop = "The loop";
-  command
-      ->add_option("--amplitude", options->plan.amplitudes,
-                   "amplitude X [m], repeatable; default 13 around the onset of slip")
-      ->type_name("X")
-      ->group(loop);
-  command
-      ->add_option("--load-ratio", options->plan.load_ratios,
-                   "loads relative to this contact's own [-], one loop at each: 0.5,1,2")
-      ->type_name("R")
-      ->delimiter(',')
-      ->group(loop);
-  command->add_option("--cycles", options->plan.cycles, "cycles of the sine, >= 1")
-      ->capture_default_str()
-      ->type_name("M")
-      ->group(loop);
-  command
-      ->add_option("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
-      ->capture_default_str()
-      ->check(WholeNumber(4, 1'000'000))
-      ->group(loop);
-  command
-      ->add_option("--initial-state", options->initial_state,
-                   "virgin: the loop includes the first loading; steady: it does not")
-      ->capture_default_str()
-      ->check(OneOf({"virgin", "steady", "both"}))
-      ->group(loop);
-  const std::string fit = "The fit";
-  command
-      ->add_option("--with", options->plan.with,
-                   "further terms that are fitted: rig_stiffness, plateau_slope …")
-      ->type_name("TERM")
-      ->delimiter(',')
-      ->group(fit);
-  command->add_option("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%")
-      ->type_name("NAME=ERROR")
-      ->delimiter(',')
-      ->group(fit);
-  const std::string output = "Output";
-  command->add_option("--json", options->json, "results for scripts; - is standard output")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--plot", options->plot, "errors against the amplitude, svg or png")
-      ->type_name("PATH")
-      ->group(output);
+  expected.Add("--rig-stiffness", options->plan.rig_stiffness,
+               "stiffness of the rig in series [N/m]; known unless --with fits it", "K");
+  expected.Add("--force-noise", options->plan.force_noise,
+               "standard deviation of the force noise [N]", "S");
+  expected.Add("--displacement-noise", options->plan.displacement_noise,
+               "standard deviation of the displacement noise [m], white; default 0", "S");
+  expected.Add("--autocorrelation", options->plan.autocorrelation,
+               "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0",
+               "RHO");
+  expected.Add("--load-exponent", options->plan.load_exponent,
+               "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P");
+  const OptionGroup loop(*command, "The loop");
+  loop.Add("--amplitude", options->plan.amplitudes,
+           "amplitude X [m], repeatable; default 13 around the onset of slip", "X");
+  loop.Add("--load-ratio", options->plan.load_ratios,
+           "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
+      ->delimiter(',');
+  loop.AddShown("--cycles", options->plan.cycles, "cycles of the sine, >= 1", "M");
+  loop.AddShown("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
+      ->check(WholeNumber(4, 1'000'000));
+  loop.AddShown("--initial-state", options->initial_state,
+                "virgin: the loop includes the first loading; steady: it does not")
+      ->check(OneOf({"virgin", "steady", "both"}));
+  const OptionGroup fit(*command, "The fit");
+  fit.Add("--with", options->plan.with,
+          "further terms that are fitted: rig_stiffness, plateau_slope …", "TERM")
+      ->delimiter(',');
+  fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
+      ->delimiter(',');
+  const OptionGroup output(*command, "Output");
+  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
+  output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
   command->callback([options, &console] { RunPlan(*options, console); });
 }
 

@@ -73,50 +73,40 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
 
 void AddRecommendCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<RecommendCommandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "recommend",
-      "Finds the cheapest model and method that meet a tolerance along a given displacement: each\n"
-      "is run and compared with the contact's exact Masing response (Mindlin's for alpha = 1/3).");
+  CLI::App* command =
+      app.add_subcommand("recommend",
+                         "Finds the cheapest model and method that meet a tolerance along a given "
+                         "displacement: each\nis run and compared with the contact's exact Masing "
+                         "response (Mindlin's for alpha = 1/3).");
   AddExamples(
       *command, app,
       {"mindahl recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --tolerance 1%",
        "mindahl recommend --record loop.csv"});
   AddLawOptions(*command, options->asked.law);
   AddDriveOptions(*command, options->asked.drive);
-  command->add_option("--seed", options->asked.drive.seed, "seed of the random waveform")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
-      ->group("Excitation");
-  const std::string asked = "What is asked";
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "largest error allowed, of the peak force or the energy: 0.01 or 1%")
-      ->capture_default_str()
-      ->type_name("E")
-      ->group(asked);
-  AddOptional(*command, "--cost", options->asked.asked.largest_cost,
-              "instead find the most precise one that costs no more [ns/sample]", "NS")
-      ->group(asked);
-  command
-      ->add_option("--criterion", options->criterion,
-                   "error that counts: max or rms of the force, or the energy dissipated")
-      ->capture_default_str()
-      ->check(OneOf(request::CriterionNames()))
-      ->group(asked);
-  command
-      ->add_option("--transient-cycles", options->asked.asked.transient_cycles,
-                   "cycles at the start that do not count")
-      ->capture_default_str()
-      ->check(WholeNumber(0, 1'000'000'000))
-      ->group(asked);
+  OptionGroup(*command, "Excitation")
+      .AddShown("--seed", options->asked.drive.seed, "seed of the random waveform")
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  const OptionGroup asked(*command, "What is asked");
+  asked.AddShown("--tolerance", options->tolerance,
+                 "largest error allowed, of the peak force or the energy: 0.01 or 1%", "E");
+  asked.Add("--cost", options->asked.asked.largest_cost,
+            "instead find the most precise one that costs no more [ns/sample]", "NS");
+  asked
+      .AddShown("--criterion", options->criterion,
+                "error that counts: max or rms of the force, or the energy dissipated")
+      ->check(OneOf(request::CriterionNames()));
+  asked
+      .AddShown("--transient-cycles", options->asked.asked.transient_cycles,
+                "cycles at the start that do not count")
+      ->check(WholeNumber(0, 1'000'000'000));
   command->add_option("--json", options->json, "results for scripts; - is standard output")
       ->type_name("PATH");
-  command
-      ->add_option("--record", options->record,
-                   "fit all laws to this record, and find the cheapest that it does not\n"
-                   "distinguish from the best; instead of all options above")
-      ->type_name("FILE")
-      ->group("What is asked");
+  OptionGroup(*command, "What is asked")
+      .Add("--record", options->record,
+           "fit all laws to this record, and find the cheapest that it does not\ndistinguish from "
+           "the best; instead of all options above",
+           "FILE");
   AddColumnOptions(*command, options->columns);
   command->callback([options, command, &console] {
     if (options->record.empty()) {

@@ -85,9 +85,9 @@ void RequireForces(const AddedForces& forces) {
 }
 
 void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
-  const std::string group = "Forces in addition to the contact's";
+  const OptionGroup group(command, "Forces in addition to the contact's");
   const auto add = [&](const char* name, auto& value, const char* help, const char* unit) {
-    command.add_option(name, value, help)->type_name(unit)->group(group);
+    group.Add(name, value, help, unit);
   };
   add("--viscous", forces.viscous, "C of a viscous force C·dδ/dt [N s/m]", "C");
   add("--speed-exponent", forces.speed_exponent, "exponent of C·sgn(v)|v|^M instead, v in m/s [-]",
@@ -322,10 +322,10 @@ void RequireExactLaw(const SimulateOptions& options, std::string_view option, bo
   const bool serves = model != nullptr && !model->scaled_by_peak &&
                       (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
   if (!serves || options.method != "exact") {
-    throw InputError(fmt::format(
-        "{} cannot be used with --model {} --method {}: use --model mindlin, mindlin-dahl, jenkins "
-        "or dahl and --method exact",
-        option, options.model, options.method));
+    throw InputError(
+        fmt::format("{} cannot be used with --model {} --method {}: use --model mindlin, "
+                    "mindlin-dahl, jenkins or dahl and --method exact",
+                    option, options.model, options.method));
   }
   if (!options.drive.force_path.empty() || (!options.drive.load_column.empty() && !is_joint)) {
     throw InputError(
@@ -418,10 +418,9 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   CLI::App* command = app.add_subcommand(
       "simulate",
       "Computes the tangential force of a model along an imposed displacement, or the "
-      "displacement\n"
-      "under an imposed force (--force-path), exactly for any history.\n"
-      "The contact is unloaded at displacement zero; a first row that is not zero is the first\n"
-      "loading step. Writes time [s], displacement [m], force [N].");
+      "displacement\nunder an imposed force (--force-path), exactly for any history.\nThe contact "
+      "is unloaded at displacement zero; a first row that is not zero is the first\nloading step. "
+      "Writes time [s], displacement [m], force [N].");
   AddExamples(*command, app,
               {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
                "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
@@ -431,9 +430,9 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       ->check(OneOf(ModelNames()));
   AddLawOptions(*command, options->law);
   command
-      ->add_option("--asymmetry", options->asymmetry,
-                   "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\n"
-                   "it falls [-]")
+      ->add_option(
+          "--asymmetry", options->asymmetry,
+          "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]")
       ->type_name("A")
       ->capture_default_str();
   command
@@ -446,32 +445,20 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddLoadColumnOptions(*command, options->drive);
   AddForcePathOptions(*command, options->drive);
 
-  const std::string noise = "Noise";
-  command->add_option("--noise-force", options->force_noise, "standard deviation [N]")
-      ->type_name("N")
-      ->group(noise);
-  command->add_option("--noise-displacement", options->displacement_noise, "standard deviation [m]")
-      ->type_name("M")
-      ->group(noise);
-  command->add_option("--seed", options->drive.seed, "seed of the noise and of the random waveform")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
-      ->group(noise);
+  const OptionGroup noise(*command, "Noise");
+  noise.Add("--noise-force", options->force_noise, "standard deviation [N]", "N");
+  noise.Add("--noise-displacement", options->displacement_noise, "standard deviation [m]", "M");
+  noise.AddShown("--seed", options->drive.seed, "seed of the noise and of the random waveform")
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
-  const std::string method = "Method";
-  command->add_option("--method", options->method, MethodHelp())
-      ->capture_default_str()
-      ->check(OneOf(MethodNames()))
-      ->group(method);
-  command
-      ->add_option("--steps", options->steps,
-                   "substeps a sample, elements of iwan, intervals of table")
-      ->type_name("N")
-      ->check(WholeNumber(1, 1'000'000'000))
-      ->group(method);
-  AddOptional(*command, "--tolerance", options->tolerance,
-              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E")
-      ->group(method);
+  const OptionGroup method(*command, "Method");
+  method.AddShown("--method", options->method, MethodHelp())->check(OneOf(MethodNames()));
+  method
+      .Add("--steps", options->steps, "substeps a sample, elements of iwan, intervals of table",
+           "N")
+      ->check(WholeNumber(1, 1'000'000'000));
+  method.Add("--tolerance", options->tolerance,
+             "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
   command->add_option("-o,--output", options->output, "CSV file; default standard output")
       ->type_name("FILE");
   command->callback([options, &console] { RunSimulate(*options, console); });

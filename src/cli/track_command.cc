@@ -44,19 +44,14 @@ namespace mindahl::cli {
 namespace {
 
 using campaign::CycleFit;
-using identification::FitOptions;
 using request::TrackedTest;
 
 constexpr std::string_view kOwnAlpha = "cycle";
 constexpr std::string_view kSharedAlpha = "shared";
 
 struct TrackCommandOptions {
-  FitRequest request;
+  request::TrackRequest track{.threads = std::max(1U, std::thread::hardware_concurrency())};
   FileList list;
-  std::optional<double> normal_load;
-  std::size_t average = 1;
-  std::size_t every = 1;
-  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string broken_rows = "refuse";
   std::string alpha = std::string(kOwnAlpha);
   std::string output;
@@ -77,12 +72,7 @@ struct RowPlace {
 };
 
 void RequireTrackOptions(const TrackCommandOptions& options) {
-  request::MakeCycleFitOptions(options.request);
-  if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
-  if (options.alpha == kSharedAlpha) {
-    campaign::RequireThatAlphaCanBeShared(request::MakeCycleFitOptions(options.request),
-                                          options.request.files);
-  }
+  request::Validate(options.track);
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
   }
@@ -120,10 +110,6 @@ std::uint64_t SeedOf(const CLI::App& command) {
   return seed;
 }
 
-io::BrokenRows BrokenRowsOf(const TrackCommandOptions& options) {
-  return options.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
-}
-
 /// Refuses the unit of a column that the record does not have.
 void RequireUnitOf(std::string_view option, const io::ColumnChoice& choice,
                    const std::optional<io::ChosenColumn>& column) {
@@ -142,7 +128,11 @@ class TrackRun {
         console_(console),
         place_(std::move(place)),
         messages_{console.err, "track"},
-        test_(options.average * options.every),
+        run_(options.track, {.fits = [this](std::span<const CycleFit> fits) { Take(fits); },
+                             .note = [this](std::string_view text) { messages_.Note(text); },
+                             .warn = [this](std::string_view text) { messages_.Warn(text); },
+                             .begins = [this](campaign::TrackOptions& made) { Begin(made); },
+                             .piece_is_read = [this] { RequireNoSignal(); }}),
         end_(place_.offset) {}
 
   void Go();
@@ -151,7 +141,7 @@ class TrackRun {
 
   /// Returns why one of many tests ended before its record; empty where it did not.
   [[nodiscard]] const std::string& fault() const { return fault_; }
-  [[nodiscard]] const TrackedTest& test() const { return test_; }
+  [[nodiscard]] const TrackedTest& test() const { return run_.test(); }
   /// Returns the size [bytes] of the table with the test's last row.
   [[nodiscard]] std::uintmax_t end() const { return end_; }
 
@@ -160,13 +150,7 @@ class TrackRun {
   void ReadFiles();
   [[nodiscard]] bool EndsTheTestAlone() const;
   [[nodiscard]] std::string After() const;
-  void PoolAlpha();
-  [[nodiscard]] FitOptions OptionsFor(const io::Samples& head, campaign::Reading& reading);
-  void Begin(io::RecordStream& stream, const io::Samples& head);
-  void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
-  void EndFile(campaign::Tracker& tracker);
-  void RequireJoinableWithFirst(const io::RecordFile& layout, const std::string& file);
-  void SayReading() const;
+  void Begin(campaign::TrackOptions& made);
   void RequireNoSignal() const;
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther();
@@ -178,12 +162,7 @@ class TrackRun {
   Console& console_;
   RowPlace place_;
   Messages messages_;
-  FitOptions fit_;
-  std::string chosen_terms_;
-  campaign::Reading reading_;  // of the head
-  io::JoinedTimes times_;
-  std::optional<io::RecordFile> first_layout_;  // of the files that are joined
-  TrackedTest test_;
+  request::TrackRun run_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::optional<io::AppendedFile> output_;
   std::uintmax_t end_ = 0;         // [bytes] of the table that is written
@@ -191,68 +170,25 @@ class TrackRun {
   bool is_refused_ = false;        // rows that are there are another run's
   std::string fault_;
   std::optional<io::DeferredSignals> signals_;  // while rows are written
-  std::optional<campaign::Tracker> tracker_;
   std::optional<Progress> progress_;
-  std::uintmax_t bytes_ = 0;         // of all files
-  std::uintmax_t bytes_before_ = 0;  // of the files that are done
-  std::uintmax_t bytes_read_ = 0;
+  std::uintmax_t bytes_ = 0;  // of all files
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FitOptions TrackRun::OptionsFor(const io::Samples& head, campaign::Reading& reading) {
-  FitOptions fit = request::MakeCycleFitOptions(options_.request);
-  if (options_.normal_load) fit.normal_loads = {*options_.normal_load};
-  reading = campaign::ChooseReading(campaign::ViewOf(head), fit);
-  chosen_terms_ = request::ChooseTermsOfCycles(options_.request, campaign::ViewOf(head), fit);
-  return fit;
-}
-
-/// Fits every cycle with an alpha of its own, for what they have in common.
-void TrackRun::PoolAlpha() {
-  campaign::PooledValue alpha;
-  std::optional<campaign::Tracker> tracker;
-  Progress progress(console_.err, "fitting alpha, the first of two passes");
-  for (const std::string& file : options_.request.files) {
-    io::RecordStream stream(file, options_.request.columns, BrokenRowsOf(options_));
-    RequireJoinableWithFirst(stream.layout(), file);
-    io::Samples piece;
-    if (!tracker) {
-      piece = campaign::ReadHead(stream);
-      campaign::Reading reading;
-      tracker.emplace(campaign::TrackOptions{.fit = OptionsFor(piece, reading),
-                                             .together = options_.average,
-                                             .every = options_.every,
-                                             .threads = options_.threads},
-                      [&](std::span<const CycleFit> fits) {
-                        for (const CycleFit& fit : fits) campaign::PoolAlpha(fit, alpha);
-                      });
-    } else {
-      stream.Next(piece);
-    }
-    while (piece.size() > 0) {
-      times_.Shift(piece.time);
-      tracker->Add(campaign::ViewOf(piece), piece.lines);
-      if (!stream.Next(piece)) break;
-    }
-    EndFile(*tracker);
+void TrackRun::Begin(campaign::TrackOptions& made) {
+  const io::RecordFile& layout = run_.layout();
+  TrackedTest& test = run_.test();
+  RequireUnitOf("--time-unit", options_.track.fit.columns.time, layout.time);
+  RequireUnitOf("--normal-load-unit", options_.track.fit.columns.normal_load, layout.normal_load);
+  if (!run_.chosen_terms().empty()) messages_.Note(run_.chosen_terms());
+  const double gate = *made.fit.preparation.reversal_gate;
+  if (!run_.reading().gate_is_given && gate > 0) {
+    messages_.Note(
+        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
+                    "says another",
+                    gate, run_.reading().samples));
   }
-  tracker->Finish();
-  times_ = {};
-  test_.unused_samples = 0;
-  if (tracker->cycles() == 0) return;  // as the second pass will say
-  campaign::RequireSharedAlpha(alpha);
-  test_.shared_alpha = alpha;
-}
-
-void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
-  test_.is_torsional = stream.layout().is_torsional;
-  RequireUnitOf("--time-unit", options_.request.columns.time, stream.layout().time);
-  RequireUnitOf("--normal-load-unit", options_.request.columns.normal_load,
-                stream.layout().normal_load);
-  fit_ = OptionsFor(head, reading_);
-  if (test_.shared_alpha) fit_.fixed["alpha"] = test_.shared_alpha->mean();
-  SayReading();
-  const std::string header = campaign::CycleTableHeader(test_.is_torsional);
+  const std::string header = campaign::CycleTableHeader(test.is_torsional);
   std::error_code error;
   const bool has_rows =
       place_.is_one_of_many
@@ -260,42 +196,23 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
           : options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error;
   if (has_rows) {
     if (!place_.is_one_of_many) RequireHeader(options_.output, header);
-    campaign::DissipatedEnergy energy = test_.energy;
+    campaign::DissipatedEnergy energy = test.energy;
     kept_ = ReadKeptCycles(options_.output,
                            {.offset = place_.is_one_of_many ? place_.offset : header.size(),
                             .before = place_.before,
                             .after = After()},
                            [&](const campaign::CycleTableEntry& entry) {
-                             if (test_.fits % campaign::kBatch == 0)
-                               test_.energy = energy;  // before the last batch
+                             if (test.fits % campaign::kBatch == 0)
+                               test.energy = energy;  // before the last batch
                              energy.Add(entry.fit);
-                             test_.Add(entry.fit);
+                             test.Add(entry.fit);
                            });
-    test_.resumed = kept_->fits;
+    test.resumed = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
-  tracker_.emplace(campaign::TrackOptions{.fit = fit_,
-                                          .together = options_.average,
-                                          .every = options_.every,
-                                          .threads = options_.threads,
-                                          .skipped = kept_ ? kept_->fits - campaign::kBatch : 0,
-                                          .seed = SeedOf(command_)},
-                   [this](std::span<const CycleFit> fits) { Take(fits); });
+  made.skipped = kept_ ? kept_->fits - campaign::kBatch : 0;
+  made.seed = SeedOf(command_);
   progress_.emplace(console_.err, "tracking cycles");
-}
-
-void TrackRun::SayReading() const {
-  if (!chosen_terms_.empty()) messages_.Note(chosen_terms_);
-  const campaign::Reading& reading = reading_;
-  const double gate = *fit_.preparation.reversal_gate;
-  if (!reading.gate_is_given && gate > 0) {
-    messages_.Note(
-        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
-                    "says another",
-                    gate, reading.samples));
-  }
-  const auto doubt = campaign::DoubtAbout(reading, options_.request.files.front());
-  if (doubt) messages_.Warn(*doubt);
 }
 
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
@@ -303,8 +220,8 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   std::string rows;
   const std::string after = After() + "\n";
   for (const CycleFit& fit : fits) {
-    test_.energy.Add(fit);
-    const std::string row = campaign::CycleTableRow(fit, test_.energy.total());
+    run_.test().energy.Add(fit);
+    const std::string row = campaign::CycleTableRow(fit, test().energy.total());
     rows.append(place_.before).append(row, 0, row.size() - 1).append(after);
   }
   if (kept_) {
@@ -319,19 +236,19 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   has_write_failed_ = true;
   if (!output_) {
     output_.emplace(options_.output, place_.offset);
-    if (!place_.is_one_of_many) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+    if (!place_.is_one_of_many) output_->Append(campaign::CycleTableHeader(test().is_torsional));
   }
   output_->Append(rows);
   has_write_failed_ = false;
   end_ += rows.size();
-  for (const CycleFit& fit : fits) test_.Add(fit);
+  for (const CycleFit& fit : fits) run_.test().Add(fit);
   SayProgress();
 }
 
 /// Returns the cells after those of a cycle.
 std::string TrackRun::After() const {
   if (!place_.is_one_of_many) return "";
-  return test_.is_torsional ? ",torque" : ",force";
+  return test().is_torsional ? ",torque" : ",force";
 }
 
 void TrackRun::ThrowOther() {
@@ -346,11 +263,11 @@ void TrackRun::ThrowOther() {
 void TrackRun::SayProgress() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double share =
-      static_cast<double>(bytes_read_) / static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
-  const auto made = static_cast<double>(test_.fits - test_.resumed);
+  const double share = static_cast<double>(run_.bytes_read()) /
+                       static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
+  const auto made = static_cast<double>(test().fits - test().resumed);
   progress_->Say(fmt::format("{} cycles, {:.0f} % of {:.3g} MB, {:.3g} a second, {:.0f} s left",
-                             tracker_->cycles(), 100 * share, static_cast<double>(bytes_) / 1e6,
+                             run_.cycles(), 100 * share, static_cast<double>(bytes_) / 1e6,
                              made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
 }
 
@@ -359,107 +276,45 @@ void TrackRun::RequireNoSignal() const {
   if (signals_->noted() != 0) throw InputError("stopped by a signal");
 }
 
-/// Refuses a piece of a record that has other columns than the first.
-void TrackRun::RequireJoinableWithFirst(const io::RecordFile& layout, const std::string& file) {
-  if (!options_.request.join) return;
-  if (!first_layout_) first_layout_ = layout;
-  io::RequireJoinable(*first_layout_, options_.request.files.front(), layout, file);
-}
-
-/// Ends a cycle with its file, unless the files are joined.
-void TrackRun::EndFile(campaign::Tracker& tracker) {
-  if (options_.request.join) {
-    times_.NextFile();
-  } else {
-    test_.unused_samples += tracker.NextFile();
-    times_ = {};
-  }
-}
-
-void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
-  while (piece.size() > 0) {
-    bytes_read_ = bytes_before_ + stream.bytes();
-    test_.samples += piece.size();
-    times_.Shift(piece.time);
-    tracker_->Add(campaign::ViewOf(piece), piece.lines);
-    RequireNoSignal();
-    if (!stream.Next(piece)) break;
-  }
-  EndFile(*tracker_);
-  test_.broken_rows += stream.broken_rows();
-  bytes_before_ += stream.bytes();
-  if (stream.footer_lines() > 0) {
-    messages_.Note(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
-                               file, stream.footer_lines()));
-  }
-  if (stream.broken_rows() > 0) {
-    messages_.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}",
-                               stream.broken_rows(), file, stream.first_broken_row()));
-  }
-}
-
-void TrackRun::ReadFiles() {
-  const std::vector<std::string>& files = options_.request.files;
-  const io::BrokenRows broken = BrokenRowsOf(options_);
-  for (const std::string& file : files) {
-    io::RecordStream stream(file, options_.request.columns, broken);
-    for (const std::string& note : stream.layout().notes) messages_.Note(note);
-    RequireJoinableWithFirst(stream.layout(), file);
-    if (tracker_ && stream.layout().is_torsional != test_.is_torsional) {
-      throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
-                                   test_.is_torsional ? "torque" : "force", file,
-                                   test_.is_torsional ? "force" : "torque"));
-    }
-    io::Samples first;
-    if (!tracker_) {
-      first = campaign::ReadHead(stream);
-      Begin(stream, first);
-    } else {
-      stream.Next(first);
-    }
-    ReadFile(file, std::move(first), stream);
-  }
-  if (options_.request.join) test_.unused_samples += tracker_->NextFile();
-  tracker_->Finish();
-  if (kept_) ThrowOther();  // a record that ends before them
-  has_write_failed_ = true;
-  if (output_) output_->Finish();
-  has_write_failed_ = false;
-  RequireNoSignal();
-}
-
 void TrackRun::Track() {
-  const std::vector<std::string>& files = options_.request.files;
+  const std::vector<std::string>& files = options_.track.fit.files;
   for (const std::string& file : files) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes_ += size;
   }
-  if (options_.alpha == kSharedAlpha) PoolAlpha();
+  if (options_.track.shares_alpha) {
+    const Progress progress(console_.err, "fitting alpha, the first of two passes");
+    run_.PoolAlpha();
+  }
   signals_.emplace();
   try {
-    ReadFiles();
+    run_.Read();
+    if (kept_) ThrowOther();  // a record that ends before them
+    has_write_failed_ = true;
+    if (output_) output_->Finish();
+    has_write_failed_ = false;
+    RequireNoSignal();
   } catch (const InputError& error) {
     if (EndsTheTestAlone()) throw;
     // Finished rows are kept, unless they are another run's, or there are none.
     const bool is_stopped = signals_->noted() != 0;
-    if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
-    if (!tracker_ || (kept_ && !is_stopped)) throw;
+    if (!run_.has_begun() && is_stopped)
+      throw InputError("stopped by a signal before the first row");
+    if (!run_.has_begun() || (kept_ && !is_stopped)) throw;
     try {
-      if (!has_write_failed_) tracker_->Finish();
+      if (!has_write_failed_) run_.FitTheRest();
       if (output_) output_->Finish();
     } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
     const std::string what = is_stopped ? "stopped by a signal" : error.what();
     if (place_.is_one_of_many) throw InputError(what);
-    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume", what, test_.fits,
+    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume", what, test().fits,
                                  options_.output, is_stopped ? "" : "repair the fault and "));
   }
   signals_.reset();
   progress_.reset();
-  test_.cycles = tracker_->cycles();
-  campaign::RequireCycles(test_.cycles, options_.average, reading_, *fit_.preparation.reversal_gate,
-                          fmt::format("{}", fmt::join(files, ", ")));
+  run_.Finish();
 }
 
 /// True where an error is one of this test's record, and other tests can go on.
@@ -473,35 +328,32 @@ void TrackRun::TrackOneOfMany() {
     Track();
   } catch (const InvalidArgument& error) {
     if (!EndsTheTestAlone()) throw;
-    fault_ = fmt::format("{}: {}", options_.request.files.front(), error.what());
+    fault_ = fmt::format("{}: {}", options_.track.fit.files.front(), error.what());
   } catch (const InputError& error) {
     if (!EndsTheTestAlone()) throw;
     fault_ = error.what();
   }
-  if (fault_.empty() || !tracker_) return;
-  tracker_->Finish();  // what was read before the fault
+  if (fault_.empty() || !run_.has_begun()) return;
+  run_.FitTheRest();  // what was read before the fault
   if (kept_) ThrowOther();
   if (output_) output_->Finish();
 }
 
 void TrackRun::Go() {
   Track();
-  test_.files = options_.request.files;
-  test_.output = options_.output;
-  test_.reversal_gate = *fit_.preparation.reversal_gate;
-  test_.is_gate_certain = reading_.gate.certain;
-  console_.exit_status = test_.established() ? kDone : kNotEstablished;
-  const std::vector<campaign::CourseDescription> described = test_.courses.Describe();
+  run_.test().output = options_.output;
+  console_.exit_status = test().established() ? kDone : kNotEstablished;
+  const std::vector<campaign::CourseDescription> described = test().courses.Describe();
   Draw(described);
   if (!options_.json_path.empty()) {
-    WriteText(ToJson(test_, described), options_.json_path, console_);
+    WriteText(ToJson(test(), described), options_.json_path, console_);
   }
-  if (options_.json_path != "-") console_.out << ToText(test_, described);
+  if (options_.json_path != "-") console_.out << ToText(test(), described);
 }
 
 void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
   if (options_.plot_path.empty() && options_.report_path.empty()) return;
-  const campaign::TestSummary test = SummaryOf(test_, described);
+  const campaign::TestSummary test = SummaryOf(this->test(), described);
   if (!options_.plot_path.empty()) {
     const std::string_view changes =
         test.changes.empty() ? campaign::kNothingChanged : "dashed where it changed beyond chance";
@@ -512,7 +364,7 @@ void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
   if (!options_.report_path.empty()) {
     io::WriteFileAtomically(
         options_.report_path,
-        campaign::ToPage(test, ProvenanceOf(command_, console_, options_.request.files)));
+        campaign::ToPage(test, ProvenanceOf(command_, console_, options_.track.fit.files)));
   }
 }
 
@@ -603,11 +455,11 @@ void SeparateRuns::ReadKept() {
   file.seekg(static_cast<std::streamoff>(end_));
   std::string line;
   bool has_line = std::getline(file, line) && !file.eof();
-  for (const std::string& name : options_.request.files) {
+  for (const std::string& name : options_.track.fit.files) {
     if (!has_line) return;
     const Cells cells = CellsOf(name);
     if (!line.starts_with(cells.test)) ThrowOther(line);
-    TrackedTest test(options_.average * options_.every);
+    TrackedTest test(options_.track.average * options_.track.every);
     std::uintmax_t end = end_;
     std::string fault;
     bool is_another = false;
@@ -669,7 +521,7 @@ void SeparateRuns::AppendFault(const std::string& before, const std::string& fau
 void SeparateRuns::Track(const std::string& file) {
   const Cells cells = CellsOf(file);
   TrackCommandOptions options = options_;
-  options.request.files = {file};
+  options.track.fit.files = {file};
   TrackRun run(options, command_, console_,
                {.is_one_of_many = true,
                 .before = cells.test + cells.rest + ",",
@@ -691,9 +543,11 @@ void SeparateRuns::Go() {
        {std::pair{"--plot", options_.plot_path}, std::pair{"--report", options_.report_path}}) {
     if (path.empty()) continue;
     throw InputError(
-        fmt::format("{} shows one test, and --separate makes many: track that one alone", option));
+        fmt::format("{} shows one test, and --separate makes many: track that one "
+                    "alone",
+                    option));
   }
-  for (const std::string& file : options_.request.files) {
+  for (const std::string& file : options_.track.fit.files) {
     if (file != "-" && file.find_first_of("\r\n") == std::string::npos) continue;
     throw InputError(
         fmt::format("--separate: '{}': a test is called by the name of its file, of "
@@ -708,7 +562,7 @@ void SeparateRuns::Go() {
     table.Append(header_);
     table.Finish();
   }
-  const std::vector<std::string>& files = options_.request.files;
+  const std::vector<std::string>& files = options_.track.fit.files;
   while (tests_.size() < files.size()) {
     const std::string& file = files[tests_.size()];
     try {
@@ -724,9 +578,9 @@ void SeparateRuns::Go() {
 }
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
-  RequireDistinctFiles(options.request.files);
+  RequireDistinctFiles(options.track.fit.files);
   std::vector<std::string> read = console.inputs;
-  read.insert(read.end(), options.request.files.begin(), options.request.files.end());
+  read.insert(read.end(), options.track.fit.files.begin(), options.track.fit.files.end());
   RequireOutputPaths({{"--output", options.output},
                       {"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--plot", options.plot_path},
@@ -735,7 +589,7 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
   // Pieces of one test, whose cycles and energy count on from file to file, have no shards.
   const bool is_separate = options.separate || !options.list.shard.empty();
-  if (is_separate && options.request.join) {
+  if (is_separate && options.track.fit.join) {
     throw InputError("--separate, or --shard, and --join contradict each other: leave one out");
   }
   if (is_separate) return SeparateRuns(options, command, console).Go();
@@ -749,88 +603,66 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
   CLI::App* command =
       app.add_subcommand("track",
-                         "Fits every cycle of a long record while reading it, in constant memory:\n"
-                         "one row a cycle, and the changes over the test. --resume continues a\n"
-                         "run that was ended. Exit status 3 when no fit converged.");
+                         "Fits every cycle of a long record while reading it, in constant "
+                         "memory:\none row a cycle, and the changes over the test. --resume "
+                         "continues a\nrun that was ended. Exit status 3 when no fit converged.");
   AddExamples(*command, app,
               {"mindahl track day1.csv --output cycles.csv",
                "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
                "track.json"});
   command
-      ->add_option("files", options->request.files,
-                   "CSV records of one test, in order; no cycle extends over two files.\n"
-                   "With --separate each file is a test of its own")
+      ->add_option("files", options->track.fit.files,
+                   "CSV records of one test, in order; no cycle extends over two files.\nWith "
+                   "--separate each file is a test of its own")
       ->type_name("FILE");
   AddFilesFrom(*command, options->list);
-  command
-      ->add_flag("--separate", options->separate,
-                 "each file is a test of its own: one table of all, with columns for\n"
-                 "test, version, SHA-256 of the file and fault; a test that fails does\n"
-                 "not stop the others; implied by --shard")
-      ->group("Files");
+  OptionGroup(*command, "Files")
+      .AddFlag("--separate", options->separate,
+               "each file is a test of its own: one table of all, with columns for\ntest, version, "
+               "SHA-256 of the file and fault; a test that fails does\nnot stop the others; "
+               "implied by --shard");
   AddShard(*command, options->list);
-  AddJoin(*command, options->request);
-  AddColumnOptions(*command, options->request.columns);
-  AddModelOptions(*command, options->request);
-  const std::string cycles = "Cycles";
-  AddOptional(*command, "--normal-load", options->normal_load,
-              "normal load N [N] of all cycles; default the column's mean over each", "N")
-      ->group(cycles);
-  command
-      ->add_option("--average", options->average,
-                   "number of consecutive cycles that are fitted together")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1'000'000))
-      ->group(cycles);
-  command->add_option("--every", options->every, "fit only one cycle of this many")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1'000'000'000))
-      ->group(cycles);
-  command
-      ->add_option("--alpha", options->alpha,
-                   "cycle: each cycle has its own; shared: all have the weighted mean of a\n"
-                   "first pass, and a second pass fits sigma and Tc")
-      ->capture_default_str()
-      ->check(CLI::IsMember({std::string(kOwnAlpha), std::string(kSharedAlpha)}))
-      ->group(cycles);
-  command
-      ->add_option("--broken-rows", options->broken_rows,
-                   "refuse: a row without a number in a needed column ends the run; skip:\n"
-                   "it is skipped and counted")
-      ->capture_default_str()
-      ->check(OneOf({"refuse", "skip"}))
-      ->group(cycles);
-  command
-      ->add_option("--threads", options->threads,
-                   "number of worker threads (default: one per core); they do not change\n"
-                   "the table")
-      ->check(WholeNumber(1, 1024))
-      ->group(cycles);
-  const std::string group = "Results";
-  command->add_option("--output", options->output, "table of cycles as CSV, one row a cycle")
-      ->type_name("PATH")
-      ->required()
-      ->group(group);
-  command->add_option("--json", options->json_path, "summary as JSON; - for standard output alone")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--plot", options->plot_path,
-                   "evolution over the cycles with its changes, as svg or png")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--report", options->report_path,
-                   "everything with its figures on one self-contained page of HTML")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_flag("--resume", options->resume,
-                 "continue an existing table, with the same files and options")
-      ->group(group);
-  command->add_flag("--overwrite", options->overwrite, "replace an existing table")->group(group);
+  AddJoin(*command, options->track.fit);
+  AddColumnOptions(*command, options->track.fit.columns);
+  AddModelOptions(*command, options->track.fit);
+  const OptionGroup cycles(*command, "Cycles");
+  cycles.Add("--normal-load", options->track.normal_load,
+             "normal load N [N] of all cycles; default the column's mean over each", "N");
+  cycles
+      .AddShown("--average", options->track.average,
+                "number of consecutive cycles that are fitted together")
+      ->check(WholeNumber(1, 1'000'000));
+  cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
+      ->check(WholeNumber(1, 1'000'000'000));
+  cycles
+      .AddShown("--alpha", options->alpha,
+                "cycle: each cycle has its own; shared: all have the weighted mean of a\nfirst "
+                "pass, and a second pass fits sigma and Tc")
+      ->check(CLI::IsMember({std::string(kOwnAlpha), std::string(kSharedAlpha)}));
+  cycles
+      .AddShown("--broken-rows", options->broken_rows,
+                "refuse: a row without a number in a needed column ends the run; skip:\nit is "
+                "skipped and counted")
+      ->check(OneOf({"refuse", "skip"}));
+  cycles
+      .Add("--threads", options->track.threads,
+           "number of worker threads (default: one per core); they do not change\nthe table")
+      ->check(WholeNumber(1, 1024));
+  const OptionGroup group(*command, "Results");
+  group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
+      ->required();
+  group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
+  group.Add("--plot", options->plot_path,
+            "evolution over the cycles with its changes, as svg or png", "PATH");
+  group.Add("--report", options->report_path,
+            "everything with its figures on one self-contained page of HTML", "PATH");
+  group.AddFlag("--resume", options->resume,
+                "continue an existing table, with the same files and options");
+  group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   command->callback([options, command, &console] {
-    options->request.files = FilesOf(options->request.files, options->list);
+    options->track.fit.files = FilesOf(options->track.fit.files, options->list);
+    options->track.shares_alpha = options->alpha == kSharedAlpha;
+    if (options->broken_rows == "skip") options->track.broken_rows = io::BrokenRows::kSkip;
     RunTrack(*options, *command, console);
   });
 }

@@ -70,49 +70,33 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command = app.add_subcommand(
       "tradeoff",
-      "Compares error and cost of every method and model along five excitations, the cost by\n"
-      "counted operations and as measured in this run, and lists the amplitudes at which each "
-      "model\n"
-      "is good enough. The default contact is that of Peyret et al. (2017).");
+      "Compares error and cost of every method and model along five excitations, the cost "
+      "by\ncounted operations and as measured in this run, and lists the amplitudes at which each "
+      "model\nis good enough. The default contact is that of Peyret et al. (2017).");
   AddExamples(*command, app,
               {"mindahl tradeoff --excitation micro",
                "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
                "points.csv"});
   AddLawOptions(*command, options->study.law);
-  const std::string group = "Excitation";
+  const OptionGroup group(*command, "Excitation");
   CLI::Option* scenes =
-      command
-          ->add_option("--excitation", options->study.excitations,
-                       "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
-                       "default all")
-          ->check(OneOf(request::ExcitationNames()))
-          ->group(group);
-  CLI::Option* path = command
-                          ->add_option("--path", options->path,
-                                       "CSV file whose first column is the displacement [m]")
-                          ->type_name("FILE")
-                          ->excludes(scenes)
-                          ->group(group);
-  command
-      ->add_option("--path-unit", options->path_unit, "unit of that column, default the header's")
-      ->type_name("UNIT")
-      ->needs(path)
-      ->group(group);
-  const std::string output = "Output";
-  command->add_option("--csv", options->csv, "every point, as CSV")
-      ->type_name("PATH")
-      ->group(output);
-  command
-      ->add_option("--regions-csv", options->regions_csv,
-                   "amplitudes at which each model is good enough, as CSV")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--plot", options->plot, "work-precision diagrams, svg or png")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--json", options->json, "results for scripts; - is standard output")
-      ->type_name("PATH")
-      ->group(output);
+      group
+          .Add("--excitation", options->study.excitations,
+               "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
+               "default all")
+          ->check(OneOf(request::ExcitationNames()));
+  CLI::Option* path = group
+                          .Add("--path", options->path,
+                               "CSV file whose first column is the displacement [m]", "FILE")
+                          ->excludes(scenes);
+  group.Add("--path-unit", options->path_unit, "unit of that column, default the header's", "UNIT")
+      ->needs(path);
+  const OptionGroup output(*command, "Output");
+  output.Add("--csv", options->csv, "every point, as CSV", "PATH");
+  output.Add("--regions-csv", options->regions_csv,
+             "amplitudes at which each model is good enough, as CSV", "PATH");
+  output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
+  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   command->callback([options, &console] { RunTradeoff(*options, console); });
 }
 

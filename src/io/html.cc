@@ -71,7 +71,7 @@ svg text{font:13px system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",sans-se
 
 constexpr std::string_view kPageStyle = R"css(
 *{box-sizing:border-box}
-body{margin:0 auto;padding:1.2rem 1rem 3rem;max-width:72rem;background:var(--paper);color:var(--ink);
+body{margin:0 auto;padding:1.2rem 1rem 3rem;max-width:82rem;background:var(--paper);color:var(--ink);
  font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",sans-serif;overflow-wrap:anywhere}
 h1{font-size:1.45rem;line-height:1.25;margin:.2rem 0 .6rem}
 h2{font-size:1.15rem;margin:2.2rem 0 .6rem;padding-top:.5rem;border-top:1px solid var(--grid)}
@@ -100,12 +100,14 @@ pre{background:var(--panel);border:1px solid var(--grid);border-radius:.3rem;pad
 .option{white-space:nowrap}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,27rem),1fr));gap:1.4rem 2rem;
  align-items:start}
-.wide{max-width:46rem}
+.first{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1fr);gap:.5rem 2rem;align-items:start}
+.first h2{border:0;margin:.8rem 0 .3rem;padding:0} .first p,.first .verdict{margin-top:.2rem}
+@media (max-width:900px){.first{display:block}}
 @media (max-width:600px){body{padding:.8rem .8rem 2rem} th,td{padding-right:.6rem}
  tbody th{min-width:7rem;overflow-wrap:anywhere} td.words{min-width:8rem}}
 @media print{body{max-width:none;font-size:10.5pt;padding:0} figure,tr,.verdict,pre{break-inside:avoid}
  h2,h3,caption,thead,thead tr{break-after:avoid} tbody tr:nth-child(-n+2){break-before:avoid}
- .wide{max-width:32rem} .figures{grid-template-columns:1fr 1fr} .figures svg text{font-size:17px}
+ .first{display:block} .first figure{max-width:32rem} .figures{grid-template-columns:1fr 1fr} .figures svg text{font-size:17px}
  .table{overflow:visible} td.number{white-space:normal} td.words{min-width:6rem}
  tbody th{min-width:6rem;overflow-wrap:anywhere} a{color:inherit}}
 )css";

@@ -16,34 +16,29 @@ using contact::PropagatedValue;
 const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   using Item = PropagatedValue;
   static const std::vector<Field<Item>> fields = {
-      {"value", "of the quantity", "estimate", [](const Item& item) { return Number(item.value); }},
+      {"value", "of the quantity", "estimate", &Item::value},
       {"standard_error", "of the quantity", "standard error from the fit and from the given inputs",
-       [](const Item& item) { return Number(item.standard_error); },
-       [](const Item&) {
-         return std::string("the record leaves open the parameter that it rests on");
-       }},
-      {"unit", "", "unit of value and error", [](const Item&) { return Text("-"); }},
-      {"from_fit", "-", "fraction of the variance from the fit",
-       [](const Item& item) { return Number(item.FitShare()); }},
-      {"from_inputs", "-", "fraction of the variance from the inputs",
-       [](const Item& item) { return Number(item.InputShare()); }},
+       &Item::standard_error, "the record leaves open the parameter that it rests on"},
+      {"unit", "", "unit of value and error", [](const Item&) { return "-"; }},
+      {"from_fit", "-", "fraction of the variance from the fit", &Item::FitShare},
+      {"from_inputs", "-", "fraction of the variance from the inputs", &Item::InputShare},
       {"largest_input", "", "the input that contributes most; absent where all are exact",
        [](const Item& item) {
-         return item.largest_input.empty() ? Value{} : Text(item.largest_input);
+         return item.largest_input.empty() ? Value{} : ToValue(item.largest_input);
        }},
   };
   return fields;
 }
 
 /// Returns members with the unit of the quantity, which the table does not know.
-Value::Object PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
-  Value::Object object = Render(PropagatedFields(), value);
-  Place(object, "unit", Text(unit));
-  return object;
+Value PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
+  Value members = Render(PropagatedFields(), value);
+  members.Place("unit", ToValue(unit));
+  return members;
 }
 
 Value Propagated(const std::optional<PropagatedValue>& value, std::string_view unit) {
-  return value ? Value{PropagatedMembers(*value, unit)} : Missing();
+  return value ? PropagatedMembers(*value, unit) : Missing();
 }
 
 namespace {
@@ -53,31 +48,22 @@ std::string WhySlipForceOpen(const Report& report) {
                             : "slip_force or asymmetry is not identifiable";
 }
 
-/// Makes a row, absent of a fit that has one slip force.
-template <typename Get>
-Field<Report> SlipForceRow(const std::string& path, const char* label, Get get) {
-  return {path, "N", label,
-          [get](const Report& report) {
-            if (report.fit.Find("asymmetry") == nullptr) return Value{};
-            return report.slip_forces ? get(*report.slip_forces) : Missing();
-          },
-          WhySlipForceOpen};
-}
-
 std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
                                   SlipForce SlipForces::*member) {
-  const std::string path = "slip_forces." + sense;
-  return {
-      SlipForceRow(path + ".value", label,
-                   [member](const SlipForces& forces) { return Number((forces.*member).value); }),
-      SlipForceRow(
-          path + ".standard_error", "standard error",
-          [member](const SlipForces& forces) { return Number((forces.*member).standard_error); }),
-      SlipForceRow(path + ".ci95[0]", "lower end of the interval",
-                   [member](const SlipForces& forces) { return Number((forces.*member).lower95); }),
-      SlipForceRow(
-          path + ".ci95[1]", "upper end of the interval",
-          [member](const SlipForces& forces) { return Number((forces.*member).upper95); })};
+  std::vector<Field<Report>> rows;
+  const auto add = [&](const char* name, const char* row_label, auto number) {
+    rows.push_back({fmt::format("slip_forces.{}.{}", sense, name), "N", row_label,
+                    [member, number](const Report& report) {  // absent of a fit that has one
+                      if (report.fit.Find("asymmetry") == nullptr) return Value{};
+                      return At(&Report::slip_forces, member, number)(report);
+                    },
+                    WhySlipForceOpen});
+  };
+  add("value", label, &SlipForce::value);
+  add("standard_error", "standard error", &SlipForce::standard_error);
+  add("ci95[0]", "lower end of the interval", &SlipForce::lower95);
+  add("ci95[1]", "upper end of the interval", &SlipForce::upper95);
+  return rows;
 }
 
 }  // namespace
@@ -98,18 +84,12 @@ namespace {
 
 const std::vector<Field<identification::BranchShape>>& BranchFields() {
   using Item = identification::BranchShape;
-  const auto why = [](const Item&) {
-    return std::string("this branch alone does not determine it");
-  };
+  const auto why = "this branch alone does not determine it";
   static const std::vector<Field<Item>> fields = {
-      {"branch", "", "virgin, unloading or reloading",
-       [](const Item& item) { return Text(item.branch); }},
-      {"samples", "", "number of samples on these branches",
-       [](const Item& item) { return Count(item.samples); }},
-      {"alpha", "-", "α of these branches alone, the rest shared",
-       [](const Item& item) { return Number(item.shape_exponent); }, why},
-      {"standard_error", "-", "standard error of alpha",
-       [](const Item& item) { return Number(item.standard_error); }, why},
+      {"branch", "", "virgin, unloading or reloading", &Item::branch},
+      {"samples", "", "number of samples on these branches", &Item::samples},
+      {"alpha", "-", "α of these branches alone, the rest shared", &Item::shape_exponent, why},
+      {"standard_error", "-", "standard error of alpha", &Item::standard_error, why},
   };
   return fields;
 }
@@ -121,36 +101,26 @@ std::string WhyStiffnessNotTested(const StiffnessTest& test) {
 
 const std::vector<Field<StiffnessTest>>& StiffnessFields() {
   using Item = StiffnessTest;
-  const auto end = [](double Interval::*member) {
-    return [member](const Item& item) {
-      return item.interval95 ? Number((*item.interval95).*member) : Missing();
-    };
-  };
   static const std::vector<Field<Item>> fields = {
-      {"ci95[0]", "-", "lower end of the interval", end(&Interval::lower), WhyStiffnessNotTested},
-      {"ci95[1]", "-", "upper end of the interval", end(&Interval::upper), WhyStiffnessNotTested},
-      {"z", "-", "(ratio − 1)/SE", [](const Item& item) { return Number(item.z); },
+      {"ci95[0]", "-", "lower end of the interval", At(&Item::interval95, &Interval::lower),
        WhyStiffnessNotTested},
-      {"p_value", "-", "two-sided", [](const Item& item) { return Number(item.p_value); },
+      {"ci95[1]", "-", "upper end of the interval", At(&Item::interval95, &Interval::upper),
        WhyStiffnessNotTested},
+      {"z", "-", "(ratio − 1)/SE", &Item::z, WhyStiffnessNotTested},
+      {"p_value", "-", "two-sided", &Item::p_value, WhyStiffnessNotTested},
   };
   return fields;
 }
 
-void AppendMembers(Value::Object& object, Value::Object more) {
-  for (auto& member : more) object.push_back(std::move(member));
-}
-
 Value StiffnessTests(const Report& report) {
-  Value::Array array;
+  Value list{.json = Json::array(), .is_absent = false};
   for (const StiffnessTest& test : report.stiffness) {
-    Value::Object object;
-    object.push_back({"radius", Text(test.radius)});
-    AppendMembers(object, PropagatedMembers(test.ratio, "-"));
-    AppendMembers(object, Render(StiffnessFields(), test));
-    array.push_back({std::move(object)});
+    Value members{.json = {{"radius", test.radius}}, .is_absent = false};
+    members.Add(PropagatedMembers(test.ratio, "-"));
+    members.Add(Render(StiffnessFields(), test));
+    list.Append(std::move(members));
   }
-  return {std::move(array)};
+  return list;
 }
 
 std::string WhyAlphaNotTested(const Report& report) {
@@ -176,19 +146,15 @@ std::string WhyNoRig(const Report& report) {
 
 Field<Report> Likelihood(const char* path, const char* unit, const char* label,
                          double MindlinTest::*member) {
-  return {path, unit, label,
-          [member](const Report& report) {
-            return report.alpha.likelihood ? Number((*report.alpha.likelihood).*member) : Missing();
-          },
+  return {path, unit, label, At(&Report::alpha, &AlphaTest::likelihood, member),
           WhyNoLikelihoodRatio};
 }
 
 std::string WhyNoRatio(const Report& report) {
-  return report.stiffness.empty()
-             ? "needs a contact radius known apart from the fit: the elastic constants and "
-               "radii of both bodies with the load, or a contact radius with the compliance or "
-               "the elastic constants"
-             : "the record leaves sigma open";
+  return report.stiffness.empty() ? "needs a contact radius known apart from the fit: the elastic "
+                                    "constants and radii of both bodies with the load, or a "
+                                    "contact radius with the compliance or the elastic constants"
+                                  : "the record leaves sigma open";
 }
 
 }  // namespace
@@ -196,26 +162,23 @@ std::string WhyNoRatio(const Report& report) {
 void AddMappingFields(FieldTable& table) {
   const auto ratio = [](double UncertainValue::*member) {
     return [member](const Report& report) {
-      return report.stiffness.empty() ? Missing() : Number(report.stiffness.front().ratio.*member);
+      return report.stiffness.empty() ? Missing() : ToValue(report.stiffness.front().ratio.*member);
     };
   };
   table.Add({
       {"mapping.alpha_minus_third", "-", "α − 1/3",
-       [](const Report& report) { return Number(report.alpha.minus_third); }, WhyAlphaNotTested},
-      {"mapping.z", "-", "(α − 1/3)/SE",
-       [](const Report& report) { return Number(report.alpha.z); }, WhyAlphaNotTested},
+       [](const Report& report) { return report.alpha.minus_third; }, WhyAlphaNotTested},
+      {"mapping.z", "-", "(α − 1/3)/SE", [](const Report& report) { return report.alpha.z; },
+       WhyAlphaNotTested},
       {"mapping.p_value", "-", "two-sided p-value of z",
-       [](const Report& report) { return Number(report.alpha.p_value); }, WhyAlphaNotTested},
+       [](const Report& report) { return report.alpha.p_value; }, WhyAlphaNotTested},
       Likelihood("mapping.likelihood_ratio", "-",
                  "α = 1/3 against the fitted α, twice its logarithm",
                  &MindlinTest::likelihood_ratio),
       Likelihood("mapping.likelihood_ratio_p_value", "-", "p-value of the likelihood ratio",
                  &MindlinTest::p_value),
       {"mapping.tenable_with_rig_stiffness", "N/m", "rig with which α = 1/3 fits as well",
-       [](const Report& report) {
-         return report.fit.mindlin_test ? Number(report.fit.mindlin_test->rig_stiffness)
-                                        : Missing();
-       },
+       At(&Report::fit, &identification::FitResult::mindlin_test, &MindlinTest::rig_stiffness),
        WhyNoRig},
       {"mapping.alpha_by_branch", "", "α of each kind of branch alone",
        [](const Report& report) { return List(BranchFields(), report.fit.branch_shapes); }},
@@ -247,46 +210,34 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
   static const std::vector<Field<Item>> fields = [] {
     std::vector<Field<Item>> rows;
     rows.push_back({"normal_load", "N", "N of the record, given or the mean of its column",
-                    [](const Item& item) { return Number(item.normal_load); }});
+                    &Item::normal_load});
     const auto of_series = [&](const std::string& name, const char* unit, const char* label,
                                UncertainValue Item::*member) {
-      rows.push_back({name + ".value", unit, label,
-                      [member](const Item& item) { return Number((item.*member).value); }});
+      rows.push_back({name + ".value", unit, label, At(member, &UncertainValue::value)});
       rows.push_back({name + ".standard_error", unit, "standard error",
-                      [member](const Item& item) { return Number((item.*member).standard_error); },
-                      WhySeriesOpen});
+                      At(member, &UncertainValue::standard_error), WhySeriesOpen});
     };
     of_series("sigma", "N/m", "σ at this load, from the whole series", &Item::stiffness);
     of_series("slip_force", "N", "Tc at this load, from the whole series", &Item::slip_force);
     const auto alone = [&](const std::string& name, const char* unit, const char* label,
                            ParameterEstimate identification::RecordAlone::*member) {
-      rows.push_back({"alone." + name + ".value", unit, label,
-                      [member](const Item& item) {
-                        return item.alone ? Number(((*item.alone).*member).value) : Missing();
-                      },
-                      WhyNotAlone});
-      rows.push_back({"alone." + name + ".ci95[0]", unit, "lower end of the interval",
-                      [member](const Item& item) {
-                        return item.alone ? Number(((*item.alone).*member).lower95) : Missing();
-                      },
-                      WhyNotAlone});
-      rows.push_back({"alone." + name + ".ci95[1]", unit, "upper end of the interval",
-                      [member](const Item& item) {
-                        return item.alone ? Number(((*item.alone).*member).upper95) : Missing();
-                      },
-                      WhyNotAlone});
+      const auto add = [&](const char* number, const char* row_label, auto get) {
+        rows.push_back({"alone." + name + number, unit, row_label, At(&Item::alone, member, get),
+                        WhyNotAlone});
+      };
+      add(".value", label, &ParameterEstimate::value);
+      add(".ci95[0]", "lower end of the interval", &ParameterEstimate::lower95);
+      add(".ci95[1]", "upper end of the interval", &ParameterEstimate::upper95);
     };
     alone("sigma", "N/m", "σ of this record alone, with the series' α",
           &identification::RecordAlone::stiffness);
     alone("slip_force", "N", "Tc of this record alone, with the series' α",
           &identification::RecordAlone::slip_force);
-    rows.push_back(
-        {"contact_radius", "m", "a = σG*/8; absent unless G* is known", [](const Item& item) {
-           return item.contact_radius ? Number(item.contact_radius->value) : Value{};
-         }});
-    rows.push_back(
-        {"hertz_contact_radius", "m", "a of Hertz; absent unless materials and radii are known",
-         [](const Item& item) { return item.hertz_radius ? Number(item.hertz_radius) : Value{}; }});
+    rows.push_back({"contact_radius", "m", "a = σG*/8; absent unless G* is known",
+                    IfAny(&Item::contact_radius, &UncertainValue::value)});
+    rows.push_back({"hertz_contact_radius", "m",
+                    "a of Hertz; absent unless materials and radii are known",
+                    IfAny(&Item::hertz_radius)});
     return rows;
   }();
   return fields;
@@ -300,16 +251,12 @@ std::string WhyHypothesisNotTested(const LoadHypothesis& item) {
 const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
   using Item = LoadHypothesis;
   static const std::vector<Field<Item>> fields = {
-      {"name", "", "sphere, elements, cone, flat_punch or rough",
-       [](const Item& item) { return Text(item.name); }},
+      {"name", "", "sphere, elements, cone, flat_punch or rough", &Item::name},
       {"exponent", "-", "exponent that the theory predicts; for elements in parallel the fitted α",
-       [](const Item& item) { return Number(item.exponent); }},
-      {"difference", "-", "p minus that exponent",
-       [](const Item& item) { return Number(item.difference); }, WhyHypothesisNotTested},
-      {"z", "-", "difference over its standard error",
-       [](const Item& item) { return Number(item.z); }, WhyHypothesisNotTested},
-      {"p_value", "-", "two-sided p-value of z",
-       [](const Item& item) { return Number(item.p_value); }, WhyHypothesisNotTested},
+       &Item::exponent},
+      {"difference", "-", "p minus that exponent", &Item::difference, WhyHypothesisNotTested},
+      {"z", "-", "difference over its standard error", &Item::z, WhyHypothesisNotTested},
+      {"p_value", "-", "two-sided p-value of z", &Item::p_value, WhyHypothesisNotTested},
   };
   return fields;
 }
@@ -324,55 +271,41 @@ const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
   using Item = QuantityUnderLaw;
   static const std::vector<Field<Item>> fields = {
       {"ci95[0]", "of the quantity", "lower end of the interval",
-       [](const Item& item) {
-         return item.interval95 ? Number(item.interval95->lower) : Missing();
-       },
-       WhyNoInterval},
+       At(&Item::interval95, &Interval::lower), WhyNoInterval},
       {"ci95[1]", "of the quantity", "upper end of the interval",
-       [](const Item& item) {
-         const bool is_closed = item.interval95 && std::isfinite(item.interval95->upper);
-         return is_closed ? Number(item.interval95->upper) : Missing();
-       },
-       WhyNoInterval},
+       At(&Item::interval95, &Interval::upper), WhyNoInterval},
       {"predicted", "of the quantity",
-       "value predicted from the bodies; absent where they are not known",
-       [](const Item& item) { return item.predicted ? Number(item.predicted) : Value{}; }},
+       "value predicted from the bodies; absent where they are not known", IfAny(&Item::predicted)},
   };
   return fields;
 }
 
 Value QuantityValues(const LoadLaw& law) {
-  Value::Object quantities;
+  Value quantities{.json = Json::object(), .is_absent = false};
   for (const QuantityUnderLaw& quantity : law.quantities) {
-    Value::Object members = PropagatedMembers(quantity.value, quantity.unit);
-    for (auto& member : Render(QuantityFields(), quantity)) members.push_back(std::move(member));
-    quantities.push_back({std::string(quantity.key), {std::move(members)}});
+    Value members = PropagatedMembers(quantity.value, quantity.unit);
+    members.Add(Render(QuantityFields(), quantity));
+    quantities.Set(std::string(quantity.key), std::move(members));
   }
-  return {std::move(quantities)};
+  return quantities;
 }
 
 const std::vector<Field<LoadLaw>>& LoadLawFields() {
   using Item = LoadLaw;
-  const auto why_exact = [](const Item&) { return std::string("sigma was held"); };
+  const auto why_exact = "sigma was held";
   static const std::vector<Field<Item>> fields = {
-      {"name", "", "name of the hypothesis", [](const Item& item) { return Text(item.name); }},
+      {"name", "", "name of the hypothesis", &Item::name},
       {"exponent", "-",
        "exponent p of the hypothesis; for elements in parallel the p = α nearest to both",
-       [](const Item& item) { return Number(item.exponent); }},
+       &Item::exponent},
       {"sigma.value", "N/m", "σ at the reference load, with that p",
-       [](const Item& item) { return Number(item.stiffness.value); }},
+       At(&Item::stiffness, &UncertainValue::value)},
       {"sigma.standard_error", "N/m", "standard error",
-       [](const Item& item) { return Number(item.stiffness.standard_error); }},
+       At(&Item::stiffness, &UncertainValue::standard_error)},
       {"sigma.ci95[0]", "N/m", "lower end of the interval",
-       [](const Item& item) {
-         return item.stiffness95 ? Number(item.stiffness95->lower) : Missing();
-       },
-       why_exact},
+       At(&Item::stiffness95, &Interval::lower), why_exact},
       {"sigma.ci95[1]", "N/m", "upper end of the interval",
-       [](const Item& item) {
-         return item.stiffness95 ? Number(item.stiffness95->upper) : Missing();
-       },
-       why_exact},
+       At(&Item::stiffness95, &Interval::upper), why_exact},
       {"quantities", "", "quantities of the contact that follow, by name; may be empty",
        QuantityValues},
   };
@@ -384,8 +317,8 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
 void AddLoadSeriesFields(FieldTable& table) {
   table.Add({
       {"load_series.reference_load", "N",
-       "N₀, mean of the records' loads, at which σ and Tc of parameters are given; load_series "
-       "is absent where the records have one load",
+       "N₀, mean of the records' loads, at which σ and Tc of parameters are given; load_series is "
+       "absent where the records have one load",
        [](const Report& report) {
          return report.load_series ? Number(report.fit.normal_load) : Value{};
        }},
@@ -434,11 +367,9 @@ const std::vector<Field<contact::HertzPrediction>>& HertzFields() {
     std::vector<Field<Item>> rows;
     const auto of_inputs = [&](const std::string& name, const char* unit, const char* label,
                                PropagatedValue Item::*member) {
-      rows.push_back(
-          {name, unit, label, [member](const Item& item) { return Number((item.*member).value); }});
-      rows.push_back(
-          {name + "_standard_error", unit, "standard error, from the inputs alone",
-           [member](const Item& item) { return Number((item.*member).standard_error); }});
+      rows.push_back({name, unit, label, At(member, &PropagatedValue::value)});
+      rows.push_back({name + "_standard_error", unit, "standard error, from the inputs alone",
+                      At(member, &PropagatedValue::standard_error)});
     };
     const auto propagated = [&](const char* path, const char* unit, const char* label,
                                 PropagatedValue Item::*member) {
@@ -503,21 +434,20 @@ void AddContactFields(FieldTable& table) {
          field.why_null});
     if (field.key != "compliance") continue;
     rows.push_back({"contact.compliance_definition", "", "definition of G*",
-                    [](const Report&) { return Text("G* = (2-nu1)/G1 + (2-nu2)/G2"); }});
+                    [](const Report&) { return "G* = (2-nu1)/G1 + (2-nu2)/G2"; }});
     rows.push_back({"contact.compliance_unit", "", "unit of compliance",
-                    [](const Report&) { return Text("1/Pa"); }});
+                    [](const Report&) { return "1/Pa"; }});
   }
   rows.push_back({"contact.normal_load", "N", "normal load, given or the mean of its column",
                   [](const Report& report) {
-                    return report.known.normal_load ? Number(report.known.normal_load->value)
+                    return report.known.normal_load ? ToValue(report.known.normal_load->value)
                                                     : Missing("not given, and no column has it");
                   }});
   rows.push_back(
       {"contact.hertz_mindlin", "",
        "what Hertz and Mindlin predict; absent unless materials, radii and load are known",
        [](const Report& report) {
-         return report.contact.hertz ? Value{Render(HertzFields(), *report.contact.hertz)}
-                                     : Value{};
+         return report.contact.hertz ? Render(HertzFields(), *report.contact.hertz) : Value{};
        }});
   table.Add(std::move(rows));
   table.Describe("contact.QUANTITY.", PropagatedFields());

@@ -20,31 +20,31 @@ namespace {
 
 /// Returns the sum over the records of what one of them has.
 template <typename Get>
-std::function<Value(const Report&)> Sum(Get get) {
+std::function<std::size_t(const Report&)> Sum(Get get) {
   return [get](const Report& report) {
     std::size_t sum = 0;
     for (const RecordFit& record : report.fit.records) sum += get(record);
-    return Count(sum);
+    return sum;
   };
 }
 
 template <typename Get>
 std::function<Value(const Report&)> OneARecord(Get get) {
   return [get](const Report& report) {
-    Value::Array array;
-    for (const RecordFit& record : report.fit.records) array.push_back(Number(get(record)));
-    return Value{std::move(array)};
+    Value list{.json = Json::array(), .is_absent = false};
+    for (const RecordFit& record : report.fit.records) list.Append(At(get)(record));
+    return list;
   };
 }
 
 /// Makes a getter of the reversal gate of the widest record.
-template <typename Get>
-std::function<Value(const Report&)> OfGate(Get get) {
-  return [get](const Report& report) { return get(report.fit.WidestRecord().gate); };
-}
-
-Value UnitOf(const std::optional<io::ChosenColumn>& column) {
-  return column ? Text(column->unit) : Value{};
+/// @param is_other  of the other gate: absent where the gate is certain
+template <typename Member>
+std::function<Value(const Report&)> OfGate(Member member, bool is_other = false) {
+  return [member, is_other](const Report& report) {
+    const ReversalGate& gate = report.fit.WidestRecord().gate;
+    return is_other && gate.certain ? Value{} : ToValue(gate.*member);
+  };
 }
 
 struct LoadPieceItem {
@@ -67,15 +67,12 @@ std::vector<LoadPieceItem> LoadPieces(const Report& report) {
 const std::vector<Field<LoadPieceItem>>& LoadPieceFields() {
   using Item = LoadPieceItem;
   static const std::vector<Field<Item>> fields = {
-      {"file", "", "name of the record: that of the file with the lines of the piece",
-       [](const Item& item) { return Text(item.file); }},
-      {"normal_load", "N", "median of the load",
-       [](const Item& item) { return Number(item.piece.normal_load); }},
+      {"file", "", "name of the record: that of the file with the lines of the piece", &Item::file},
+      {"normal_load", "N", "median of the load", At(&Item::piece, &io::LoadPiece::normal_load)},
       {"first_line", "", "first line of the piece in the file, counted from 1",
-       [](const Item& item) { return Count(item.piece.first_line); }},
-      {"last_line", "", "likewise", [](const Item& item) { return Count(item.piece.last_line); }},
-      {"samples", "", "samples of the piece, including those that do not count",
-       [](const Item& item) { return Count(item.samples); }},
+       At(&Item::piece, &io::LoadPiece::first_line)},
+      {"last_line", "", "likewise", At(&Item::piece, &io::LoadPiece::last_line)},
+      {"samples", "", "samples of the piece, including those that do not count", &Item::samples},
   };
   return fields;
 }
@@ -88,27 +85,26 @@ std::size_t BetweenLoads(const Report& report) {
   return samples;
 }
 
+const io::RecordFile& FirstRecord(const Report& report) { return report.records.front(); }
+constexpr auto kFirst = &FirstRecord;
+
 void AddInputFields(FieldTable& table) {
   table.Add({
       {"schema", "", "name and version of the schema",
-       [](const Report&) { return Text("mindahl.fit/1"); }},
-      {"version", "", "version of mindahl", [](const Report&) { return Text(Version()); }},
+       [](const Report&) { return "mindahl.fit/1"; }},
+      {"version", "", "version of mindahl", [](const Report&) { return Version(); }},
       {"input.files", "",
        "names of the files, as given; with line numbers where a record is a piece of a file",
-       [](const Report& report) {
-         Value::Array files;
-         for (const std::string& file : report.files) files.push_back(Text(file));
-         return Value{std::move(files)};
-       }},
+       &Report::files},
       {"input.samples", "", "samples read, including those that do not count",
        [](const Report& report) {
          std::size_t samples = BetweenLoads(report);
          for (const io::RecordFile& input : report.records) samples += input.record.size();
-         return Count(samples);
+         return samples;
        }},
       {"input.load_pieces", "",
-       "pieces that were fitted as records of their own, of files whose load changes in steps, "
-       "or ramps with --trim auto; absent where there are none",
+       "pieces that were fitted as records of their own, of files whose load changes in steps, or "
+       "ramps with --trim auto; absent where there are none",
        [](const Report& report) {
          const std::vector<LoadPieceItem> pieces = LoadPieces(report);
          return pieces.empty() ? Value{} : List(LoadPieceFields(), pieces);
@@ -117,7 +113,7 @@ void AddInputFields(FieldTable& table) {
        "samples in none of the pieces, which do not count: the load changes, or fewer than two "
        "turning points have passed since; absent likewise",
        [](const Report& report) {
-         return LoadPieces(report).empty() ? Value{} : Count(BetweenLoads(report));
+         return LoadPieces(report).empty() ? Value{} : ToValue(BetweenLoads(report));
        }},
       {"input.trimmed", "",
        "samples that --trim auto leaves out under the fitted load; may be empty, absent without "
@@ -130,36 +126,30 @@ void AddInputFields(FieldTable& table) {
       {"input.reversals", "", "turning points of the motion, of all files",
        Sum([](const RecordFit& record) { return record.reversals.size(); })},
       {"input.units.displacement", "", "unit of the column in the first file",
-       [](const Report& report) { return Text(report.records.front().displacement.unit); }},
+       At(kFirst, &io::RecordFile::displacement, &io::ChosenColumn::unit)},
       {"input.units.force", "", "unit of the column in the first file",
-       [](const Report& report) { return Text(report.records.front().force.unit); }},
+       At(kFirst, &io::RecordFile::force, &io::ChosenColumn::unit)},
       {"input.units.time", "", "likewise; absent where there is no such column",
-       [](const Report& report) { return UnitOf(report.records.front().time); }},
+       IfAny(kFirst, &io::RecordFile::time, &io::ChosenColumn::unit)},
       {"input.units.normal_load", "", "likewise; absent where there is no such column",
-       [](const Report& report) { return UnitOf(report.records.front().normal_load); }},
+       IfAny(kFirst, &io::RecordFile::normal_load, &io::ChosenColumn::unit)},
       {"input.left_out", "", "samples that do not count",
        [](const Report& report) {
          std::size_t left_out = BetweenLoads(report);
          for (const RecordFit& record : report.fit.records) left_out += record.left_out;
-         return Count(left_out);
+         return left_out;
        }},
       {"input.reversal_gate", kOfExcitation, "one per file: excursions up to it are noise",
        OneARecord([](const RecordFit& record) { return record.gate.gate; })},
       {"input.displacement_noise", "m", "one per file: standard deviation, given or estimated",
-       OneARecord([](const RecordFit& record) { return record.displacement_noise; })},
+       OneARecord(&RecordFit::displacement_noise)},
       {"input.initial_state", "", "one per file: virgin or steady",
-       [](const Report& report) {
-         Value::Array array;
-         for (const RecordFit& record : report.fit.records) {
-           array.push_back(Text(Name(record.initial_state)));
-         }
-         return Value{std::move(array)};
-       }},
+       OneARecord(&RecordFit::initial_state)},
       {"input.response_noise", kOfResponse,
        "one per file: standard deviation of the noise of the fitted channel, given or estimated",
-       OneARecord([](const RecordFit& record) { return record.response_noise; })},
+       OneARecord(&RecordFit::response_noise)},
       {"input.force_sign", "", "same or opposite: sign of the force relative to the displacement",
-       [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},
+       [](const Report& report) { return report.fit.force_sense > 0 ? "same" : "opposite"; }},
       {"input.glitches.spikes", "", "samples left out that are far off their neighbours",
        Sum([](const RecordFit& record) { return record.glitches.spikes; })},
       {"input.glitches.dropouts", "", "samples left out that read 0 in both channels",
@@ -167,19 +157,15 @@ void AddInputFields(FieldTable& table) {
       {"input.glitches.held", "", "samples left out that repeat a value before it jumps",
        Sum([](const RecordFit& record) { return record.glitches.held; })},
       {"reversals.count", "", "turning points of the motion in the widest record",
-       [](const Report& report) { return Count(report.fit.WidestRecord().reversals.size()); }},
+       [](const Report& report) { return report.fit.WidestRecord().reversals.size(); }},
       {"reversals.gate", kOfExcitation, "excursions up to it are noise",
-       OfGate([](const ReversalGate& gate) { return Number(gate.gate); })},
+       OfGate(&ReversalGate::gate)},
       {"reversals.certain", "", "true if no other gate is as plausible",
-       OfGate([](const ReversalGate& gate) { return Flag(gate.certain); })},
+       OfGate(&ReversalGate::certain)},
       {"reversals.other_count", "", "turning points under the other gate; absent where certain",
-       OfGate([](const ReversalGate& gate) {
-         return gate.certain ? Value{} : Count(gate.other_count);
-       })},
+       OfGate(&ReversalGate::other_count, /*is_other=*/true)},
       {"reversals.other_gate", kOfExcitation, "the other gate; absent where certain",
-       OfGate([](const ReversalGate& gate) {
-         return gate.certain ? Value{} : Number(gate.other_gate);
-       })},
+       OfGate(&ReversalGate::other_gate, /*is_other=*/true)},
   });
 }
 
@@ -207,8 +193,7 @@ FieldTable MakeTable() {
     const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");
     row.why_null = [why = std::move(row.why_null), is_of_contact](const Report& report) {
       if (report.failed()) return WhyFailed(report);
-      if (is_of_contact && report.is_torsional()) return std::string(kWhyNoContact);
-      return why ? why(report) : std::string("not a finite number");
+      return is_of_contact && report.is_torsional() ? std::string(kWhyNoContact) : why(report);
     };
   }
   return table;
@@ -219,20 +204,18 @@ const FieldTable& AllFields() {
   return table;
 }
 
-/// Fields of a value and of its members, lists aside.
-void Describe(const Report& report, const Value& value, const std::string& path,
+/// Fields of a value and of its members, lists and nulls aside.
+void Describe(const Report& report, const Json& value, const std::string& path,
               const std::vector<FieldDescription>& descriptions,
               std::vector<DescribedValue>& described) {
-  if (const auto* object = std::get_if<Value::Object>(&value.content)) {
-    for (const auto& [key, member] : *object) {
-      Describe(report, member, path.empty() ? key : fmt::format("{}.{}", path, key), descriptions,
-               described);
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      Describe(report, member, fmt::format("{}.{}", path, key), descriptions, described);
     }
     return;
   }
-  if (std::holds_alternative<Value::Array>(value.content)) return;
   const auto found = std::ranges::find(descriptions, path, &FieldDescription::path);
-  if (found == descriptions.end()) return;
+  if (value.is_array() || value.is_null() || found == descriptions.end()) return;
   FieldDescription field = *found;
   field.unit = UnitIn(report.units, field.unit);
   described.push_back({.field = std::move(field), .value = value});
@@ -265,7 +248,7 @@ std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view p
   const std::string_view subject = prefix.substr(0, prefix.find('.'));
   for (const Field<Report>& row : AllFields().rows) {
     if (row.path.substr(0, row.path.find('.')) != subject) continue;
-    Describe(report, row.get(report), row.path, descriptions, described);
+    Describe(report, row.get(report).json, row.path, descriptions, described);
   }
   std::erase_if(described, [prefix](const DescribedValue& item) {
     return !item.field.path.starts_with(prefix);
@@ -273,6 +256,22 @@ std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view p
   return described;
 }
 
-Value::Object Document(const Report& report) { return Render(AllFields().rows, report); }
+Json JsonDocument(const Report& report) {
+  Value document = Render(AllFields().rows, report);
+  Json json = std::move(document.json);
+  json["nulls"] = Json::array();
+  for (const NullPlace& null : document.nulls) {
+    json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
+  }
+  const auto append = [](Json& list, const std::vector<Warning>& warnings) {
+    for (const Warning& warning : warnings) {
+      list.push_back({{"code", warning.code}, {"message", warning.message}});
+    }
+  };
+  append(json["warnings"] = Json::array(), report.fit_warnings);
+  append(json["warnings"], report.contact_warnings);
+  append(json["notes"] = Json::array(), report.notes);
+  return json;
+}
 
 }  // namespace mindahl::report

@@ -1,14 +1,42 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/report/report.h"
-#include "report/value.h"
 
 namespace mindahl::report {
+
+using Json = nlohmann::ordered_json;
+
+/// A null of a report.
+struct NullPlace {
+  std::string path;
+  std::string why;
+};
+
+/// A value of a report, which may be a list or have members.
+struct Value {
+  Json json = nullptr;
+  std::vector<NullPlace> nulls = {};  ///< in `json`, in their order; path "" is the value itself
+  bool is_absent = true;              ///< has no key
+
+  /// Puts a value where a path leads, making the members and lists on the way: "alpha.ci95[1]".
+  void Place(std::string_view path, Value value);
+  /// Adds or replaces a member whose name is any text.
+  void Set(const std::string& key, Value value);
+  /// Adds the members of another value.
+  void Add(Value members);
+  /// Adds an element of a list.
+  void Append(Value value);
+};
+
+/// Returns a number; of one that is missing or not finite a null, whose reason the row has.
+[[nodiscard]] Value Number(std::optional<double> number);
+[[nodiscard]] Value Missing(std::string why = {});
 
 /// A quantity of the contact that the fit and what is known besides it identify together.
 struct ContactField {
@@ -36,14 +64,14 @@ std::vector<FieldDescription> DescribeFields();
 /// A number, word or flag of a report, with what the documentation says of it.
 struct DescribedValue {
   FieldDescription field;
-  Value value;
+  Json value;
 };
 
 /// Returns the fields of one subject, without its lists: those whose path begins with `prefix`,
 /// such as "measured.", with their units in the report.
 std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix);
 
-/// Returns the whole report as keys and values.
-Value::Object Document(const Report& report);
+/// Returns the document that ToJson() writes.
+Json JsonDocument(const Report& report);
 
 }  // namespace mindahl::report

@@ -1,36 +1,20 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <string>
 #include <utility>
-#include <variant>
 
 #include "mindahl/report/report.h"
 #include "report/fields.h"
-#include "report/json_document.h"
-#include "report/value.h"
 
 namespace mindahl::report {
 
 namespace {
 
-Value& MemberOf(Value::Object& object, std::string_view key) {
-  const auto found = std::ranges::find(object, key, &Value::Member::key);
-  if (found != object.end()) return found->value;
-  return object.emplace_back(Value::Member{std::string(key), {}}).value;
-}
-
-void Collect(const Value& value, const std::string& path, std::vector<NullPlace>& nulls) {
-  if (const auto* null = std::get_if<Value::Null>(&value.content)) {
-    nulls.push_back({path, null->why});
-  } else if (const auto* array = std::get_if<Value::Array>(&value.content)) {
-    for (std::size_t i = 0; i < array->size(); ++i) {
-      Collect((*array)[i], fmt::format("{}[{}]", path, i), nulls);
-    }
-  } else if (const auto* object = std::get_if<Value::Object>(&value.content)) {
-    for (const auto& [key, member] : *object)
-      Collect(member, fmt::format("{}.{}", path, key), nulls);
+/// Adds the nulls of a member, by their paths from the whole.
+void AddNulls(std::vector<NullPlace>& nulls, std::string_view path, std::vector<NullPlace> more) {
+  for (NullPlace& null : more) {
+    const bool is_name = !null.path.empty() && !null.path.starts_with('[');
+    null.path.insert(0, is_name ? std::string(path) + "." : std::string(path));
+    nulls.push_back(std::move(null));
   }
 }
 
@@ -38,91 +22,33 @@ void Collect(const Value& value, const std::string& path, std::vector<NullPlace>
 
 Value Number(std::optional<double> number) {
   if (!number || !std::isfinite(*number)) return Missing();
-  return {*number};
+  return {.json = *number, .is_absent = false};
 }
 
-Value Count(std::size_t count) { return {static_cast<std::uint64_t>(count)}; }
+Value Missing(std::string why) { return {.nulls = {{"", std::move(why)}}, .is_absent = false}; }
 
-Value Integer(int number) { return {static_cast<std::int64_t>(number)}; }
-
-Value Flag(bool flag) { return {flag}; }
-
-Value Text(std::string_view text) { return {std::string(text)}; }
-
-Value Missing(std::string why) { return {Value::Null{std::move(why)}}; }
-
-void Place(Value::Object& object, std::string_view path, Value value) {
-  const std::size_t end = path.find_first_of(".[");
-  Value& member = MemberOf(object, path.substr(0, end));
-  if (end == std::string_view::npos) {
-    member = std::move(value);
-  } else if (path[end] == '.') {
-    if (!std::holds_alternative<Value::Object>(member.content)) member.content = Value::Object{};
-    Place(std::get<Value::Object>(member.content), path.substr(end + 1), std::move(value));
-  } else {
-    if (!std::holds_alternative<Value::Array>(member.content)) member.content = Value::Array{};
-    auto& array = std::get<Value::Array>(member.content);
-    if (path.substr(end) != fmt::format("[{}]", array.size())) {
-      throw std::logic_error(fmt::format("'{}' is not the next place of its list", path));
-    }
-    array.push_back(std::move(value));
+void Value::Place(std::string_view path, Value value) {
+  std::string pointer = "/";
+  for (const char character : path) {
+    if (character != ']') pointer += character == '.' || character == '[' ? '/' : character;
   }
+  json[Json::json_pointer(pointer)] = std::move(value.json);
+  AddNulls(nulls, path, std::move(value.nulls));
 }
 
-std::vector<NullPlace> CollectNulls(const Value::Object& object) {
-  std::vector<NullPlace> nulls;
-  for (const auto& [key, member] : object) Collect(member, key, nulls);
-  return nulls;
+void Value::Set(const std::string& key, Value value) {
+  json[key] = std::move(value.json);
+  AddNulls(nulls, key, std::move(value.nulls));
 }
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json Convert(const Value& value);
-
-struct Converter {
-  Json operator()(const Value::Absent&) const { return nullptr; }
-  Json operator()(const Value::Null&) const { return nullptr; }
-  Json operator()(const Value::Array& array) const {
-    Json json = Json::array();
-    for (const Value& element : array) json.push_back(Convert(element));
-    return json;
-  }
-  Json operator()(const Value::Object& object) const {
-    Json json = Json::object();
-    for (const auto& [key, member] : object) json[key] = Convert(member);
-    return json;
-  }
-  template <typename Scalar>
-  Json operator()(const Scalar& scalar) const {
-    return scalar;
-  }
-};
-
-Json Convert(const Value& value) { return std::visit(Converter{}, value.content); }
-
-void AppendWarnings(const std::vector<Warning>& warnings, Json& list) {
-  for (const Warning& warning : warnings) {
-    list.push_back({{"code", warning.code}, {"message", warning.message}});
-  }
+void Value::Add(Value members) {
+  json.update(members.json);
+  nulls.insert(nulls.end(), members.nulls.begin(), members.nulls.end());
 }
 
-}  // namespace
-
-nlohmann::ordered_json JsonDocument(const Report& report) {
-  const Value::Object document = Document(report);
-  Json json = Converter{}(document);
-  json["nulls"] = Json::array();
-  for (const NullPlace& null : CollectNulls(document)) {
-    json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
-  }
-  json["warnings"] = Json::array();
-  AppendWarnings(report.fit_warnings, json["warnings"]);
-  AppendWarnings(report.contact_warnings, json["warnings"]);
-  json["notes"] = Json::array();
-  AppendWarnings(report.notes, json["notes"]);
-  return json;
+void Value::Append(Value value) {
+  AddNulls(nulls, "[" + std::to_string(json.size()) + "]", std::move(value.nulls));
+  json.push_back(std::move(value.json));
 }
 
 std::string ToJson(const Report& report) {

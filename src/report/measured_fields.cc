@@ -6,10 +6,9 @@ namespace mindahl::report {
 
 namespace {
 
-std::function<Value(const Report&)> Measured(double MeasuredLoop::*member) {
-  return [member](const Report& report) {
-    return Number(MeasuredLoopOf(report.fit.WidestRecord()).*member);
-  };
+std::function<double(const Report&)> Measured(double MeasuredLoop::*member) {
+  return
+      [member](const Report& report) { return MeasuredLoopOf(report.fit.WidestRecord()).*member; };
 }
 
 std::string WhyNoSlip(const Report& report) {
@@ -21,48 +20,34 @@ std::string WhyNoSlip(const Report& report) {
 constexpr const char* kWhyNoRegime =
     "slip_force is not identifiable, or has a lower limit that the loop reaches";
 
-/// Makes a getter of the loop's description, null where there is none.
-template <typename Get>
-std::function<Value(const Report&)> OfLoop(Get get) {
-  return [get](const Report& report) { return report.loop ? get(*report.loop) : Missing(); };
-}
-
 }  // namespace
 
 void AddLoopFields(FieldTable& table) {
   table.Add({
       {"loop.amplitude", "m", "X of the widest record", Measured(&MeasuredLoop::amplitude)},
       {"loop.centre", "m", "midway between the extremes of the displacement",
-       [](const Report& report) { return Number(report.fit.WidestRecord().measures.centre); }},
+       [](const Report& report) { return report.fit.WidestRecord().measures.centre; }},
       {"loop.peak_force", "N", "T* of the widest record", Measured(&MeasuredLoop::peak_force)},
       {"loop.energy_per_cycle_measured", "J", "W, mean over the widest closed cycles",
-       [](const Report& report) {
-         return Number(MeasuredLoopOf(report.fit.WidestRecord()).energy);
-       },
-       [](const Report&) { return std::string("the record closes no cycle"); }},
+       [](const Report& report) { return MeasuredLoopOf(report.fit.WidestRecord()).energy; },
+       "the record closes no cycle"},
       {"loop.energy_per_cycle_model", "J",
        "W of the fitted law at the amplitude, without the rig's deflection",
-       OfLoop([](const LoopDescription& loop) { return Number(loop.model_energy); })},
+       At(&Report::loop, &LoopDescription::model_energy)},
       {"loop.energy_ratio", "-", "W/(4XT*), the model's W where none was measured",
-       OfLoop([](const LoopDescription& loop) { return Number(loop.energy_ratio); }),
-       [](const Report&) {
-         return std::string("needs a force that differs between the extremes of the displacement");
-       }},
-      {"loop.slip_regime", "", "partial or gross slip", OfLoop([](const LoopDescription& loop) {
-         return loop.regime ? Text(Name(*loop.regime)) : Missing();
-       }),
-       [](const Report&) { return std::string(kWhyNoRegime); }},
+       At(&Report::loop, &LoopDescription::energy_ratio),
+       "needs a force that differs between the extremes of the displacement"},
+      {"loop.slip_regime", "", "partial or gross slip", At(&Report::loop, &LoopDescription::regime),
+       kWhyNoRegime},
       {"loop.gross_slip_displacement", "m",
        "amplitude above which the whole contact slips: δc of the fitted law, 2^−α·δc of Dahl's own",
-       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
-       WhyNoSlip},
+       At(&Report::loop, &LoopDescription::gross_slip_displacement), WhyNoSlip},
       {"loop.gross_slip_energy_ratio", "-",
        "W/(4XT*) of the fitted law where gross slip begins, X including the rig's deflection",
-       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_energy_ratio); }),
-       WhyNoSlip},
+       At(&Report::loop, &LoopDescription::gross_slip_energy_ratio), WhyNoSlip},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
        [](const Report& report) {
-         return report.loop && !report.is_torsional() ? Number(report.loop->stick_radius_ratio)
+         return report.loop && !report.is_torsional() ? ToValue(report.loop->stick_radius_ratio)
                                                       : Missing();
        },
        [](const Report& report) {
@@ -80,35 +65,23 @@ namespace {
 const std::vector<Field<BackbonePoint>>& PointFields() {
   using Item = BackbonePoint;
   static const std::vector<Field<Item>> fields = {
-      {"displacement", "m", "displacement of first loading",
-       [](const Item& item) { return Number(item.displacement); }},
+      {"displacement", "m", "displacement of first loading", &Item::displacement},
       {"force", "N", "force at that displacement, without a law",
-       [](const Item& item) { return Number(item.force.value); }},
-      {"ci95[0]", "N", "lower end of its band",
-       [](const Item& item) { return Number(item.force.lower95); }},
-      {"ci95[1]", "N", "upper end of its band",
-       [](const Item& item) { return Number(item.force.upper95); }},
-      {"law", "N", "force of the fitted law", [](const Item& item) { return Number(item.law); }},
+       At(&Item::force, &BandValue::value)},
+      {"ci95[0]", "N", "lower end of its band", At(&Item::force, &BandValue::lower95)},
+      {"ci95[1]", "N", "upper end of its band", At(&Item::force, &BandValue::upper95)},
+      {"law", "N", "force of the fitted law", &Item::law},
   };
   return fields;
 }
 
-template <typename Get>
-Field<Report> BackboneRow(const std::string& path, const char* unit, const char* label, Get get) {
-  return {path, unit, label, [get](const Report& report) {
-            return report.backbone ? get(*report.backbone) : Value{};
-          }};
-}
-
 void AddBand(FieldTable& table, const std::string& path, const char* label,
              BandValue BackboneEstimate::*band) {
-  table.Add(
-      {BackboneRow(path + ".value", "N/m", label,
-                   [band](const BackboneEstimate& item) { return Number((item.*band).value); }),
-       BackboneRow(path + ".ci95[0]", "N/m", "lower end of the interval",
-                   [band](const BackboneEstimate& item) { return Number((item.*band).lower95); }),
-       BackboneRow(path + ".ci95[1]", "N/m", "upper end of the interval",
-                   [band](const BackboneEstimate& item) { return Number((item.*band).upper95); })});
+  table.Add({{path + ".value", "N/m", label, IfAny(&Report::backbone, band, &BandValue::value)},
+             {path + ".ci95[0]", "N/m", "lower end of the interval",
+              IfAny(&Report::backbone, band, &BandValue::lower95)},
+             {path + ".ci95[1]", "N/m", "upper end of the interval",
+              IfAny(&Report::backbone, band, &BandValue::upper95)}});
 }
 
 }  // namespace
@@ -119,13 +92,15 @@ void AddBackboneFields(FieldTable& table) {
   AddBand(table, "backbone.elastic", "stiffness of the part that does not slip within the record",
           &BackboneEstimate::elastic);
   table.Add({
-      BackboneRow("backbone.reaches_plateau", "",
-                  "false: slip_force is the law's extrapolation beyond the record",
-                  [](const BackboneEstimate& item) { return Flag(item.reaches_plateau); }),
-      BackboneRow("backbone.rms", "N", "root mean square residual of the backbone",
-                  [](const BackboneEstimate& item) { return Number(item.rms); }),
-      BackboneRow("backbone.points", "", "points from 0 to the largest displacement",
-                  [](const BackboneEstimate& item) { return List(PointFields(), item.points); }),
+      {"backbone.reaches_plateau", "",
+       "false: slip_force is the law's extrapolation beyond the record",
+       IfAny(&Report::backbone, &BackboneEstimate::reaches_plateau)},
+      {"backbone.rms", "N", "root mean square residual of the backbone",
+       IfAny(&Report::backbone, &BackboneEstimate::rms)},
+      {"backbone.points", "", "points from 0 to the largest displacement",
+       [](const Report& report) {
+         return report.backbone ? List(PointFields(), report.backbone->points) : Value{};
+       }},
   });
   table.Describe("backbone.points[].", PointFields());
 }
@@ -141,12 +116,11 @@ std::string WhyNotMeasured(const LoopFacts& facts, const char* why) {
 }
 
 /// Returns a row whose null has one reason, besides that there is no cycle at all.
-Field<LoopFacts> Fact(const char* path, const char* unit, const char* label,
-                      Field<LoopFacts>::Get get, const char* why = "not a finite number") {
+template <typename Get>
+Field<LoopFacts> Fact(const std::string& path, const char* unit, const char* label, Get get,
+                      const char* why = "not a finite number") {
   return {path, unit, label,
-          [get = std::move(get)](const LoopFacts& facts) {
-            return facts.closed ? get(facts) : Missing();
-          },
+          [get](const LoopFacts& facts) { return facts.closed ? At(get)(facts) : Missing(); },
           [why](const LoopFacts& facts) { return WhyNotMeasured(facts, why); }};
 }
 
@@ -155,20 +129,15 @@ constexpr const char* kNoMiddle = "the strokes have too few samples in their mid
 const std::vector<Field<CycleFacts>>& CycleFields() {
   using Item = CycleFacts;
   static const std::vector<Field<Item>> fields = {
-      {"start", "", "number of the cycle's first sample, from 0",
-       [](const Item& item) { return Count(item.start); }},
-      {"amplitude", "m", "X: a quarter of the travel of its two strokes",
-       [](const Item& item) { return Number(item.amplitude); }},
-      {"peak_force", "N", "T*: half the range of the force",
-       [](const Item& item) { return Number(item.peak_force); }},
-      {"half_gap", "N", "half the force between the strokes in their middle",
-       [](const Item& item) { return Number(item.half_gap); },
-       [](const Item&) { return std::string(kNoMiddle); }},
-      {"energy", "J", "W = ∮ T dδ", [](const Item& item) { return Number(item.energy); }},
-      {"energy_ratio", "-", "W/(4XT*)", [](const Item& item) { return Number(item.energy_ratio); }},
+      {"start", "", "number of the cycle's first sample, from 0", &Item::start},
+      {"amplitude", "m", "X: a quarter of the travel of its two strokes", &Item::amplitude},
+      {"peak_force", "N", "T*: half the range of the force", &Item::peak_force},
+      {"half_gap", "N", "half the force between the strokes in their middle", &Item::half_gap,
+       kNoMiddle},
+      {"energy", "J", "W = ∮ T dδ", &Item::energy},
+      {"energy_ratio", "-", "W/(4XT*)", &Item::energy_ratio},
       {"sliding_amplitude", "m", "half the width of the loop midway between its strokes",
-       [](const Item& item) { return Number(item.sliding_amplitude); },
-       [](const Item&) { return std::string(kNoMiddle); }},
+       &Item::sliding_amplitude, kNoMiddle},
   };
   return fields;
 }
@@ -177,10 +146,7 @@ void AddTrend(std::vector<Field<LoopFacts>>& fields, const std::string& of, cons
               std::optional<Trend> LoopFacts::*trend) {
   const auto row = [&](const char* name, const char* row_unit, const char* label,
                        double Trend::*member) {
-    const auto get = [trend, member](const LoopFacts& facts) {
-      return facts.*trend ? Number((*(facts.*trend)).*member) : Missing();
-    };
-    fields.push_back(Fact(("trend." + of + "." + name).c_str(), row_unit, label, get,
+    fields.push_back(Fact("trend." + of + "." + name, row_unit, label, At(trend, member),
                           "needs three steady cycles"));
   };
   row("slope", unit, "slope of a straight line over the steady cycles, per cycle", &Trend::slope);
@@ -192,53 +158,36 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
   using Item = LoopFacts;
   static const std::vector<Field<Item>> fields = [] {
     std::vector<Field<Item>> rows = {
-        Fact(
-            "half_gap.value", "N", "half the force between the strokes in their middle",
-            [](const Item& item) { return Number(item.half_gap); }, kNoMiddle),
-        Fact(
-            "half_gap.standard_deviation", "N",
-            "standard deviation of half_gap between steady cycles",
-            [](const Item& item) { return Number(item.half_gap_standard_deviation); },
-            "needs two steady cycles"),
-        Fact(
-            "sliding_amplitude", "m", "half the width of the loop midway between its strokes",
-            [](const Item& item) { return Number(item.sliding_amplitude); }, kNoMiddle),
-        Fact(
-            "sliding_fraction", "-",
-            "fraction of the strokes' travel after the force reached nine tenths of half_gap",
-            [](const Item& item) { return Number(item.sliding_fraction); }, kNoMiddle),
-        Fact(
-            "backlash", "m", "travel after each reversal over which the force stays constant",
-            [](const Item& item) {
-              return item.backlash ? Number(item.backlash->width) : Missing();
-            },
-            "the force does not stand still after the reversals, or not over the same travel"),
-        Fact(
-            "slope_after_reversal", "N/m", "slope over the first tenth of the strokes, median",
-            [](const Item& item) { return Number(item.slope_after_reversal); },
-            "the strokes have too few samples"),
-        Fact(
-            "plateau_slope", "N/m", "slope over the last third of the strokes, median",
-            [](const Item& item) { return Number(item.plateau_slope); },
-            "the strokes have too few samples"),
-        Fact(
-            "asymmetry", "-",
-            "standard deviation between the falling strokes and the rising ones turned over, "
-            "over T*",
-            [](const Item& item) { return Number(item.asymmetry); },
-            "the strokes have too few samples"),
-        Fact("energy_per_cycle", "J", "W, mean over the steady cycles",
-             [](const Item& item) { return Number(item.energy_per_cycle); }),
-        Fact("energy_ratio", "-", "W/(4XT*) of their means",
-             [](const Item& item) { return Number(item.energy_ratio); }),
+        Fact("half_gap.value", "N", "half the force between the strokes in their middle",
+             &Item::half_gap, kNoMiddle),
+        Fact("half_gap.standard_deviation", "N",
+             "standard deviation of half_gap between steady cycles",
+             &Item::half_gap_standard_deviation, "needs two steady cycles"),
+        Fact("sliding_amplitude", "m", "half the width of the loop midway between its strokes",
+             &Item::sliding_amplitude, kNoMiddle),
+        Fact("sliding_fraction", "-",
+             "fraction of the strokes' travel after the force reached nine tenths of half_gap",
+             &Item::sliding_fraction, kNoMiddle),
+        Fact("backlash", "m", "travel after each reversal over which the force stays constant",
+             At(&Item::backlash, &loop::Backlash::width),
+             "the force does not stand still after the reversals, or not over the same travel"),
+        Fact("slope_after_reversal", "N/m", "slope over the first tenth of the strokes, median",
+             &Item::slope_after_reversal, "the strokes have too few samples"),
+        Fact("plateau_slope", "N/m", "slope over the last third of the strokes, median",
+             &Item::plateau_slope, "the strokes have too few samples"),
+        Fact("asymmetry", "-",
+             "standard deviation between the falling strokes and the rising ones turned over, over "
+             "T*",
+             &Item::asymmetry, "the strokes have too few samples"),
+        Fact("energy_per_cycle", "J", "W, mean over the steady cycles", &Item::energy_per_cycle),
+        Fact("energy_ratio", "-", "W/(4XT*) of their means", &Item::energy_ratio),
         Fact("path_ratio", "-", "length of the path through the samples over that of the strokes",
-             [](const Item& item) { return Number(item.path_ratio); }),
-        Fact(
-            "energy_friction_coefficient", "-", "W/(4·N·sliding_amplitude), N the mean load",
-            [](const Item& item) { return Number(item.energy_friction_coefficient); },
-            "needs a column of the normal load, and a sliding amplitude"),
+             &Item::path_ratio),
+        Fact("energy_friction_coefficient", "-", "W/(4·N·sliding_amplitude), N the mean load",
+             &Item::energy_friction_coefficient,
+             "needs a column of the normal load, and a sliding amplitude"),
         {"closed", "", "true if the record closes a cycle; otherwise the rest is null",
-         [](const Item& item) { return Flag(item.closed); }},
+         &Item::closed},
         {"cycles", "", "every closed cycle",
          [](const Item& item) { return List(CycleFields(), item.cycles); }},
     };
@@ -255,7 +204,7 @@ void AddMeasuredFields(FieldTable& table) {
   table.Add({
       {"measured", "", "measured without a model, on the widest steady cycles of the widest record",
        [](const Report& report) {
-         return Value{Render(MeasuredFields(), report.fit.WidestRecord().facts)};
+         return Render(MeasuredFields(), report.fit.WidestRecord().facts);
        }},
   });
   table.Describe("measured.", MeasuredFields());

@@ -120,6 +120,19 @@ std::string_view Name(identification::MemoryVerdict verdict) {
   return "";
 }
 
+std::string PlainName(std::string_view key) {
+  if (key == "sigma") return "stiffness σ";
+  if (key == "alpha") return "shape exponent α";
+  if (key == "slip_force") return "slip force Tc";
+  if (key.ends_with(".value")) key.remove_suffix(std::string_view(".value").size());
+  std::string name;
+  for (const char character : key) {
+    if (character == '.') name += ',';
+    name += character == '_' || character == '.' ? ' ' : character;
+  }
+  return name;
+}
+
 std::string ConfidenceWords(const identification::FitResult& fit) {
   return fmt::format("{:g} %", 100 * fit.confidence);
 }

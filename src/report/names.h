@@ -21,6 +21,9 @@ std::string_view Name(identification::AdequacyVerdict verdict);
 std::string_view Name(identification::Use use);
 std::string_view Name(identification::MemoryVerdict verdict);
 
+/// Returns the name of a parameter or of a key of the JSON for people: "slip force Tc", "half gap".
+std::string PlainName(std::string_view key);
+
 /// Returns the confidence of a fit's intervals for people: "95 %".
 std::string ConfidenceWords(const identification::FitResult& fit);
 

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <string_view>
-#include <variant>
 
 #include "io/html.h"
 #include "mindahl/report/units.h"
@@ -45,23 +43,6 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
 
 // --- the verdict
 
-/// Returns "identifiable: sigma, alpha": parameters by their verdicts.
-std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-  for (const ParameterEstimate& estimate : fit.parameters) {
-    const std::string verdict = VerdictWords(estimate);
-    auto group = std::ranges::find(groups, verdict, &decltype(groups)::value_type::first);
-    if (group == groups.end()) group = groups.insert(group, {verdict, {}});
-    group->second.push_back(estimate.name);
-  }
-  std::vector<std::string> sentences;
-  sentences.reserve(groups.size());
-  for (const auto& [verdict, names] : groups) {
-    sentences.push_back(fmt::format("{}: {}", verdict, fmt::join(names, ", ")));
-  }
-  return sentences;
-}
-
 std::string VerdictSection(const Report& report) {
   // The sentence begins with the verdict itself.
   std::string sentence = VerdictSentence(report);
@@ -69,7 +50,6 @@ std::string VerdictSection(const Report& report) {
   if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
   if (!report.fit.converged) sentence = report.fit.solver.message;
   std::string html = VerdictBlock(CssClass(JudgementOf(word)), word, sentence);
-  html += SentenceList(ParameterVerdicts(report.fit));
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
   const std::string next = NextStep(report);
@@ -87,7 +67,7 @@ std::string VerdictSection(const Report& report) {
 std::string ParameterSection(const Report& report) {
   const std::string heading = ConfidenceWords(report.fit) + " interval";
   Table table("fitted and given parameters, with one standard error and the " + heading,
-              {"parameter", "value", "unit", heading, "verdict"});
+              {"parameter", "value", heading, "verdict"});
   for (const ParameterEstimate& estimate : report.fit.parameters) {
     const Shown shown = WhatIsShown(estimate);
     const double magnitude =
@@ -105,8 +85,10 @@ std::string ParameterSection(const Report& report) {
       value = NumberWithError(estimate.value, estimate.standard_error, unit.factor);
       interval = IntervalText(estimate.lower95, estimate.upper95, unit.factor);
     }
-    table.Row(estimate.name, {Number(value), Number(unit.name), Number(interval),
-                              Words(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
+    if (value != kNone && !unit.name.empty()) value += " " + unit.name;
+    table.Row(PlainName(estimate.name),
+              {Number(value), Number(interval),
+               Number(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
   }
   const FitResult& fit = report.fit;
   std::string about = fmt::format("{}; initial state {}", fit.model->title,
@@ -193,24 +175,14 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
 
 // --- what needs no model
 
-/// Returns a value as people read it; empty for what is missing.
+/// Returns a value as people read it.
 std::string TextOf(const DescribedValue& item) {
-  struct Writer {
-    std::string_view unit;
-    std::string operator()(double number) const { return Quantity(number, unit); }
-    std::string operator()(std::uint64_t number) const { return std::to_string(number); }
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(bool flag) const { return flag ? "yes" : "no"; }
-    std::string operator()(const std::string& text) const { return text; }
-    std::string operator()(const Value::Absent&) const { return ""; }
-    std::string operator()(const Value::Null&) const { return ""; }
-    std::string operator()(const Value::Array&) const { return ""; }
-    std::string operator()(const Value::Object&) const { return ""; }
-  };
-  return std::visit(Writer{item.field.unit}, item.value.content);
+  if (item.value.is_number_float()) return Quantity(item.value.get<double>(), item.field.unit);
+  if (item.value.is_boolean()) return item.value.get<bool>() ? "yes" : "no";
+  return item.value.is_string() ? item.value.get<std::string>() : item.value.dump();
 }
 
-/// Adds the rows of the report's fields of one subject, named as the JSON names them.
+/// Adds the rows of the report's fields of one subject.
 void AddFields(const Report& report, std::string_view prefix, Table& table,
                const std::vector<std::string_view>& without = {}) {
   for (const DescribedValue& item : ValuesUnder(report, prefix)) {
@@ -220,7 +192,7 @@ void AddFields(const Report& report, std::string_view prefix, Table& table,
     // "half_gap.value" of "measured.": what follows a subject is name enough in its table.
     const std::string name =
         prefix.ends_with('.') ? item.field.path.substr(prefix.size()) : item.field.path;
-    table.Row(name, {Number(text), Words(item.field.label)});
+    table.Row(PlainName(name), {Number(text), Words(item.field.label)});
   }
 }
 
@@ -251,15 +223,20 @@ std::string Grid(const std::string& figures) {
   return figures.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
+/// Makes what is seen first: the verdict and the parameters with the loop at their side.
+std::string FirstScreen(const Report& report) {
+  return "<div class=\"first\">\n<div>\n" + VerdictSection(report) + ParameterSection(report) +
+         "</div>\n" +
+         Figure(LoopPanel(report, PrefixedUnits(report), LoopColours::kByCycle), "loop",
+                "Measured and fitted loop",
+                "Where the line leaves the points, the model misses something; circles are where "
+                "the motion was found to turn.") +
+         "</div>\n";
+}
+
 std::string FigureSection(const Report& report) {
   const PanelUnits units = PrefixedUnits(report);
-  std::string html = Heading("Loop and residuals");
-  html +=
-      "<div class=\"wide\">\n" +
-      Figure(LoopPanel(report, units, LoopColours::kByCycle), "loop", "Measured and fitted loop",
-             "Where the line leaves the points, the model misses something; circles are where "
-             "the motion was found to turn.") +
-      "</div>\n";
+  std::string html = Heading("Residuals");
   std::string figures =
       Figure(ResidualAlongStroke(report, units, LoopColours::kByCycle), "residual-stroke",
              "Residual along the stroke",
@@ -297,10 +274,10 @@ std::string LikelihoodSection(const Report& report) {
     figures += Figure(*panel, "region-slip-force", "Slip force and exponent together", kText);
   }
   if (const auto panel = SlipForceLikelihood(report)) {
-    figures += Figure(*panel, "likelihood", "Likelihood of the slip force",
-                      "The record does not distinguish slip forces whose curve is below the line "
-                      "from the best one; on a side where the curve never rises the interval is "
-                      "open.");
+    figures +=
+        Figure(*panel, "likelihood", "Likelihood of the slip force",
+               "The record does not distinguish slip forces whose curve is below the line from the "
+               "best one; on a side where the curve never rises the interval is open.");
   }
   return figures.empty() ? "" : Heading("Likelihood") + Grid(figures);
 }
@@ -476,9 +453,9 @@ std::string LoadSection(const Report& report) {
   constexpr std::array kIds = {"load-stiffness", "load-slip-force"};
   const std::vector<io::PlotPanel> panels = LoadPanels(report, PrefixedUnits(report));
   for (std::size_t k = 0; k < panels.size(); ++k) {
-    figures += Figure(panels[k], kIds.at(k), k == 0 ? "Stiffness and load" : "Slip force and load",
-                      "Each interval is of one file alone, fitted with the shape exponent of the "
-                      "whole series.");
+    figures += Figure(
+        panels[k], kIds.at(k), k == 0 ? "Stiffness and load" : "Slip force and load",
+        "Each interval is of one file alone, fitted with the shape exponent of the whole series.");
   }
   return Heading("Under several loads") + table.Html() + hypotheses.Html() + laws + Grid(figures);
 }
@@ -514,8 +491,8 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
   if (report.failed()) {
     body += FailedBody(report);
   } else {
-    body += VerdictSection(report) + ParameterSection(report) + WarningSection(report, provenance) +
-            MeasuredSection(report) + FigureSection(report);
+    body += FirstScreen(report) + WarningSection(report, provenance) + MeasuredSection(report) +
+            FigureSection(report);
     if (IsInadequate(report)) {
       body += Heading("The contact") +
               Paragraph("No contact is given: the model does not describe this record.");

@@ -14,13 +14,11 @@ namespace {
 
 std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const char* where,
                                                BranchLaw StartReport::*law) {
-  const auto why = [](const StartReport&) {
-    return std::string("the solver came to nothing finite from here");
-  };
+  const auto why = "the solver came to nothing finite from here";
   const auto row = [&](const char* name, const char* unit, double BranchLaw::*member) {
     return Field<StartReport>{
         prefix + "." + name, unit, fmt::format("{} of the law {}", name, where),
-        [law, member](const StartReport& item) { return Number(item.*law.*member); }, why};
+        [law, member](const StartReport& item) { return item.*law.*member; }, why};
   };
   return {row("sigma", "N/m", &BranchLaw::tangential_stiffness),
           row("alpha", "-", &BranchLaw::shape_exponent),
@@ -30,21 +28,19 @@ std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const 
 const std::vector<Field<StartReport>>& StartFields() {
   using Item = StartReport;
   static const std::vector<Field<Item>> fields = [] {
-    const auto why = [](const Item&) { return std::string("the cost is not finite here"); };
+    const auto why = "the cost is not finite here";
     std::vector<Field<Item>> rows = {
         {"from", "", "grid, or seed where it was drawn",
-         [](const Item& item) { return Text(item.drawn ? "seed" : "grid"); }}};
+         [](const Item& item) { return item.drawn ? "seed" : "grid"; }}};
     const auto append = [&](const std::vector<Field<Item>>& more) {
       rows.insert(rows.end(), more.begin(), more.end());
     };
     append(StartLawFields("start", "at the start", &Item::start));
-    append({{"initial_rms", "N", "root mean square residual at the start",
-             [](const Item& item) { return Number(item.initial_rms); }, why}});
+    append(
+        {{"initial_rms", "N", "root mean square residual at the start", &Item::initial_rms, why}});
     append(StartLawFields("reached", "where it ended", &Item::reached));
-    append({{"final_rms", "N", "root mean square residual where it ended",
-             [](const Item& item) { return Number(item.final_rms); }, why},
-            {"converged", "", "true if the solver converged from this start",
-             [](const Item& item) { return Flag(item.converged); }}});
+    append({{"final_rms", "N", "root mean square residual where it ended", &Item::final_rms, why},
+            {"converged", "", "true if the solver converged from this start", &Item::converged}});
     return rows;
   }();
   return fields;
@@ -55,22 +51,22 @@ const std::vector<Field<StartReport>>& StartFields() {
 void AddSolverFields(FieldTable& table) {
   table.Add({
       {"solver.converged", "", "true if the solver converged",
-       [](const Report& report) { return Flag(report.fit.converged); }},
+       [](const Report& report) { return report.fit.converged; }},
       {"solver.iterations", "", "number of iterations",
-       [](const Report& report) { return Integer(report.fit.solver.iterations); }},
+       [](const Report& report) { return report.fit.solver.iterations; }},
       {"solver.solver", "",
        "which search of Ceres solved: tiny_solver, solve (with bounds), or none",
-       [](const Report& report) { return Text(std::string(report.fit.solver.solver)); }},
+       [](const Report& report) { return report.fit.solver.solver; }},
       {"solver.termination", "", "Ceres' termination type",
-       [](const Report& report) { return Text(std::string(report.fit.solver.termination)); }},
+       [](const Report& report) { return report.fit.solver.termination; }},
       {"solver.message", "", "why it stopped",
-       [](const Report& report) { return Text(report.fit.solver.message); }},
+       [](const Report& report) { return report.fit.solver.message; }},
       {"solver.initial_cost", "", "half the sum of the squared weighted residuals at the start",
-       [](const Report& report) { return Number(report.fit.solver.initial_cost); },
-       [](const Report&) { return std::string("the residuals at the start are not finite"); }},
+       [](const Report& report) { return report.fit.solver.initial_cost; },
+       "the residuals at the start are not finite"},
       {"solver.final_cost", "", "half the sum of the squared weighted residuals at the end",
-       [](const Report& report) { return Number(report.fit.solver.final_cost); },
-       [](const Report&) { return std::string("the residuals at the end are not finite"); }},
+       [](const Report& report) { return report.fit.solver.final_cost; },
+       "the residuals at the end are not finite"},
       {"solver.starts", "", "the starting points that were refined",
        [](const Report& report) { return List(StartFields(), report.fit.starts); }},
   });
@@ -109,16 +105,14 @@ std::string WhyIntervalOpen(const ReportedParameter& item) {
 
 const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   using Item = identification::IntervalPart;
-  const auto why = [](const Item&) { return std::string("open there"); };
+  const auto why = "open there";
   static const std::vector<Field<Item>> fields = {
       {"source", "",
        "origin of this part of ci95: parabola, profile, initial_state, other_minimum, "
        "omitted_terms, plateau, small_alpha, discrepancy or carried_force",
-       [](const Item& item) { return Text(Name(item.source)); }},
-      {"ci95[0]", "of the parameter", "lower end of the contribution",
-       [](const Item& item) { return Number(item.lower); }, why},
-      {"ci95[1]", "of the parameter", "upper end of the contribution",
-       [](const Item& item) { return Number(item.upper); }, why},
+       [](const Item& item) { return Name(item.source); }},
+      {"ci95[0]", "of the parameter", "lower end of the contribution", &Item::lower, why},
+      {"ci95[1]", "of the parameter", "upper end of the contribution", &Item::upper, why},
   };
   return fields;
 }
@@ -127,49 +121,50 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
   using Item = ReportedParameter;
   static const std::vector<Field<Item>> fields = {
       {"value", "of the parameter", "estimate",
-       [](const Item& item) { return Number(item.estimate.value); },
+       [](const Item& item) { return item.estimate.value; },
        [](const Item& item) { return WhyFailed(item.report); }},
       {"unit", "", "unit of value, error and interval",
-       [](const Item& item) { return Text(item.estimate.unit); }},
+       [](const Item& item) { return item.estimate.unit; }},
       {"standard_error", "of the parameter", "standard error",
-       [](const Item& item) { return Number(item.estimate.standard_error); }, WhyNoError},
+       [](const Item& item) { return item.estimate.standard_error; }, WhyNoError},
       {"ci95[0]", "of the parameter", "lower end of the interval",
-       [](const Item& item) { return Number(item.estimate.lower95); }, WhyIntervalOpen},
+       [](const Item& item) { return item.estimate.lower95; }, WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the interval",
-       [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
+       [](const Item& item) { return item.estimate.upper95; }, WhyIntervalOpen},
       {"ci95_parts", "", "contributions whose union is ci95",
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"prior.value", "of the parameter", "centre of its prior; absent without one",
        [](const Item& item) {
-         return item.estimate.prior ? Number(item.estimate.prior->value) : Value{};
+         return IfAny(&ParameterEstimate::prior, &identification::Prior::value)(item.estimate);
        }},
       {"prior.standard_uncertainty", "of the parameter", "standard uncertainty of the prior",
        [](const Item& item) {
-         return item.estimate.prior ? Number(item.estimate.prior->standard_uncertainty) : Value{};
+         return IfAny(&ParameterEstimate::prior,
+                      &identification::Prior::standard_uncertainty)(item.estimate);
        }},
       {"without_priors.value", "of the parameter",
        "estimate of a fit without any prior; absent without priors",
        [](const Item& item) {
          const auto& without = item.estimate.without_priors;
-         return without ? Number(without->value) : Value{};
+         return without ? ToValue(without->value) : Value{};
        }},
       {"without_priors.standard_error", "of the parameter", "its standard error",
        [](const Item& item) {
          const auto& without = item.estimate.without_priors;
-         return without ? Number(without->standard_error) : Value{};
+         return without ? ToValue(without->standard_error) : Value{};
        },
-       [](const Item&) { return std::string("held, or not determined without the priors"); }},
+       "held, or not determined without the priors"},
       {"without_priors.moved", "-",
        "value minus the estimate without priors, over its standard error",
        [](const Item& item) {
          return item.estimate.without_priors ? Number(item.estimate.MovedByPriors()) : Value{};
        },
-       [](const Item&) { return std::string("held, or not determined without the priors"); }},
+       "held, or not determined without the priors"},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
-       [](const Item& item) { return Text(Name(item.estimate.status)); }},
+       [](const Item& item) { return Name(item.estimate.status); }},
       {"identifiability", "",
        "identifiable, effective, extrapolated, bounded_below or not_identifiable",
-       [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
+       [](const Item& item) { return Name(item.estimate.identifiability); }},
   };
   return fields;
 }
@@ -178,19 +173,13 @@ const std::vector<Field<identification::ConfidenceRegion>>& RegionFields() {
   using Item = identification::ConfidenceRegion;
   static const std::vector<Field<Item>> fields = {
       {"parameters[0]", "", "name of the first parameter",
-       [](const Item& item) { return Text(item.parameters[0]); }},
+       [](const Item& item) { return item.parameters[0]; }},
       {"parameters[1]", "", "name of the second",
-       [](const Item& item) { return Text(item.parameters[1]); }},
+       [](const Item& item) { return item.parameters[1]; }},
       {"closed", "", "true if the boundary was reached in every direction, or alpha = 0 before it",
-       [](const Item& item) { return Flag(item.closed); }},
+       &Item::closed},
       {"boundary", "of the parameters", "points [first, second], once around the estimate",
-       [](const Item& item) {
-         Value::Array points;
-         for (const auto& [first, second] : item.boundary) {
-           points.push_back({Value::Array{Number(first), Number(second)}});
-         }
-         return Value{std::move(points)};
-       }},
+       &Item::boundary},
   };
   return fields;
 }
@@ -212,11 +201,11 @@ ParameterEstimate NotEstimated(const char* name, const char* unit) {
 Value Parameters(const Report& report) {
   const std::vector<ParameterEstimate> missing = {
       NotEstimated("sigma", "N/m"), NotEstimated("alpha", "-"), NotEstimated("slip_force", "N")};
-  Value::Object object;
+  Value members{.json = Json::object(), .is_absent = false};
   for (const ParameterEstimate& estimate : report.failed() ? missing : report.fit.parameters) {
-    object.push_back({estimate.name, {Render(ParameterFields(), {report, estimate})}});
+    members.Set(estimate.name, Render(ParameterFields(), {report, estimate}));
   }
-  return {std::move(object)};
+  return members;
 }
 
 Value Correlations(const Report& report) {
@@ -225,22 +214,22 @@ Value Correlations(const Report& report) {
   const auto undefined = [&](std::size_t i) {
     return !std::isfinite(fit.correlation[i * count + i]);
   };
-  Value::Object object;
+  Value members{.json = Json::object(), .is_absent = false};
   for (std::size_t i = 0; i < count; ++i) {
     if (fit.parameters[i].status == ParameterStatus::kFixed) continue;
-    Value::Object row;
+    Value row{.json = Json::object(), .is_absent = false};
     for (std::size_t j = 0; j < count; ++j) {
       if (fit.parameters[j].status == ParameterStatus::kFixed) continue;
-      Value value = Number(fit.correlation[i * count + j]);
-      if (std::holds_alternative<Value::Null>(value.content)) {
-        value = Missing(fmt::format("{} is at a bound or undetermined",
-                                    fit.parameters[undefined(i) ? i : j].name));
-      }
-      row.push_back({fit.parameters[j].name, std::move(value)});
+      const double value = fit.correlation[i * count + j];
+      row.Set(fit.parameters[j].name,
+              std::isfinite(value)
+                  ? ToValue(value)
+                  : Missing(fmt::format("{} is at a bound or undetermined",
+                                        fit.parameters[undefined(i) ? i : j].name)));
     }
-    object.push_back({fit.parameters[i].name, {std::move(row)}});
+    members.Set(fit.parameters[i].name, std::move(row));
   }
-  return {std::move(object)};
+  return members;
 }
 
 }  // namespace
@@ -248,14 +237,14 @@ Value Correlations(const Report& report) {
 void AddParameterFields(FieldTable& table) {
   table.Add({
       {"model", "", "name of the model",
-       [](const Report& report) { return Text(report.fit.model->name); }},
+       [](const Report& report) { return report.fit.model->name; }},
       {"initial_state", "",
        "virgin or steady: the contact before the record; mixed where records differ",
        [](const Report& report) {
-         return Text(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
+         return report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state);
        }},
       {"confidence", "-", "confidence of every interval",
-       [](const Report& report) { return Number(report.fit.confidence); }},
+       [](const Report& report) { return report.fit.confidence; }},
       {"parameters", "", "one member per parameter, by name", Parameters},
       {"correlation", "-", "correlation of the errors of free parameters, by their names",
        Correlations},

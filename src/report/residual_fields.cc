@@ -14,25 +14,22 @@ namespace {
 const std::vector<Field<Cause>>& CauseFields() {
   using Item = Cause;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable name, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"code", "", "stable name, for scripts", &Item::code},
       {"try", "", "option of the command line that takes it into account",
-       [](const Item& item) { return item.option.empty() ? Missing() : Text(item.option); },
+       [](const Item& item) { return item.option.empty() ? Missing() : ToValue(item.option); },
        WhyNoOption},
       {"delta_aicc", "-", "AICc of the fit with it minus that without: negative where it helps",
-       [](const Item& item) { return Number(item.delta_aicc); }},
-      {"explains", "-", "fraction of the residuals' variance that it explains",
-       [](const Item& item) { return Number(item.explains); }},
+       &Item::delta_aicc},
+      {"explains", "-", "fraction of the residuals' variance that it explains", &Item::explains},
       {"size", "of the cause", "size of the cause; of several numbers the first",
-       [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
-       [](const Item&) {
-         return std::string("it is of several numbers, none of which says much");
-       }},
+       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.size); },
+       "it is of several numbers, none of which says much"},
       {"unit", "", "unit of the size",
-       [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },
-       [](const Item&) { return std::string("it has no size"); }},
+       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.unit); },
+       "it has no size"},
       {"moves", "-",
        "largest change of sigma, alpha or slip_force with it, in half widths of their intervals",
-       [](const Item& item) { return Number(item.moves); }},
+       &Item::moves},
   };
   return fields;
 }
@@ -42,33 +39,32 @@ template <typename Get>
 Field<Report> AdequacyRow(const char* path, const char* unit, const char* label, Get get) {
   return {path, unit, label,
           [get](const Report& report) {
-            return IsJudged(report) ? get(report.fit.adequacy) : Missing();
+            return IsJudged(report) ? At(get)(report.fit.adequacy) : Missing();
           },
-          [](const Report&) { return std::string(kWhyNotJudged); }};
+          kWhyNotJudged};
 }
 
 }  // namespace
 
 void AddAdequacyFields(FieldTable& table) {
   table.Add({
-      AdequacyRow("adequacy.verdict", "", "adequate, doubtful or inadequate",
-                  [](const Adequacy& adequacy) { return Text(Name(adequacy.verdict)); }),
+      AdequacyRow("adequacy.verdict", "", "adequate, doubtful or inadequate", &Adequacy::verdict),
       AdequacyRow("adequacy.misfit_over_noise", "-",
                   "rms of what the model misses over that of the noise",
-                  [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
+                  &Adequacy::misfit_over_noise),
       {"adequacy.misfit_over_half_gap", "-",
        "rms of what the model misses over the half gap measured without a model",
        [](const Report& report) {
-         return IsJudged(report) ? Number(report.fit.adequacy.misfit_over_half_gap) : Missing();
+         return IsJudged(report) ? ToValue(report.fit.adequacy.misfit_over_half_gap) : Missing();
        },
        [](const Report& report) {
          return IsJudged(report) ? std::string("no half gap was measured")
                                  : std::string(kWhyNotJudged);
        }},
       AdequacyRow("adequacy.use", "", "quantitative, indicative or none: what the fit is good for",
-                  [](const Adequacy& adequacy) { return Text(Name(adequacy.use)); }),
+                  &Adequacy::use),
       AdequacyRow("adequacy.p_value", "-", "probability that noise alone looks like that",
-                  [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
+                  &Adequacy::p_value),
       AdequacyRow("adequacy.causes", "",
                   "causes that the residuals look like, the best first; may be empty",
                   [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
@@ -84,14 +80,12 @@ namespace {
 const std::vector<Field<MemoryComparison>>& ComparisonFields() {
   using Item = MemoryComparison;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable name, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"code", "", "stable name, for scripts", &Item::code},
       {"p_value", "-",
        "probability that noise alone makes this difference in a contact with Masing's memory rule",
-       [](const Item& item) { return Number(item.p_value); }},
-      {"dahl_p_value", "-", "likewise with Dahl's memory rule",
-       [](const Item& item) { return Number(item.dahl_p_value); }},
-      {"size", "N", "rms difference beyond Masing's memory rule and beyond noise",
-       [](const Item& item) { return Number(item.size); }},
+       &Item::p_value},
+      {"dahl_p_value", "-", "likewise with Dahl's memory rule", &Item::dahl_p_value},
+      {"size", "N", "rms difference beyond Masing's memory rule and beyond noise", &Item::size},
   };
   return fields;
 }
@@ -100,32 +94,27 @@ std::string WhyNoMemory(const Report& report) {
   if (report.fit.depth < identification::Depth::kThorough) return "the fit was not asked for it";
   return "branches are not compared before the motion turns, where sigma or slip_force is held or "
          "bounded, under loads that vary or differ, with a lag or an asymmetry, and in a fit of "
-         "the displacement";
-}
-
-template <typename Get>
-Field<Report> MemoryRow(const char* path, const char* unit, const char* label, Get get) {
-  return {path, unit, label,
-          [get](const Report& report) {
-            return report.fit.memory ? get(*report.fit.memory) : Missing();
-          },
-          WhyNoMemory};
+         "the "
+         "displacement";
 }
 
 }  // namespace
 
 void AddMemoryFields(FieldTable& table) {
+  const auto of_memory = [](auto member) {
+    return At(&Report::fit, &identification::FitResult::memory, member);
+  };
   table.Add({
-      MemoryRow("memory.verdict", "", "masing, dahl, neither or undecided",
-                [](const MemoryTest& memory) { return Text(Name(memory.verdict)); }),
-      MemoryRow("memory.p_value", "-", "p-value of Masing's memory rule, by all comparisons",
-                [](const MemoryTest& memory) { return Number(memory.p_value); }),
-      MemoryRow("memory.dahl_p_value", "-", "p-value of Dahl's memory rule, by all comparisons",
-                [](const MemoryTest& memory) { return Number(memory.dahl_p_value); }),
+      {"memory.verdict", "", "masing, dahl, neither or undecided", of_memory(&MemoryTest::verdict),
+       WhyNoMemory},
+      {"memory.p_value", "-", "p-value of Masing's memory rule, by all comparisons",
+       of_memory(&MemoryTest::p_value), WhyNoMemory},
+      {"memory.dahl_p_value", "-", "p-value of Dahl's memory rule, by all comparisons",
+       of_memory(&MemoryTest::dahl_p_value), WhyNoMemory},
       {"memory.tests", "", "comparisons that the record allows; may be empty",
        [](const Report& report) {
          return report.fit.memory ? List(ComparisonFields(), report.fit.memory->comparisons)
-                                  : Value{Value::Array{}};
+                                  : Value{.json = Json::array(), .is_absent = false};
        }},
   });
   table.Describe("memory.tests[].", ComparisonFields());
@@ -143,20 +132,18 @@ Field<Report> Residual(const char* name, const char* unit, const char* label,
   return {std::string("residuals.") + name, unit, label,
           [member](const Report& report) {
             const ResidualStatistics& residuals = report.fit.residuals;
-            return residuals.samples > 0 ? Number(residuals.*member) : Missing();
+            return residuals.samples > 0 ? ToValue(residuals.*member) : Missing();
           },
-          [](const Report&) { return std::string("not a finite number"); }};
+          "not a finite number"};
 }
 
 const std::vector<Field<StrokeBin>>& BinFields() {
   static const std::vector<Field<StrokeBin>> fields = {
       {"position", "-", "middle of the part, as a fraction of the travel between reversals",
-       [](const StrokeBin& bin) { return Number(bin.position); }},
-      {"mean", kOfResponse, "mean residual in that part",
-       [](const StrokeBin& bin) { return Number(bin.mean); }},
+       &StrokeBin::position},
+      {"mean", kOfResponse, "mean residual in that part", &StrokeBin::mean},
       {"standard_error", kOfResponse,
-       "standard error of the mean, from the scatter between strokes",
-       [](const StrokeBin& bin) { return Number(bin.standard_error); }},
+       "standard error of the mean, from the scatter between strokes", &StrokeBin::standard_error},
   };
   return fields;
 }
@@ -165,12 +152,11 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
   using Item = StrokeResiduals;
   static const std::vector<Field<Item>> fields = {
       {"direction", "", "up or down",
-       [](const Item& item) { return Text(item.direction > 0 ? "up" : "down"); }},
+       [](const Item& item) { return item.direction > 0 ? "up" : "down"; }},
       {"strokes", "", "strokes that count: those at least three quarters as long as the longest",
-       [](const Item& item) { return Count(item.strokes); }},
-      {"mean", kOfResponse, "mean residual", [](const Item& item) { return Number(item.mean); }},
-      {"rms", kOfResponse, "root mean square of the residual",
-       [](const Item& item) { return Number(item.rms); }},
+       &Item::strokes},
+      {"mean", kOfResponse, "mean residual", &Item::mean},
+      {"rms", kOfResponse, "root mean square of the residual", &Item::rms},
       {"along_stroke", "", "parts of the stroke",
        [](const Item& item) { return List(BinFields(), item.bins); }},
   };
@@ -180,7 +166,7 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
 const std::vector<Field<RecordFit>>& StructureFields() {
   static const std::vector<Field<RecordFit>> fields = {
       {"repeatable_share", "-", "fraction of the variance that repeats in every stroke",
-       [](const RecordFit& item) { return Number(item.structure.repeatable_share); }},
+       [](const RecordFit& item) { return item.structure.repeatable_share; }},
       {"directions", "", "growing, then falling displacement",
        [](const RecordFit& item) {
          const auto& directions = item.structure.directions;
@@ -210,14 +196,14 @@ void AddResidualFields(FieldTable& table) {
       Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
                &ResidualStatistics::degrees_of_freedom),
       {"residuals.channel", "", "the fitted channel, in whose unit the residuals are",
-       [](const Report& report) { return Text(Name(report.fit.response)); }},
+       [](const Report& report) { return Name(report.fit.response); }},
       {"residuals.force_noise", "N",
        "standard deviation of the force, given or estimated; 0 where it is imposed",
        [](const Report& report) {
-         return report.failed() ? Missing() : Number(report.fit.force_noise);
+         return report.failed() ? Missing() : ToValue(report.fit.force_noise);
        }},
       {"residuals.outliers", "", "samples with less than half weight under the loss",
-       [](const Report& report) { return Count(report.fit.outliers); }},
+       [](const Report& report) { return report.fit.outliers; }},
       {"residual_structure", "", "the repeatable residual, one entry per file",
        [](const Report& report) { return List(StructureFields(), report.fit.records); }},
   });

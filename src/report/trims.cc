@@ -72,7 +72,8 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (trim.has_first_loading()) {
     text +=
         "; the first loading is among them, which distinguishes Masing's law from Dahl's own and a "
-        "virgin contact from a steady one";
+        "virgin "
+        "contact from a steady one";
   }
   if (trim.begins_later()) {
     const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
@@ -110,19 +111,17 @@ std::vector<TrimmedItem> TrimmedItems(const Report& report) {
 const std::vector<Field<TrimmedItem>>& TrimmedFields() {
   using Item = TrimmedItem;
   static const std::vector<Field<Item>> fields = {
-      {"file", "", "name of the record", [](const Item& item) { return Text(item.file); }},
+      {"file", "", "name of the record", &Item::file},
       {"reason", "", "rest, ramp of the amplitude, or running_in",
-       [](const Item& item) { return Text(loop::NameOf(item.part.reason)); }},
-      {"first_line", "", "first line of the part in the file, counted from 1",
-       [](const Item& item) { return Count(item.first_line); }},
-      {"last_line", "", "likewise", [](const Item& item) { return Count(item.last_line); }},
+       [](const Item& item) { return loop::NameOf(item.part.reason); }},
+      {"first_line", "", "first line of the part in the file, counted from 1", &Item::first_line},
+      {"last_line", "", "likewise", &Item::last_line},
       {"samples", "", "samples that do not count",
-       [](const Item& item) { return Count(item.part.samples()); }},
-      {"cycles", "", "closed cycles among them",
-       [](const Item& item) { return Count(item.part.cycles); }},
+       [](const Item& item) { return item.part.samples(); }},
+      {"cycles", "", "closed cycles among them", [](const Item& item) { return item.part.cycles; }},
       {"first_loading", "",
        "true if the first loading, before the first turning point, is left out",
-       [](const Item& item) { return Flag(item.part.has_first_loading); }},
+       [](const Item& item) { return item.part.has_first_loading; }},
   };
   return fields;
 }

@@ -20,7 +20,7 @@
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/csv_table.h"
-#include "report/json_document.h"
+#include "report/fields.h"
 #include "report/statements.h"
 #include "request/json.h"
 

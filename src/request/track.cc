@@ -11,6 +11,7 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
+#include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/report/units.h"
 #include "request/json.h"
@@ -211,6 +212,138 @@ std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>
   }
   json["quantities"] = QuantitiesJson(test, described);
   return Dump(json);
+}
+
+void Validate(const TrackRequest& request) {
+  const identification::FitOptions fit = MakeCycleFitOptions(request.fit);
+  if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
+  if (request.shares_alpha) campaign::RequireThatAlphaCanBeShared(fit, request.fit.files);
+}
+
+TrackRun::TrackRun(const TrackRequest& request, TrackEvents events)
+    : request_(request), events_(std::move(events)), test_(request.average * request.every) {}
+
+void TrackRun::BeginSource(const io::RecordFile& layout, const std::string& name) {
+  names_.push_back(name);
+  if (!layout_) {
+    layout_ = layout;
+    layout_->record = {};
+    test_.is_torsional = layout.is_torsional;
+  }
+  if (request_.fit.join) io::RequireJoinable(*layout_, names_.front(), layout, name);
+  if (layout.is_torsional == test_.is_torsional) return;
+  throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", names_.front(),
+                               test_.is_torsional ? "torque" : "force", name,
+                               layout.is_torsional ? "torque" : "force"));
+}
+
+void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) {
+  fit_ = MakeCycleFitOptions(request_.fit);
+  if (request_.normal_load) fit_.normal_loads = {*request_.normal_load};
+  reading_ = campaign::ChooseReading(head, fit_);
+  chosen_terms_ = ChooseTermsOfCycles(request_.fit, head, fit_);
+  if (test_.shared_alpha) fit_.fixed["alpha"] = test_.shared_alpha->mean();
+  campaign::TrackOptions options{.fit = fit_,
+                                 .together = request_.average,
+                                 .every = request_.every,
+                                 .threads = request_.threads};
+  if (events_.begins) events_.begins(options);
+  const auto doubt = campaign::DoubtAbout(reading_, source);
+  if (doubt && events_.warn) events_.warn(*doubt);
+  tracker_.emplace(std::move(options), events_.fits);
+}
+
+void TrackRun::EndSource() {
+  if (request_.fit.join) {
+    times_.NextFile();
+  } else {
+    test_.unused_samples += tracker_->NextFile();
+    times_ = {};
+  }
+}
+
+void TrackRun::ReadFile(const std::string& file) {
+  io::RecordStream stream(file, request_.fit.columns, request_.broken_rows);
+  for (const std::string& note : stream.layout().notes) {
+    if (events_.note) events_.note(note);
+  }
+  BeginSource(stream.layout(), file);
+  io::Samples piece;
+  if (tracker_) {
+    stream.Next(piece);
+  } else {
+    piece = campaign::ReadHead(stream);
+    BeginFits(campaign::ViewOf(piece), file);
+  }
+  while (piece.size() > 0) {
+    bytes_read_ = bytes_before_ + stream.bytes();
+    test_.samples += piece.size();
+    times_.Shift(piece.time);
+    tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    if (events_.piece_is_read) events_.piece_is_read();
+    if (!stream.Next(piece)) break;
+  }
+  EndSource();
+  test_.broken_rows += stream.broken_rows();
+  bytes_before_ += stream.bytes();
+  if (stream.footer_lines() > 0 && events_.note) {
+    events_.note(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
+                             file, stream.footer_lines()));
+  }
+  if (stream.broken_rows() > 0 && events_.warn) {
+    events_.warn(fmt::format("{} broken rows of {} were skipped, the first: {}",
+                             stream.broken_rows(), file, stream.first_broken_row()));
+  }
+}
+
+void TrackRun::ReadRecord(const io::NamedRecord& record) {
+  static constexpr std::size_t kMostOfHead = 1'000'000;
+  BeginSource(record.file, record.name);
+  const loop::Record& samples = record.file.record;
+  if (!tracker_) {
+    const auto first = [](const std::vector<double>& column) {
+      return std::span(column).first(std::min(column.size(), kMostOfHead));
+    };
+    BeginFits({first(samples.displacement), first(samples.force), first(samples.time),
+               first(samples.normal_load)},
+              record.name);
+  }
+  test_.samples += samples.size();
+  std::vector<double> time = samples.time;
+  times_.Shift(time);
+  tracker_->Add({samples.displacement, samples.force, time, samples.normal_load},
+                record.file.lines);
+  EndSource();
+}
+
+void TrackRun::PoolAlpha(std::span<const io::NamedRecord> records) {
+  campaign::PooledValue alpha;
+  TrackRun first_pass(request_, {.fits = [&alpha](std::span<const campaign::CycleFit> fits) {
+                        for (const campaign::CycleFit& fit : fits) campaign::PoolAlpha(fit, alpha);
+                      }});
+  first_pass.Read(records);
+  if (first_pass.cycles() == 0) return;  // as the second pass will say
+  campaign::RequireSharedAlpha(alpha);
+  test_.shared_alpha = alpha;
+}
+
+void TrackRun::Read(std::span<const io::NamedRecord> records) {
+  if (records.empty()) {
+    for (const std::string& file : request_.fit.files) ReadFile(file);
+  }
+  for (const io::NamedRecord& record : records) ReadRecord(record);
+  if (!tracker_) throw InputError("nothing to track: give a record");
+  if (request_.fit.join) test_.unused_samples += tracker_->NextFile();
+  tracker_->Finish();
+}
+
+void TrackRun::Finish() {
+  test_.files = names_;
+  test_.cycles = tracker_->cycles();
+  test_.reversal_gate = *fit_.preparation.reversal_gate;
+  test_.is_gate_certain = reading_.gate.certain;
+  campaign::RequireCycles(test_.cycles, request_.average, reading_, test_.reversal_gate,
+                          fmt::format("{}", fmt::join(names_, ", ")));
 }
 
 struct SeparateTests::Document {

@@ -1,16 +1,25 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/test_summary.h"
+#include "mindahl/campaign/tracker.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/io/record_stream.h"
+#include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
 
@@ -40,6 +49,86 @@ struct TrackedTest {
   campaign::TrackedCourses courses;
   campaign::DissipatedEnergy energy;
   std::optional<campaign::PooledValue> shared_alpha;  ///< empty where each cycle has its own
+};
+
+/// Holds what is asked for of a test of many cycles. Its files are those of `fit`.
+struct TrackRequest {
+  FitRequest fit = {};  ///< of each cycle
+  std::optional<double> normal_load =
+      {};                   ///< [N] of all cycles; default the column's mean over each
+  std::size_t average = 1;  ///< cycles in a row that are fitted together
+  std::size_t every = 1;    ///< one fit of so many that there could be
+  std::size_t threads = 1;
+  io::BrokenRows broken_rows = io::BrokenRows::kRefuse;
+  bool shares_alpha = false;  ///< one for all cycles: the mean of a first pass
+};
+
+/// @throws InputError or InvalidArgument naming the option
+void Validate(const TrackRequest& request);
+
+/// Receives what a run has to say as it goes on. `fits` is needed, the others may be empty.
+struct TrackEvents {
+  std::function<void(std::span<const campaign::CycleFit>)> fits;  ///< in their order, by batches
+  std::function<void(std::string_view)> note = {};
+  std::function<void(std::string_view)> warn = {};
+  /// Called before the first fit: may set which are skipped, and the seed.
+  std::function<void(campaign::TrackOptions&)> begins = {};
+  std::function<void()> piece_is_read = {};  ///< may throw, which ends the run
+};
+
+/// Reads a test of many cycles piece by piece, and fits each.
+class TrackRun {
+ public:
+  /// @param request  valid; kept by reference
+  TrackRun(const TrackRequest& request, TrackEvents events);
+
+  /// Fits every cycle with an alpha of its own, for what they have in common, which Read() holds.
+  /// @param records  in memory; none: the files of the request
+  /// @throws InputError as Read(), and where no cycle determines alpha
+  void PoolAlpha(std::span<const io::NamedRecord> records = {});
+
+  /// Reads and fits all cycles.
+  /// @throws InputError naming the place in a file
+  void Read(std::span<const io::NamedRecord> records = {});
+
+  /// Fits what was read before Read() threw.
+  void FitTheRest() { tracker_->Finish(); }
+
+  /// Completes the description of the test.
+  /// @throws InputError where it has no cycle
+  void Finish();
+
+  /// True once a cycle may have been fitted.
+  [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
+  [[nodiscard]] std::size_t cycles() const { return tracker_->cycles(); }
+  [[nodiscard]] std::uintmax_t bytes_read() const { return bytes_read_; }
+  [[nodiscard]] const campaign::Reading& reading() const { return reading_; }
+  /// Says which terms the first cycles require; empty where that was not asked for.
+  [[nodiscard]] const std::string& chosen_terms() const { return chosen_terms_; }
+  /// Returns the columns of the first file.
+  [[nodiscard]] const io::RecordFile& layout() const { return *layout_; }
+  [[nodiscard]] TrackedTest& test() { return test_; }
+  [[nodiscard]] const TrackedTest& test() const { return test_; }
+
+ private:
+  void ReadFile(const std::string& file);
+  void ReadRecord(const io::NamedRecord& record);
+  void BeginSource(const io::RecordFile& layout, const std::string& name);
+  void BeginFits(const loop::RecordView& head, std::string_view source);
+  void EndSource();
+
+  const TrackRequest& request_;
+  TrackEvents events_;
+  identification::FitOptions fit_;
+  std::string chosen_terms_;
+  campaign::Reading reading_;  // of the head
+  io::JoinedTimes times_;
+  std::optional<io::RecordFile> layout_;
+  std::vector<std::string> names_;  // of what was read
+  TrackedTest test_;
+  std::optional<campaign::Tracker> tracker_;
+  std::uintmax_t bytes_before_ = 0;  // of the files that are done
+  std::uintmax_t bytes_read_ = 0;
 };
 
 /// Returns the JSON of schema mindahl.track/1, as `mindahl track --json` writes it.
