@@ -18,7 +18,7 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   static const std::vector<Field<Item>> fields = {
       {"value", "of the quantity", "estimate", &Item::value},
       {"standard_error", "of the quantity", "standard error from the fit and from the given inputs",
-       &Item::standard_error, "the record leaves open the parameter that it rests on"},
+       &Item::standard_error, "the record does not determine the parameter that it follows from"},
       {"unit", "", "unit of value and error", [](const Item&) { return "-"; }},
       {"from_fit", "-", "fraction of the variance from the fit", &Item::FitShare},
       {"from_inputs", "-", "fraction of the variance from the inputs", &Item::InputShare},
@@ -44,7 +44,7 @@ Value Propagated(const std::optional<PropagatedValue>& value, std::string_view u
 namespace {
 
 std::string WhySlipForceOpen(const Report& report) {
-  return report.slip_forces ? "slip_force and asymmetry are held, or the record leaves it open"
+  return report.slip_forces ? "slip_force and asymmetry are held, or not determined"
                             : "slip_force or asymmetry is not identifiable";
 }
 
@@ -135,12 +135,12 @@ std::string WhyAlphaNotTested(const Report& report) {
 std::string WhyNoLikelihoodRatio(const Report& report) {
   if (!report.fit.mindlin_test) return "alpha is held or not determined";
   if (!report.alpha.is_rejected) return WhyAlphaNotTested(report);
-  return "the interval of alpha includes more than this model, and says otherwise";
+  return "the interval of alpha includes more than this model, and decides otherwise";
 }
 
 std::string WhyNoRig(const Report& report) {
-  return report.fit.mindlin_test ? "alpha = 1/3 is not rejected, alpha is the larger one, a rig is "
-                                   "fitted, or none helps"
+  return report.fit.mindlin_test ? "alpha = 1/3 is not rejected, alpha is above 1/3, a rig is "
+                                   "fitted, or no rig helps"
                                  : WhyNoLikelihoodRatio(report);
 }
 
@@ -154,7 +154,7 @@ std::string WhyNoRatio(const Report& report) {
   return report.stiffness.empty() ? "needs a contact radius known apart from the fit: the elastic "
                                     "constants and radii of both bodies with the load, or a "
                                     "contact radius with the compliance or the elastic constants"
-                                  : "the record leaves sigma open";
+                                  : "the record does not determine sigma";
 }
 
 }  // namespace
@@ -199,10 +199,11 @@ using identification::ParameterEstimate;
 
 namespace {
 
-std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series leaves it open"; }
+std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series does not determine it"; }
 
 std::string WhyNotAlone(const ContactUnderLoad& item) {
-  return item.alone ? "the record by itself leaves it open" : "the record by itself is no fit";
+  return item.alone ? "the record alone does not determine it"
+                    : "the record alone cannot be fitted";
 }
 
 const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
@@ -262,7 +263,7 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
 }
 
 std::string WhyNoInterval(const QuantityUnderLaw& item) {
-  return item.value.standard_error > 0 ? "the series leaves it open"
+  return item.value.standard_error > 0 ? "the series does not determine it"
                                        : "all parameters that it follows from are fixed";
 }
 

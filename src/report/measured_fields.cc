@@ -18,7 +18,7 @@ std::string WhyNoSlip(const Report& report) {
 }
 
 constexpr const char* kWhyNoRegime =
-    "slip_force is not identifiable, or has a lower limit that the loop reaches";
+    "slip_force is not identifiable, or its lower limit is within the loop";
 
 }  // namespace
 
@@ -170,7 +170,7 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
              &Item::sliding_fraction, kNoMiddle),
         Fact("backlash", "m", "travel after each reversal over which the force stays constant",
              At(&Item::backlash, &loop::Backlash::width),
-             "the force does not stand still after the reversals, or not over the same travel"),
+             "the force does not stay constant after the reversals, or not over the same travel"),
         Fact("slope_after_reversal", "N/m", "slope over the first tenth of the strokes, median",
              &Item::slope_after_reversal, "the strokes have too few samples"),
         Fact("plateau_slope", "N/m", "slope over the last third of the strokes, median",

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const char* where,
                                                BranchLaw StartReport::*law) {
-  const auto why = "the solver came to nothing finite from here";
+  const auto why = "the solver reached no finite value from this start";
   const auto row = [&](const char* name, const char* unit, double BranchLaw::*member) {
     return Field<StartReport>{
         prefix + "." + name, unit, fmt::format("{} of the law {}", name, where),
@@ -28,7 +28,7 @@ std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const 
 const std::vector<Field<StartReport>>& StartFields() {
   using Item = StartReport;
   static const std::vector<Field<Item>> fields = [] {
-    const auto why = "the cost is not finite here";
+    const auto why = "the cost is not finite at this start";
     std::vector<Field<Item>> rows = {
         {"from", "", "grid, or seed where it was drawn",
          [](const Item& item) { return item.drawn ? "seed" : "grid"; }}};
@@ -94,7 +94,7 @@ std::string WhyNoError(const ReportedParameter& item) {
     case ParameterStatus::kFree:
       break;
   }
-  return "the record leaves it open";
+  return "the record does not determine it";
 }
 
 std::string WhyIntervalOpen(const ReportedParameter& item) {
@@ -105,7 +105,7 @@ std::string WhyIntervalOpen(const ReportedParameter& item) {
 
 const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   using Item = identification::IntervalPart;
-  const auto why = "open there";
+  const auto why = "open at this end";
   static const std::vector<Field<Item>> fields = {
       {"source", "",
        "origin of this part of ci95: parabola, profile, initial_state, other_minimum, "

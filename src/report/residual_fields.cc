@@ -23,7 +23,7 @@ const std::vector<Field<Cause>>& CauseFields() {
       {"explains", "-", "fraction of the residuals' variance that it explains", &Item::explains},
       {"size", "of the cause", "size of the cause; of several numbers the first",
        [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.size); },
-       "it is of several numbers, none of which says much"},
+       "it has several numbers, none of which is significant alone"},
       {"unit", "", "unit of the size",
        [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.unit); },
        "it has no size"},
@@ -94,8 +94,7 @@ std::string WhyNoMemory(const Report& report) {
   if (report.fit.depth < identification::Depth::kThorough) return "the fit was not asked for it";
   return "branches are not compared before the motion turns, where sigma or slip_force is held or "
          "bounded, under loads that vary or differ, with a lag or an asymmetry, and in a fit of "
-         "the "
-         "displacement";
+         "the displacement";
 }
 
 }  // namespace
