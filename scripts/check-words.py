@@ -22,9 +22,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # The first words of a fragment. The eight of VERBLESS have one limit together; what trails a member
 # may begin with one of OTHER_OPENERS.
 VERBLESS = {"of", "what", "does", "is", "as", "by", "where", "that"}
-VERBLESS_LIMIT = 60
+VERBLESS_LIMIT = 5
 OTHER_OPENERS = {"likewise", "and", "or", "from", "with", "than"}
-OTHER_OPENERS_LIMIT = 10
+OTHER_OPENERS_LIMIT = 5
 
 # Each word of the table in CONTRIBUTING.md: its spellings, its standard uses with the words around
 # it, which are not counted, and the limit.

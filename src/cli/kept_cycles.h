@@ -19,7 +19,7 @@ struct KeptCycles {
 
 /// Says which rows of a table are those of a test, and what they hold besides its cycles' cells.
 struct KeptRows {
-  std::uintmax_t offset = 0;  ///< [bytes] of the table before the first one
+  std::uintmax_t offset = 0;  ///< [bytes] in the table before the first row
   std::string_view before;    ///< at the beginning of each
   std::string_view after;     ///< at its end
 };

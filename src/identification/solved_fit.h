@@ -33,7 +33,7 @@ struct SolvedFit {
   SolvedFit(Candidate found, const Attempt& attempt)
       : best(std::move(found)), displacement_errors(attempt.prepared, attempt.data) {}
 
-  Candidate best;                       ///< of the initial states that were tried
+  Candidate best;                       ///< best of the initial states that were tried
   std::optional<Candidate> rival = {};  ///< the other initial state, where it is as likely
   std::vector<Descent> descents = {};   ///< from all starts of `best`; from Depth::kIntervals on
   DisplacementErrors displacement_errors;
@@ -42,7 +42,7 @@ struct SolvedFit {
   bool is_settled = true;    ///< the weights are those of the residuals that they leave
   /// The records that `best` is a problem of, where turning points were put in or fitted.
   std::optional<TurningPointFit> turned = {};
-  Linearization at = {};  ///< of `best` by its free parameters; from Depth::kErrors
+  Linearization at = {};  ///< linearization of `best` in its free parameters; from Depth::kErrors
 
   [[nodiscard]] const Solution& solution() const { return *best.solution; }
   [[nodiscard]] bool fits_turns() const { return best.problem.data->turns_are_fitted; }

@@ -16,7 +16,7 @@ inline constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 struct CsvLayout {
   Delimiter delimiter = Delimiter::kComma;
   std::size_t columns = 0;
-  std::size_t usual_columns = 0;   ///< that most rows have; some have more
+  std::size_t usual_columns = 0;   ///< number in most rows; some have more
   std::vector<std::string> names;  ///< one a column, or none
   std::vector<std::string> units;  ///< cells of the units row, one a column, or none
   std::size_t header_line = 0;     ///< line of the names, else of the units row; 0 without either

@@ -35,7 +35,7 @@ void RequireDrawable(const PlotPanel& panel, const std::string& where);
 /// it.
 struct SeriesLook {
   std::string colour;     ///< class of the style: s0 … s5, or h0 … h7 of a shade
-  std::size_t shape = 0;  ///< of markers, 0 … 5
+  std::size_t shape = 0;  ///< marker, 0 … 5
   std::size_t round = 0;  ///< how often the colours were used before, 0 … 2
 };
 std::vector<SeriesLook> LooksOf(const PlotPanel& panel);

@@ -83,7 +83,7 @@ class CycleFitter {
   identification::Fitter fitter_;
 };
 
-/// A column of numbers of the table, and where a fit has them.
+/// Describes a column of numbers of the table, and how to get it from a fit.
 struct CycleNumber {
   std::string_view name;
   std::string_view unit;  ///< in a record of forces; "" for a pure number

@@ -53,7 +53,7 @@ class CycleSplitter {
   /// Returns the number of complete cycles so far.
   [[nodiscard]] std::size_t cycles() const { return cycles_; }
 
-  /// No cycle is that long: its record holds no turning points, or the gate hides them.
+  /// Largest cycle: beyond it the record has no turning points, or the gate hides them.
   static constexpr std::size_t kMostSamples = 20'000'000;
 
  private:
@@ -73,7 +73,7 @@ class CycleSplitter {
   std::uint64_t checksum_;
 };
 
-/// How all cycles of a long record are read, by its first samples.
+/// Holds how all cycles of a long record are read, as chosen from its first samples.
 struct Reading {
   loop::ReversalGate gate;  ///< `certain` where it was given
   bool gate_is_given = false;

@@ -136,7 +136,7 @@ struct TrackedQuantity {
   std::optional<double> (*of)(const CycleFit&) = nullptr;
   std::optional<double> (*error)(const CycleFit&) = nullptr;  ///< in proportion to its standard one
   bool is_drawn = false;
-  /// Whether that is the standard error of the value, without a factor.
+  /// True if that is the standard error of the value itself, without a factor.
   bool has_standard_error = false;
 };
 
@@ -173,7 +173,7 @@ std::vector<std::string> ChangeStatements(const CourseDescription& course);
 std::vector<std::string> SmallTrendStatements(const CourseDescription& course,
                                               const ChangeThresholds& thresholds = {});
 
-/// The statement where ChangeStatements() has none of any quantity.
+/// Statement if ChangeStatements() returns none for any quantity.
 inline constexpr std::string_view kNothingChanged = "nothing changed beyond chance by 1 % or more";
 
 }  // namespace mindahl::campaign

@@ -13,7 +13,7 @@
 
 namespace mindahl::campaign {
 
-/// A number of cycles with a flag, and what that says.
+/// Counts the cycles with a flag, and explains the flag.
 struct FlagCount {
   std::string name;
   std::string meaning;

@@ -23,7 +23,7 @@ enum class Target {
   kLammps,
   kLiggghts,
   kYade,
-  kMujoco,  ///< as kLuGre: `lugre` of MuJoCo's dcmotor
+  kMujoco,  ///< the law of kLuGre: `lugre` of MuJoCo's dcmotor
   // Coulomb's friction without presliding, as descriptions of robots have it:
   kMujocoJoint,
   kUrdf,
@@ -53,7 +53,7 @@ struct AmplitudeRange {
 
 struct ConversionOptions {
   double amplitude = 0.0;  ///< X [m] of the steady loop that is to be reproduced, > 0
-  /// Amplitudes over which what cannot be exact is fitted; empty: X alone.
+  /// Amplitudes over which an inexact law is fitted; empty: X alone.
   std::optional<AmplitudeRange> range = std::nullopt;
   double tolerance = 0.01;   ///< relative error allowed in force and energy, in (0, 1)
   std::size_t elements = 8;  ///< number of elements of Iwan's model, >= 1
@@ -63,13 +63,13 @@ struct ConversionOptions {
 struct Conversion {
   SteadyLaw law;
   LoopError at_amplitude;  ///< at X
-  LoopError largest;       ///< over the range, each of the two by itself; energy in magnitude
+  LoopError largest;       ///< worst over the range, each by itself; energy in magnitude
   /// Amplitudes around X at which force and energy are within the tolerance, looked for from 1e-4·X
   /// to 1e4·X; empty where X itself is not.
   std::optional<AmplitudeRange> within = std::nullopt;
 };
 
-/// Returns the parameters with which another law reproduces the steady loop of a contact.
+/// Computes the parameters with which another law reproduces the steady loop of a contact.
 ///
 /// Masing's law and Dahl's own are one curve at X, in closed form (models/steady_loop.h).
 /// Coulomb's friction of a robot's joint, for which the least mean square is the mean force of a
@@ -85,7 +85,7 @@ struct Conversion {
 /// ms.
 Conversion Convert(const ModelLaw& contact, Target target, const ConversionOptions& options);
 
-/// A parameter of the other law, as it calls it.
+/// A parameter of the other law, under that law's name for it.
 struct Parameter {
   std::string name;
   double value;

@@ -45,7 +45,7 @@ void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<cons
 /// SteadyLoopEnergy, of Bouc's and Wen's below 1e-6.
 double LoopEnergy(const SteadyLaw& law, double amplitude);
 
-/// How far one law's steady loop is from another's.
+/// Holds the differences of one law's steady loop from another's.
 struct LoopError {
   double force = 0.0;   ///< largest difference over T* of the reference [-]
   double energy = 0.0;  ///< W over that of the reference, less 1 [-]; infinite where that is 0

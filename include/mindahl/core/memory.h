@@ -14,7 +14,7 @@ namespace mindahl {
 /// machine's is not taken off.
 std::uintmax_t MemoryOfProcess();
 
-/// Returns what to say when memory runs out: how much the process had, and may have.
+/// Returns the message for exhausted memory: how much the process had, and may have.
 ///   "memory ran out: the process had 612 MB and may have 650 MB"
 std::string OutOfMemoryText();
 

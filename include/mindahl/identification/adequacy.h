@@ -28,7 +28,7 @@ struct ResidualStatistics {
 /// @param forces      [N] measured, of the same sizes
 /// @param slip_force  [N] Tc
 /// @throws InvalidArgument when sizes differ or there is no sample
-/// Effective samples and degrees of freedom are left to who knows the noise: 0.
+/// Effective samples and degrees of freedom, which need the noise, are left at 0.
 ResidualStatistics DescribeResiduals(std::span<const std::span<const double>> residuals,
                                      std::span<const std::span<const double>> forces,
                                      double slip_force);
@@ -84,7 +84,7 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
 /// Says whether the model describes the record.
 enum class AdequacyVerdict {
   kAdequate,    ///< residuals look like noise in this record
-  kDoubtful,    ///< they do not; intervals cover what the causes that explain it would change
+  kDoubtful,    ///< they do not; intervals include what their causes would change
   kInadequate,  ///< parameters of this model mean nothing for this record
 };
 
@@ -109,11 +109,11 @@ struct Cause {
   bool is_measured = false;  ///< seen in the record without the model, and named first
 };
 
-/// A fit's judgement of itself: docs/identification.md.
+/// Holds whether, and why not, the model describes the records: docs/identification.md.
 struct Adequacy {
   AdequacyVerdict verdict = AdequacyVerdict::kAdequate;
-  /// rms of what is explained by all causes together or comes back in every stroke, over that of
-  /// the noise
+  /// rms of the residuals that the causes explain or that repeat in every stroke, over that of the
+  /// noise
   double misfit_over_noise = 0.0;
   double misfit = 0.0;        ///< rms of what the model misses [N or m]
   double p_value = 1.0;       ///< probability of such residuals from noise alone

@@ -21,26 +21,26 @@ struct BandValue {
 struct BackbonePoint {
   double displacement = 0.0;  ///< [m] on the virgin curve
   BandValue force;            ///< [N]
-  double law = 0.0;           ///< [N] of the fitted law, behind its rig
+  double law = 0.0;           ///< force of the fitted law [N], behind its rig
 };
 
-/// Jenkins elements whose slip displacements lie between two.
+/// Jenkins elements whose slip displacements lie in one range.
 struct SlipShare {
   double from = 0.0;       ///< [m]
   double to = 0.0;         ///< [m]
   double stiffness = 0.0;  ///< [N/m], >= 0: −f″ over the range
 };
 
-/// A backbone of no law's shape: the distribution of slip displacements of Jenkins elements in
-/// parallel (Iwan 1966), with what never slips within the record.
+/// A backbone without an assumed law: the distribution of slip displacements of Jenkins elements in
+/// parallel (Iwan 1966), with the part that never slips within the record.
 struct BackboneEstimate {
   std::vector<BackbonePoint> points;  ///< from 0 to the largest displacement
   std::vector<SlipShare> elements;
   BandValue first_stiffness;  ///< [N/m] secant over the first hundredth of the displacement
-  BandValue elastic;          ///< [N/m] of what does not slip within the record
+  BandValue elastic;          ///< stiffness [N/m] of the part that does not slip within the record
   double smoothing = 0.0;     ///< regularisation over the weight of the data [–]
   double effective_samples = 0.0;
-  double rms = 0.0;  ///< [N] that the backbone leaves
+  double rms = 0.0;  ///< rms residual of the backbone [N]
   /// True if the stiffness that never slips is surely below a fiftieth of the first stiffness.
   bool reaches_plateau = false;
 };

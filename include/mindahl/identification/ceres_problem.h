@@ -15,7 +15,7 @@
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/record.h"
 
-// The only public header that needs Ceres' own: who does not include it needs none of them.
+// The only public header that includes Ceres' headers.
 namespace mindahl::identification {
 
 /// A parameter of the problem and its parameter block, θ: non-dimensional and of order one.

@@ -9,21 +9,21 @@
 
 namespace mindahl::identification {
 
-/// How much a finding matters to whoever uses the numbers.
+/// Names how much a finding matters to the user of the numbers.
 enum class Severity {
-  kNote,     ///< worth knowing: the answer stands
-  kWarning,  ///< something should be done, or part of the answer not be believed
-  kFailure,  ///< the answer is not one
+  kNote,     ///< worth knowing: the answer is valid
+  kWarning,  ///< something should be done, or a part of the answer is not valid
+  kFailure,  ///< there is no valid answer
 };
 
-/// In the order of precedence: of several the last holds.
+/// Names the verdicts on a parameter in the order of precedence: the last of several applies.
 enum class Identifiability {
   kIdentifiable,
   kEffective,        ///< the interval is closed and includes what the model, which is not adequate,
                      ///< misses
-  kExtrapolated,     ///< the law's asymptote, which the record stays away from
+  kExtrapolated,     ///< the law's asymptote, which the record does not approach
   kBoundedBelow,     ///< the data give only a lower limit
-  kNotIdentifiable,  ///< none, or only in combination with others
+  kNotIdentifiable,  ///< the data determine it not at all, or only in combination with others
 };
 
 /// Describes every finding of one code.
@@ -112,8 +112,7 @@ class FindingCode {
   const FindingRow* row_;
 };
 
-/// Something that a fit found out about a record, a model or a parameter, as data: `report` has the
-/// sentence for it.
+/// A finding of a fit about a record, a model or a parameter, as data; `report` has its sentence.
 struct Finding {
   FindingCode code;
   Severity severity = code.row().severity;

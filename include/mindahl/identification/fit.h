@@ -11,8 +11,8 @@
 
 namespace mindahl::identification {
 
-/// A fit has fewer samples that count than free parameters. The message has both numbers, and how
-/// many samples of how many were left out for what.
+/// Thrown if fewer samples count than there are free parameters. The message has both numbers, and
+/// how many samples were left out for what.
 class TooFewSamples : public InvalidArgument {
  public:
   using InvalidArgument::InvalidArgument;
@@ -31,7 +31,7 @@ class TooFewSamples : public InvalidArgument {
 /// closed form of docs/theory.md §5 with its exact gradient; there is no time step and no sampling
 /// rule. Tc and whatever else the force is linear in are eliminated (variable projection: Golub &
 /// Pereyra 1973, with Kaufman's Jacobian), so that two parameters are searched, three for a virgin
-/// contact whose origin is free. They start from a look at the plane of σ/Tc and α on a thinned
+/// contact whose origin is free. They start from a scan of the plane of σ/Tc and α on a thinned
 /// record.
 class Fitter {
  public:
@@ -50,10 +50,10 @@ class Fitter {
     return Fit({&record, 1}, depth);
   }
 
-  /// Fits a record like the one before, from where the fit of that ended, without a look at the
-  /// plane. By Fit() itself where there is none to go on from, where it ended at a bound or, from
-  /// Depth::kErrors on, either record does not determine the law, and where this does not converge
-  /// or leaves 1.5 times the residuals: it finds Fit()'s minimum, to the solver's tolerance.
+  /// Fits a record similar to the last one, from the last solution, without a scan of the plane,
+  /// and finds the minimum of Fit() to the solver's tolerance. Calls Fit() if there is no last
+  /// solution, if it is at a bound or, from Depth::kErrors on, either record does not determine the
+  /// law, and if this fit does not converge or leaves 1.5 times the residuals.
   const FitResult& Continue(const loop::RecordView& record, Depth depth = Depth::kFull);
 
   [[nodiscard]] const FitOptions& options() const;

@@ -16,11 +16,10 @@ namespace mindahl::identification {
 
 using loop::Interval;
 
-/// Sets the weight of large residuals: full, or less (reweighting.h has the constants).
+/// Names the loss, which reduces the weight of large residuals (constants: reweighting.h).
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
 
-/// What is known of a parameter before the fit: a normal law, of the logarithm of one that is
-/// positive.
+/// Prior knowledge of a parameter: a normal distribution, of the logarithm if it is positive.
 struct Prior {
   double value = 0.0;                 ///< in the parameter's unit
   double standard_uncertainty = 0.0;  ///< likewise, > 0
@@ -72,8 +71,8 @@ struct FitOptions {
   Loss loss = Loss::kNone;
 
   std::map<std::string, double> fixed;  ///< parameter held at a value
-  /// What is known of parameters that are fitted: each is one more residual, (θ − θ_prior)/u
-  /// against the noise that a fit without priors finds.
+  /// Priors of fitted parameters: each is one more residual, (θ − θ_prior)/u relative to the noise
+  /// that a fit without priors finds.
   std::map<std::string, Prior> priors;
   std::map<std::string, double> start;     ///< replaces the starting value found from the data
   std::map<std::string, Interval> bounds;  ///< replaces the default bounds

@@ -22,7 +22,7 @@
 
 namespace mindahl::identification {
 
-/// A law with its slip force held, whatever else is free fitted again.
+/// A law with its slip force fixed and all other free parameters refitted.
 struct ProfilePoint {
   models::BranchLaw law;
   /// F of the best fit against this one: (SS − SS_best)/s² over the effective samples, 0 of the
@@ -30,7 +30,7 @@ struct ProfilePoint {
   double statistic = 0.0;
 };
 
-/// The likelihood along Tc, where a fit looked at it (docs/theory.md §10).
+/// The likelihood along Tc, if a fit computed it (docs/theory.md §10).
 struct LikelihoodProfile {
   double critical = 0.0;             ///< F(1, ν) beyond which points are outside the 95 % interval
   std::vector<ProfilePoint> points;  ///< in order of slip force
@@ -40,7 +40,7 @@ struct LikelihoodProfile {
 /// boundary: 2 ln Λ = 2·F(2, ν), against the noise that the intervals have. It does not include
 /// the model discrepancy.
 struct ConfidenceRegion {
-  std::array<std::string, 2> parameters;        ///< by name
+  std::array<std::string, 2> parameters;        ///< names of the two
   std::vector<std::array<double, 2>> boundary;  ///< [their units], once around the best fit
   /// True if the likelihood reaches the critical value in every direction, or α = 0 before it.
   bool closed = true;
@@ -49,32 +49,32 @@ struct ConfidenceRegion {
   [[nodiscard]] bool Contains(double first, double second) const;
 };
 
-/// Masing's law (Mindlin's, Full-Dahl) or Dahl's own: which of the two a record is of. σ and Tc are
-/// those of a law, and the two differ in them by up to 2^α and 2 where the loop is the same.
+/// States whether a record follows Masing's law (Mindlin's, Full-Dahl) or Dahl's own. For the same
+/// loop σ and Tc of the two laws differ by factors of up to 2^α and 2.
 struct LawChoice {
   /// True if the record distinguishes them.
   bool decided = false;
-  /// The law that the record is of: the fitted one or `alternative`; null where undecided.
+  /// The law that the record follows: the fitted one or `alternative`; null if undecided.
   const models::FrictionModel* preferred = nullptr;
 
   // The other law:
   const models::FrictionModel* alternative = nullptr;
   models::BranchLaw law;  ///< its σ, α, Tc
-  /// ΔAICc of the other law less the fitted one: positive where the fitted one is better. Empty
-  /// where the other was not fitted: on a steady loop of one amplitude the two are one curve.
+  /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
+  /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
   std::optional<double> delta_aicc;
   std::optional<double> likelihood_ratio;  ///< 2 ln Λ of the fitted law against the other
 };
 
 /// Names the variable on which the force along a branch depends.
 enum class MemoryVerdict {
-  kMasing,     ///< the way since the last reversal that is remembered, of whatever backbone
-  kDahl,       ///< the force itself: slope = g(sT), of whatever g
+  kMasing,     ///< the travel since the last remembered reversal, for any backbone
+  kDahl,       ///< the force itself: slope = g(sT), for any g
   kNeither,    ///< the record contradicts both
   kUndecided,  ///< it contradicts neither
 };
 
-/// Parts of a record that one curve would have to run through.
+/// Compares parts of a record that lie on one curve under either memory rule.
 struct MemoryComparison {
   /// Stable, for scripts; slopes after reversals are those of eq. 12 of Peyret et al. (2017), σ by
   /// Masing's rule, σ(1 + T*/Tc)^α by Dahl's own law: "virgin_branch", "directions", "amplitudes",
@@ -85,8 +85,8 @@ struct MemoryComparison {
   double size = 0.0;          ///< [N] rms over the record of what is beyond Masing's memory
 };
 
-/// Tests whether a record follows Masing's memory, Dahl's, or neither, by comparing its branches
-/// with each other and with the virgin one. The law's shape is not presumed: either memory is given
+/// Tests whether a record follows Masing's memory rule, Dahl's, or neither, by comparing its
+/// branches with each other and with the virgin one. No shape of the law is assumed: each rule gets
 /// the backbone that fits best.
 struct MemoryTest {
   MemoryVerdict verdict = MemoryVerdict::kUndecided;
@@ -111,7 +111,7 @@ struct SolverReport {
   double final_cost = 0.0;          ///< likewise
 };
 
-/// How much of a fit is wanted; each depth has all of the one before.
+/// Sets how much of a fit is computed; each depth includes the one before.
 enum class Depth {
   kEstimate,   ///< values, rms, convergence: for work that is done again and again
   kErrors,     ///< and facts of the record, noise, standard errors, intervals, correlations and
@@ -125,10 +125,10 @@ enum class Depth {
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
-/// Why an interval reaches as far as it does.
+/// Names what a part of an interval allows for.
 enum class IntervalSource {
   kParabola,      ///< curvature of the likelihood at its maximum
-  kProfile,       ///< the likelihood itself, where the parabola is not good enough
+  kProfile,       ///< the likelihood itself, where the parabola is not accurate enough
   kInitialState,  ///< the other initial state, which the record does not exclude
   kOtherMinimum,  ///< another minimum of the sum of squares, which the noise does not exclude
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
@@ -145,7 +145,7 @@ struct IntervalPart {
   std::optional<double> upper = {};
 };
 
-/// Holds what the records say of a parameter without the priors of the fit.
+/// Holds the estimate of a parameter without the priors of the fit.
 struct WithoutPriors {
   double value = 0.0;
   std::optional<double> standard_error;  ///< empty when fixed, at a bound or undetermined
@@ -163,8 +163,8 @@ struct ParameterEstimate {
   Identifiability identifiability = Identifiability::kNotIdentifiable;
   /// The contributions of which the interval is the union; empty where there is none.
   std::vector<IntervalPart> interval = {};
-  std::optional<Prior> prior = {};                   ///< of this parameter, where it has one
-  std::optional<WithoutPriors> without_priors = {};  ///< where any parameter has one
+  std::optional<Prior> prior = {};                   ///< prior of this parameter; empty without one
+  std::optional<WithoutPriors> without_priors = {};  ///< empty if the fit has no prior
 
   /// Returns by how many of the standard errors without priors the priors moved the value; empty
   /// where there is none.
@@ -179,8 +179,8 @@ struct ParameterEstimate {
   }
 };
 
-/// Holds α from one kind of branch, the other parameters shared: a discrepancy of one law shows
-/// where it is. Linearised about the fit.
+/// Holds α from one kind of branch, with the other parameters shared, to locate a discrepancy of
+/// the law. Linearised about the fit.
 struct BranchShape {
   std::string branch;  ///< "virgin", "unloading" or "reloading"
   std::size_t samples = 0;
@@ -188,10 +188,10 @@ struct BranchShape {
   double standard_error = 0.0;
 };
 
-/// α = 1/3 against the fitted α, the other parameters fitted again.
+/// Compares α = 1/3 with the fitted α, the other parameters refitted.
 struct MindlinTest {
   double likelihood_ratio = 0.0;  ///< 2 ln Λ, for autocorrelated residuals
-  double p_value = 1.0;           ///< by F(1, degrees of freedom)
+  double p_value = 1.0;           ///< p-value by F(1, degrees of freedom)
   /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
   /// ΔAICc: then the record does not distinguish a contact of another shape from Mindlin's in a
   /// compliant rig. Computed where α = 1/3 is rejected, α is smaller and no rig is fitted.
@@ -200,7 +200,7 @@ struct MindlinTest {
 
 /// A starting point and what the solver reached from it.
 struct StartReport {
-  bool drawn = false;  ///< at random, not from the look at the plane
+  bool drawn = false;  ///< drawn at random, not from the scan of the plane
   models::BranchLaw start;
   double initial_rms = 0.0;  ///< [N or m]
   models::BranchLaw reached;
@@ -215,7 +215,7 @@ struct RecordAlone {
   ParameterEstimate slip_force;  ///< Tc [N]
 };
 
-/// One record as the fit sees it.
+/// Holds the fit of one record.
 struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
   loop::GlitchCount glitches;          ///< glitches left out, by kind
@@ -225,7 +225,7 @@ struct RecordFit {
   std::vector<double> overshoot;
   loop::LoopMeasures measures;      ///< with the force's sign that of the displacement
   loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
-  double displacement_noise = 0.0;  ///< [m] of the readings; 0 where they count as exact
+  double displacement_noise = 0.0;  ///< noise of the readings [m]; 0 if exact
   models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.
@@ -236,7 +236,7 @@ struct RecordFit {
   std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
-  double load_ratio = 1.0;            ///< to the mean load of all records of a load series; else 1
+  double load_ratio = 1.0;            ///< load over the mean load of a load series; else 1
   bool load_varies = false;           ///< within the record, if the law knows it
   /// Holds this record's own values, from Depth::kFull on; empty where it cannot be fitted alone.
   std::optional<RecordAlone> alone;
@@ -246,16 +246,16 @@ struct RecordFit {
   std::vector<double> law_energy;
   /// Averages residuals by place in the stroke, sign as the displacement; from kIntervals on.
   ResidualStructure structure;
-  /// [N], with the file's sign, offsets included; in a fit of the displacement as measured.
+  /// [N] Fitted (measured if the displacement is fitted), with the file's sign and offsets.
   std::vector<double> fitted_force;
   std::vector<double> residual;  ///< fitted − measured [unit of the response]
 };
 
-/// Pessimistic by default: a result that nobody filled in has not converged. What a depth does not
-/// give is empty.
+/// Holds the result of a fit. By default it has not converged; values that a depth does not compute
+/// are empty.
 struct FitResult {
   Depth depth = Depth::kFull;
-  double confidence = 0.95;  ///< of every interval
+  double confidence = 0.95;  ///< confidence of every interval
   bool converged = false;
   SolverReport solver;  ///< how the search ended, and where it began
   const models::FrictionModel* model = nullptr;
@@ -269,13 +269,13 @@ struct FitResult {
   /// Mean of the records' normal loads [N], to which σ and Tc of a load series belong; empty where
   /// not all are known.
   std::optional<double> normal_load;
-  double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, and nothing's, where the records have one load
-  double rms = 0.0;            ///< [N or m] of the residuals that count, unweighted
+  double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, without meaning, if the records have one load
+  double rms = 0.0;            ///< rms of the residuals that count [N or m], unweighted
   double force_noise = 0.0;    ///< [N], known or estimated, of all records; 0 in a fit of the
                                ///< displacement
   std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
-  std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
+  std::vector<BranchShape> branch_shapes;   ///< α of each kind of branch; empty if α is fixed
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
@@ -286,7 +286,7 @@ struct FitResult {
   std::optional<MemoryTest> memory;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
-  /// With FitOptions::regions, from Depth::kFull on: of σ and α and of Tc and α, each where both
+  /// Regions of σ and α and of Tc and α, with FitOptions::regions and from Depth::kFull on, if both
   /// parameters are inside their bounds and the model is not inadequate.
   std::optional<std::vector<ConfidenceRegion>> regions;
   std::vector<ParameterEstimate> parameters;

@@ -14,18 +14,18 @@
 
 namespace mindahl::identification {
 
-/// How the choice between models is made.
+/// Sets how the choice between models is made.
 struct SelectionOptions {
   /// Parts into which the cycles are divided for prediction; fewer where there are fewer cycles.
   std::size_t folds = 5;
 };
 
-/// A model fitted to all samples that count, and what speaks for it. Pessimistic by default.
+/// A model fitted to all samples that count, with its scores. By default it has none.
 struct ModelScore {
   const models::FrictionModel* model = nullptr;
   bool rig = false;  ///< with a fitted spring in series
   std::size_t free_parameters = 0;
-  double rms = 0.0;            ///< [N] of the samples that are scored
+  double rms = 0.0;            ///< rms of the scored samples [N]
   double aicc = 0.0;           ///< infinite where there is no fit
   double delta_aicc = 0.0;     ///< above the least of the converged fits
   double akaike_weight = 0.0;  ///< exp(−ΔAICc/2) over its sum; 0 where not converged
@@ -34,11 +34,11 @@ struct ModelScore {
   std::optional<double> held_out_rms;
   std::optional<double> held_out_standard_error;  ///< [N], from the scatter between cycles
   bool converged = false;
-  /// A free parameter ran to a bound: what the law tends to there is another one.
+  /// True if a free parameter is at a bound, where the law turns into another one.
   bool at_bound = false;
-  /// The same as a simpler candidate: its rig gives nothing way, or its α is 0.
+  /// True if a simpler candidate is the same: the rig is rigid, or α is 0.
   bool redundant = false;
-  std::string remark;  ///< anything else to know about this fit; may be empty
+  std::string remark;  ///< comment on this fit; may be empty
 };
 
 struct ModelSelection {
@@ -94,11 +94,11 @@ ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptio
 struct LawScore {
   std::string model;             ///< name in FrictionModels() or LimitLaws()
   bool exponent_is_one = false;  ///< Dahl's law with α held at 1
-  models::BranchLaw law;         ///< as fitted; a spring determines only σ, Coulomb's law only Tc
+  models::BranchLaw law;         ///< fitted law; a spring determines only σ, Coulomb's law only Tc
   std::size_t free_parameters = 0;
   bool converged = false;
-  double rms = 0.0;               ///< [N] of the residuals; 0 where there is no fit
-  double misfit = 0.0;            ///< [N] √(rms² − rms of the best²): what it lacks
+  double rms = 0.0;               ///< rms of the residuals [N]; 0 without a fit
+  double misfit = 0.0;            ///< √(rms² − rms of the best²) [N]: its additional misfit
   double delta_aicc = 0.0;        ///< above the best; infinite where there is no fit
   double likelihood_ratio = 0.0;  ///< 2 ln Λ of the best against it, at least 0
   /// P(χ²(k) > 2 ln Λ), k the parameters that the best has more; empty where it has none

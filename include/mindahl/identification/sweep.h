@@ -21,7 +21,7 @@ struct SweepOptions {
   SweepStiffness stiffness = SweepStiffness::kSecant;
   bool over_force = false;     ///< amplitudes are forces [N], and not displacements [m]
   bool is_compliance = false;  ///< responses are 1/K [m/N]
-  /// Parameters that are held, "sigma" [N/m], "alpha" and "slip_force" [N].
+  /// Fixed parameters, "sigma" [N/m], "alpha" and "slip_force" [N].
   std::map<std::string, double> fixed = {};
   std::optional<double> response_noise = std::nullopt;  ///< standard deviation; else estimated
   double confidence = 0.95;
@@ -29,10 +29,10 @@ struct SweepOptions {
 
 struct SweepFit {
   bool converged = false;
-  std::string message;                        ///< of the solver
+  std::string message;                        ///< message of the solver
   std::vector<ParameterEstimate> parameters;  ///< sigma, alpha, slip_force
   std::vector<double> fitted;                 ///< one a point
-  double rms = 0.0;                           ///< of the residuals, in the unit of the response
+  double rms = 0.0;                           ///< rms of the residuals, in the unit of the response
   double r_squared = 0.0;
   /// Chance that independent residuals have as much correlation from one point to the next, in
   /// order of the amplitude, or more.

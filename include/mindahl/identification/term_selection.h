@@ -12,7 +12,7 @@
 
 namespace mindahl::identification {
 
-/// How terms are added to the law.
+/// Sets how terms are added to the law.
 struct TermSelectionOptions {
   /// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes
   /// of both directions.
@@ -23,23 +23,23 @@ struct TermSelectionOptions {
   /// Least fraction by which the error of prediction falls with a term that is added, unless the
   /// model is adequate with it.
   double smallest_gain = 0.03;
-  std::size_t most_terms = 7;  ///< that are added
+  std::size_t most_terms = 7;  ///< largest number of added terms
   std::size_t most_fits = 40;  ///< in all, nearly all of them at Depth::kEstimate
-  /// Adds none to a law that is of quantitative use by itself, nor where the law is of no use with
-  /// them either.
+  /// If true, adds no term to a law that is of quantitative use alone, nor if the law is of no use
+  /// with terms.
   bool only_for_use = false;
   /// Names of groups that the options have: they are added one after the other, each from the
   /// solution without it, and are not judged. Nothing is selected then.
   std::vector<std::string> named = {};
 };
 
-/// A term, or a few that are one, that a record may require.
+/// A term, or a few that belong together, that a record may require.
 struct TermGroup {
   std::string_view name;
   std::vector<std::string_view> terms;  ///< names in FitOptions::terms
 };
 
-/// Returns what can be added, besides covariates; `--terms` takes these names.
+/// Returns the terms that can be added, apart from covariates; `--terms` takes these names.
 std::span<const TermGroup> TermGroups();
 
 /// Returns nullptr where there is none of that name.
@@ -47,14 +47,14 @@ const TermGroup* FindTermGroup(std::string_view name);
 
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
-  std::string name;  ///< of the group, or NameOfCovariate()
+  std::string name;  ///< name of the group, or NameOfCovariate()
   /// Fraction by which the rms error of predicted cycles would fall to first order, of fitted
   /// samples where `is_predicted` is false; of a term that is added that of the fit falls [–].
   double gain = 0.0;
-  double p_value = 1.0;  ///< that the gain to first order is chance
+  double p_value = 1.0;  ///< probability that the gain to first order is chance
   bool is_predicted = false;
   bool added = false;
-  /// Why it was not added though it gains: "" or "confounded", "rate_dependent", "unphysical".
+  /// Reason why it was not added though it gains: "", "confounded", "rate_dependent", "unphysical".
   std::string_view obstacle;
 };
 

@@ -8,24 +8,24 @@
 
 namespace mindahl::identification {
 
-/// Whose a parameter is: the contact's, shared by all records, or a record's own, numbered from 1
-/// where there are several (force_offset_2).
+/// Names the owner of a parameter: the contact (shared by all records), or each record, numbered
+/// from 1 if there are several (force_offset_2).
 enum class Scope { kContact, kRecord };
 
-/// How a parameter enters the response, the channel that is fitted.
+/// Names how a parameter enters the response, the fitted channel.
 enum class Entry {
   kLaw,     ///< through the law or the path: the response is not linear in it
   kLinear,  ///< a factor of a column that the record gives
 };
 
-/// When a parameter is fitted.
+/// Names the condition under which a parameter is fitted.
 enum class Presence {
   kAlways,      ///< unless it is fixed
   kOffsets,     ///< with FitOptions::offsets; held at 0 otherwise, and reported
-  kReported,    ///< where requested; held at 0 otherwise, and reported
-  kOnDemand,    ///< where requested or fixed; otherwise absent
-  kLoadSeries,  ///< where the records are under loads that differ; otherwise absent
-  kNever,       ///< it is of fits of the other channel
+  kReported,    ///< if requested; otherwise 0, and reported
+  kOnDemand,    ///< if requested or fixed; otherwise absent
+  kLoadSeries,  ///< if the records have different loads; otherwise absent
+  kNever,       ///< never: it belongs to fits of the other channel
 };
 
 /// The units in which a fit works, for the records' numbers to be of order one.
@@ -36,9 +36,9 @@ struct TermUnits {
   double cycle = 1.0;                   ///< [s], or samples: of the record's cycles, on average
   double covariate = 1.0;               ///< half the range of a covariate's column, in its unit
   double force_sense = 1.0;             ///< ±1: the force's sign in the file
-  double force_reference = 0.0;         ///< [N], what was taken off the record's force
+  double force_reference = 0.0;         ///< [N], subtracted from the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
-  double speed = 1.0;                   ///< [m/s] of a scaled velocity of one
+  double speed = 1.0;                   ///< velocity [m/s] that is scaled to one
   double speed_resolution = 0.0;        ///< resolution of the velocity, scaled; 0 where it is exact
   double reference_speed = 1.0;         ///< scaled: its mean in the middle third of the strokes
 };
@@ -50,7 +50,7 @@ enum class Regressor {
   kDisplacement,  ///< δ
   kDisplacementSquared,
   kTime,          ///< −1 … 1 over the record
-  kVelocity,      ///< of the displacement, in the first record's time; or its power
+  kVelocity,      ///< velocity of the displacement, in the first record's time; or a power of it
   kAcceleration,  ///< likewise
   // cos and sin of 2πδ/λ in strokes of growing displacement, then of falling displacement:
   kRippleCosineUp,
@@ -60,8 +60,8 @@ enum class Regressor {
   kCovariate,  ///< the column of the record that the parameter is called after
 };
 
-/// A parameter of a fit: all that layout, solver, command line, help and documents need to know of
-/// it. A new one is a row of the table in terms.cc.
+/// Describes a parameter of a fit for layout, solver, command line, help and documents. A new one
+/// is a row of the table in terms.cc.
 ///   value = scale·exp(θ) where positive,  else  value = reference + scale·θ
 struct Term {
   std::string_view name;

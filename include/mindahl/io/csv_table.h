@@ -25,7 +25,7 @@ inline constexpr std::string_view kStandardInput = "-";
 /// shows, not when it has been read.
 struct ReadLimits {
   std::uintmax_t rows = std::numeric_limits<std::uintmax_t>::max();
-  /// [bytes] of the table and of a fit of it: kMemoryOfRow a row and kMemoryOfText a byte.
+  /// Memory [bytes] for the table and its fit: kMemoryOfRow a row and kMemoryOfText a byte.
   std::uintmax_t memory = std::numeric_limits<std::uintmax_t>::max();
 
   /// Memory [bytes] of a fit per row, and of reading it per byte of text, measured for records of

@@ -11,7 +11,7 @@
 
 namespace mindahl::io {
 
-/// Which column of a file holds a quantity, and in what unit.
+/// Selects the column of a file that holds a quantity, and its unit.
 struct ColumnChoice {
   std::string column;  ///< header name or 1-based number; "" = by recognised name
   std::string unit;    ///< symbol of core/units.h; "" = the header's, else SI
@@ -27,7 +27,7 @@ struct RecordColumns {
   ColumnChoice time;
   ColumnChoice normal_load;
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
-  std::string encoding = {};                 ///< of the file, as ReadCsvTable() takes it
+  std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
 };
 
 /// A column as it was read.
@@ -66,7 +66,7 @@ struct RecordFile {
   std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
 };
 
-/// Columns that nobody asked for, of which a record keeps so many.
+/// Largest number of columns that a record keeps without being asked for.
 inline constexpr std::size_t kMostOtherColumns = 8;
 
 /// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file (see

@@ -10,8 +10,8 @@
 
 namespace mindahl::loop {
 
-/// One closed cycle, from a turning point to the next but one. X and T* as half of a range, so that
-/// no offset matters; what a cycle does not show is empty.
+/// Holds the facts of one closed cycle, from a turning point to the next but one. X and T* are half
+/// ranges, so that no offset matters; a fact that the cycle does not show is empty.
 struct CycleFacts {
   std::size_t start = 0;      ///< sample of its first turning point
   double amplitude = 0.0;     ///< X [m]: a quarter of the travel of its two strokes
@@ -37,7 +37,7 @@ struct Trend {
   double p_value = 1.0;         ///< under no trend, two-sided, by Student's t
 };
 
-/// A gap that the motion takes up after each reversal, where the force stands still.
+/// A gap that the motion takes up after each reversal while the force stays constant.
 struct Backlash {
   double width = 0.0;  ///< [m]: travel over it, mean over the directions
   double force = 0.0;  ///< [N]: at which it is taken up, mean over the directions
@@ -61,8 +61,8 @@ struct LoopFacts {
   std::optional<double> sliding_fraction;
   std::optional<double> half_gap;                     ///< [N]
   std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
-  /// [N/m]: of the least-squares line over the first tenth of each stroke, the median over strokes.
-  /// A lower limit of the stiffness: the loop may have bent within it.
+  /// Slope [N/m] of the least-squares line over the first tenth of each stroke, median over
+  /// strokes. A lower limit of the stiffness: the loop may have bent within it.
   std::optional<double> slope_after_reversal;
   std::optional<double> plateau_slope;  ///< [N/m]: likewise over the last third
   /// [-]: how far the falling stroke is from the rising one turned about the loop's centre, over
@@ -79,7 +79,7 @@ struct LoopFacts {
   /// 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 %
   /// of the amplitude or more. No contact's branch does so: it only softens.
   std::optional<Backlash> backlash;
-  std::optional<Trend> half_gap_trend;  ///< [N a cycle]: of three or more steady cycles
+  std::optional<Trend> half_gap_trend;  ///< [N a cycle], over three or more steady cycles
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 

@@ -25,7 +25,7 @@ struct Drive {
 /// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
 models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
-/// How finely a method resolves.
+/// Sets how finely a method resolves.
 struct Resolution {
   /// Substeps a sample, elements or nodes: what the method says. >= 1
   std::size_t steps = 1;
@@ -118,7 +118,7 @@ inline constexpr std::size_t kOperations = static_cast<std::size_t>(Operation::k
 /// Returns "sample", "place", "reversal", …
 std::string_view NameOf(Operation operation);
 
-/// How many of each a whole drive takes.
+/// Counts the operations of each kind along a whole drive.
 class OperationCount {
  public:
   [[nodiscard]] double operator[](Operation operation) const {

@@ -19,9 +19,8 @@ struct ContactStateOptions {
   SeriesSpring rig = {};               ///< in series; δ is then that of spring and contact
 };
 
-/// A contact that is moved step by step and remembers what a law of friction has it remember: for
-/// loops in which the next displacement follows from this force, as in discrete elements and
-/// control.
+/// A contact that is moved step by step and keeps the memory of its friction law: for programs in
+/// which the next displacement follows from this force, as in discrete elements and control.
 ///
 ///   T = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the present branch
 ///

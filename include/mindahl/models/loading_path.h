@@ -11,7 +11,7 @@ namespace mindahl::models {
 
 /// Names the assumed history of the contact before the first sample.
 enum class InitialState {
-  kVirgin,  ///< nothing: the contact was unloaded at a known displacement
+  kVirgin,  ///< none: the contact was unloaded at a known displacement
   kSteady,  ///< it had settled on the loop between the record's extremes
 };
 
@@ -47,7 +47,7 @@ struct BranchRun {
   std::int32_t branch = 0;
 };
 
-/// Which branch each sample of a record lies on, and which branch each branch starts from.
+/// Holds on which branch each sample of a record lies, and from which branch each branch starts.
 ///
 /// It follows from the displacements alone, never from σ, α or Tc (docs/theory.md §5): it is found
 /// once a record, and evaluating a model is then one branch law a sample. A parent always precedes
@@ -73,7 +73,7 @@ struct LoadingPath {
   return first.origin + first.direction * first.amplitude;
 }
 
-/// The contact's past, where it is not in the record.
+/// Holds the state of the contact before the record.
 struct InitialContact {
   InitialState state = InitialState::kVirgin;
   double unloaded_displacement = 0.0;  ///< [m], used when virgin: where T = 0

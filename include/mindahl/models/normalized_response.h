@@ -26,16 +26,16 @@ struct NormalizedGradient {
   std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
 };
 
-/// How forces over Tc follow the places where branches start, for those who move them.
+/// Derivatives of forces over Tc by the points where branches start, for fits of these points.
 struct OriginSensitivity {
   std::vector<double> origin_force;  ///< t at each branch's origin
   // Per branch, at its origin and on the branch that it starts from; 0 where there is none:
   std::vector<double> slope;          ///< ∂t/∂δ [1/m]
-  std::vector<double> gain;           ///< by t at that branch's own origin
+  std::vector<double> gain;           ///< derivative by t at that branch's own origin
   std::vector<double> per_amplitude;  ///< ∂t/∂X [1/m] of a branch that starts at a steady extreme
   // Per sample:
   std::vector<double> sample_slope;  ///< ∂t/∂δ [1/m]
-  std::vector<double> sample_gain;   ///< by t at the origin of its branch
+  std::vector<double> sample_gain;   ///< derivative by t at the origin of its branch
 };
 
 /// EvaluateForce and its gradient over Tc (response.h has the equations and the accuracy), for

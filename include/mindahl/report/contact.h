@@ -58,16 +58,16 @@ struct AlphaTest {
 
 /// Tests whether the fitted stiffness is 8a/G*.
 struct StiffnessTest {
-  std::string_view radius;         ///< whence a: "hertz", or "given"
+  std::string_view radius;         ///< source of a: "hertz" or "given"
   contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold
   std::optional<identification::Interval> interval95 =
       {};                              ///< empty, as the rest, where the ratio's error is 0 or open
-  double confidence = 0.95;            ///< of the interval
+  double confidence = 0.95;            ///< confidence of the interval
   std::optional<double> z = {};        ///< (ratio − 1)/SE
   std::optional<double> p_value = {};  ///< two-sided
 };
 
-/// Significance of the tests as they are put into words: the usual convention.
+/// Significance at which tests are called rejected in words: the usual convention.
 inline constexpr double kSignificance = 0.05;
 
 /// @param fit  one that did not fail
@@ -80,8 +80,8 @@ AlphaTest TestAlpha(const identification::FitResult& fit);
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
                             double degrees_of_freedom, double confidence = 0.95);
 
-/// Returns one for each radius that is known besides the fit, where G* is known too; with the ratio
-/// alone where σ is not identifiable.
+/// Returns a test for each radius that is known apart from the fit, if G* is known too; with the
+/// ratio alone if σ is not identifiable.
 std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
                                          const contact::IdentifiedContact& contact);
 
@@ -102,8 +102,8 @@ struct SlipForces {
 /// Returns the slip forces of a contact whose two differ, from its `slip_force` Tc and `asymmetry`
 /// a; empty where the fit has none, or leaves either of the two open.
 ///   var ln Tc± = var ln Tc + var a/(1 ± a)² ± 2·cov(ln Tc, a)/(1 ± a)
-/// Ends of the intervals are put together alike from the ways of Tc's and a's to the estimate, so
-/// that what widens theirs widens these.
+/// Ends of the intervals combine the distances of Tc's and a's ends from the estimate in the same
+/// way, so that an inflation of theirs inflates these.
 std::optional<SlipForces> DescribeSlipForces(const identification::FitResult& fit);
 
 }  // namespace mindahl::report

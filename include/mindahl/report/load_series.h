@@ -10,7 +10,7 @@
 
 namespace mindahl::report {
 
-/// A theory of how the stiffness follows the load, against the fitted exponent p.
+/// Compares a theory of how the stiffness follows the load with the fitted exponent p.
 struct LoadHypothesis {
   std::string_view name;                  ///< "sphere", "elements", "cone", "flat_punch" or "rough"
   double exponent = 0.0;                  ///< predicted p; for elements in parallel the fitted α
@@ -44,7 +44,7 @@ struct QuantityUnderLaw {
   std::optional<double> predicted;
 };
 
-/// A theory that the series does not reject, held over all its loads.
+/// A theory that the series does not reject, assumed at all its loads.
 struct LoadLaw {
   std::string_view name;                                ///< name of its hypothesis
   double exponent = 0.0;                                ///< p that is held

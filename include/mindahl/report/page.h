@@ -9,7 +9,7 @@
 
 namespace mindahl::report {
 
-/// Bytes that a result was made from.
+/// Identifies a file from which a result was made.
 struct InputFile {
   std::string name;                   ///< name given by the user
   std::optional<std::string> sha256;  ///< io::Sha256OfFile(); empty where it is no regular file

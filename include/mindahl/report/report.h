@@ -20,7 +20,7 @@
 
 namespace mindahl::report {
 
-/// Something that a person should act on.
+/// A warning that a person should act on.
 struct Warning {
   std::string code;  ///< stable, for scripts; docs/contract.md lists them
   std::string message;
@@ -31,7 +31,7 @@ struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
   std::vector<io::RecordFile> records;  ///< records that were fitted, as read
   identification::FitResult fit;
-  identification::FitOptions options = {};  ///< of the fit, with what was chosen by it
+  identification::FitOptions options = {};  ///< options of the fit, with what it chose
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};
@@ -42,8 +42,8 @@ struct ReportInput {
   std::optional<identification::BackboneEstimate> backbone = {};  ///< if it was requested
 };
 
-/// Everything that is said of a fit: what was given, and what follows from it. ToJson(), ToText(),
-/// ToPlot() and ResidualsCsv() write it.
+/// Holds the answer of a fit: its inputs, and everything that follows from them. ToJson(),
+/// ToText(), ToPlot() and ResidualsCsv() write it.
 struct Report : ReportInput {
   std::optional<LoopDescription> loop;  ///< empty where the fit failed
   contact::IdentifiedContact contact;   ///< empty where the fit failed

@@ -24,7 +24,7 @@ struct BatchEntry {
   bool done = false;                       ///< fitted, and Established()
   std::shared_ptr<const FitDocument> fit;  ///< empty where there is none
   std::vector<std::string> notes;          ///< assumptions of the run, one sentence each
-  std::string sha256;                      ///< of the file; "" for what is none
+  std::string sha256;                      ///< SHA-256 of the file; "" if it is none
   campaign::FileResult result;             ///< its name, its fault, what the index shows of it
 };
 

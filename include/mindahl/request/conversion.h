@@ -17,7 +17,7 @@ inline constexpr std::array<std::string_view, 2> kLawsToConvert = {"masing", "da
 /// Holds the law to convert and its target: docs/contract.md, `mindahl convert`.
 struct ConversionRequest {
   models::BranchLaw law;
-  std::string from = "masing";  ///< of kLawsToConvert
+  std::string from = "masing";  ///< one of kLawsToConvert
   std::string to;               ///< name of one of convert::Targets()
   convert::ConversionOptions options;
   std::optional<double> least_amplitude;    ///< [m]; with the other, the options' range

@@ -113,7 +113,7 @@ identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 /// Returns the columns that are covariates, as the reader takes them.
 std::vector<std::string> CovariateColumns(const FitRequest& request);
 
-/// Receives the assumptions, one sentence each.
+/// Receives notes on what was assumed, one sentence each.
 using Tell = std::function<void(std::string_view)>;
 
 /// Requirements of `--strict` on a fit.
@@ -123,12 +123,11 @@ enum class Strictness {
   kAdequate,  ///< also that the model is adequate and every free parameter identifiable
 };
 
-/// Returns true if a fit is done, for the exit status.
+/// True if a fit is established, for the exit status.
 bool Established(const identification::FitResult& fit, Strictness strictness);
 
-/// Has the fit leave out what is no part of the test of each record, and take the contact for one
-/// that was not unloaded before where that leaves out every first loading and nothing else is
-/// stated of it.
+/// Makes the fit leave out the trimmed samples of each record, and assume a cycled contact if that
+/// leaves out every first loading and no initial state is given.
 /// @param trims  one a record, or none
 void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptions& options);
 

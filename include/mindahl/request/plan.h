@@ -39,8 +39,8 @@ struct PlanRequest {
 struct PlannedLoops {
   std::string_view initial_state;
   std::vector<identification::ExpectedFit> loops;
-  std::optional<identification::ExpectedFit> reached;  ///< what is wanted, at the least amplitude
-  identification::Protocol fewest;                     ///< that needs the fewest cycles for it
+  std::optional<identification::ExpectedFit> reached;  ///< at the least amplitude that suffices
+  identification::Protocol fewest;                     ///< sufficient, with the fewest cycles
 };
 
 struct Plan {

@@ -47,7 +47,7 @@ MotionRecommendation MakeRecommendation(const RecommendationRequest& request, co
 struct RecordRecommendation {
   std::string record;  ///< name of the record
   identification::SimplerLaws laws;
-  std::vector<double> cost;        ///< [ns/sample], of each
+  std::vector<double> cost;        ///< cost of each [ns/sample]
   std::size_t choice = 0;          ///< the cheapest that is not distinguished
   double indistinguishable = 0.0;  ///< ΔAICc
 

@@ -14,7 +14,7 @@
 
 namespace mindahl::request {
 
-/// Holds what is said of a test of many cycles, but for its rows.
+/// Holds the answer for a test of many cycles, apart from its rows.
 struct TrackedTest {
   /// @param cycles_per_row  that a fit stands for, >= 1
   explicit TrackedTest(std::size_t cycles_per_row = 1) : energy(cycles_per_row) {}
@@ -27,10 +27,10 @@ struct TrackedTest {
   std::vector<std::string> files;
   std::string output;  ///< path of the table of cycles; "" where none was written
   bool is_torsional = false;
-  std::size_t samples = 0;  ///< that were read
+  std::size_t samples = 0;  ///< number of samples read
   std::size_t cycles = 0;
   std::size_t unused_samples = 0;  ///< at the ends, part of no whole cycle
-  std::size_t broken_rows = 0;     ///< that were skipped
+  std::size_t broken_rows = 0;     ///< number of rows skipped
   double reversal_gate = 0.0;      ///< [m]
   bool is_gate_certain = true;
   std::size_t fits = 0;
@@ -55,7 +55,7 @@ std::string ToText(const TrackedTest& test,
 campaign::TestSummary SummaryOf(const TrackedTest& test,
                                 const std::vector<campaign::CourseDescription>& described);
 
-/// Collects what is said of several separate tests in one table.
+/// Collects the answers for several separate tests in one table.
 class SeparateTests {
  public:
   /// @param has_document  ToJson() is asked for: the description of each test is kept

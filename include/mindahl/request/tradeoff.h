@@ -13,8 +13,8 @@ namespace mindahl::request {
 
 /// Holds the law and the excitations to study: docs/contract.md, `mindahl tradeoff`.
 struct TradeoffRequest {
-  LawRequest law;                        ///< by default the contact of Peyret et al. (2017) §3
-  std::vector<std::string> excitations;  ///< of ExcitationNames(); empty: all
+  LawRequest law;                        ///< default: the contact of Peyret et al. (2017) §3
+  std::vector<std::string> excitations;  ///< names of ExcitationNames(); empty: all
   std::vector<double> displacement;      ///< [m] a path of the user's instead of these
   std::string path_name;                 ///< title of that path
 };
@@ -29,7 +29,7 @@ struct MeasuredExcitation {
   std::size_t samples = 0;
   tradeoff::CostFloor floor;
   std::vector<tradeoff::WorkPrecision> points;
-  std::vector<bool> front;  ///< by the largest force error
+  std::vector<bool> front;  ///< true on the Pareto front of the largest force error
 };
 
 struct Tradeoff {
@@ -41,7 +41,7 @@ struct Tradeoff {
 
 /// Runs and times every method along the excitations, and finds the amplitudes at which each model
 /// is good enough.
-/// @param progress  is told what is done now
+/// @param progress  called with the step that begins now
 /// @throws InputError or InvalidArgument naming the option
 Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Tell& progress = {});
 

@@ -50,7 +50,7 @@ std::vector<Approximation> ModelLadder(const models::BranchLaw& law);
 /// Returns the exact model by every method, from coarse to fine.
 std::vector<Approximation> MethodLadder(const models::BranchLaw& law);
 
-/// Returns ModelLadder, then what of MethodLadder is not in it: each way once.
+/// Returns ModelLadder, then the members of MethodLadder that are not in it.
 std::vector<Approximation> AllApproximations(const models::BranchLaw& law);
 
 /// Counts an approximation's operations along a drive; of a limit law, the samples.

@@ -58,8 +58,8 @@ struct Recommendation {
   std::optional<std::size_t> choice;  ///< empty when none meets what is asked
   /// The exact closed form, with which costs are compared.
   std::size_t exact = 0;
-  /// A model simpler than the choice (or than the exact one, when there is none), which would do
-  /// once its transient is over. Looked for under a tolerance only.
+  /// A model simpler than the choice (or than the exact one, when there is none) that meets the
+  /// tolerance once its transient is over. Searched for under a tolerance only.
   std::optional<std::size_t> after_transient;
   CostFloor floor;
   double peak_force = 0.0;  ///< largest |T| of the exact response [N]

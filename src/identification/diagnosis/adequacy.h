@@ -39,8 +39,8 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 /// Holds what a fit's adequacy is judged by.
 struct AdequacyEvidence {
   const AdequacyTest& test;
-  std::span<const DepartureFit> causes;             ///< of CausesOf()
-  std::span<const IrregularityFit> irregularities;  ///< of FindIrregularities()
+  std::span<const DepartureFit> causes;             ///< result of CausesOf()
+  std::span<const IrregularityFit> irregularities;  ///< result of FindIrregularities()
   bool ends_at_limit = false;                       ///< the search ended at a limit of its own
 };
 

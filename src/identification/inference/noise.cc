@@ -108,8 +108,8 @@ Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) 
   return best;
 }
 
-/// What columns take off the sums of products of residuals at each lag, of noise with a process and
-/// a variance.
+/// Computes by how much fitted columns reduce the sums of products of residuals at each lag, for
+/// noise of a process and a variance.
 Autocovariances TakenUp(const Autocorrelation& process, double variance,
                         std::span<const Series> residuals, const Eigen::MatrixXd& columns,
                         std::size_t highest) {

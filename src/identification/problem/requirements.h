@@ -6,8 +6,8 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/preparation.h"
 
-/// What options and records must satisfy to be fitted. Each throws InvalidArgument, or
-/// TooFewSamples, naming the parameter, its value and the rule.
+/// Checks of options and records before a fit. Each throws InvalidArgument, or TooFewSamples,
+/// naming the parameter, its value and the rule.
 namespace mindahl::identification {
 
 /// Refuses options that break a rule whatever the records are.
