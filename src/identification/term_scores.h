@@ -84,8 +84,8 @@ MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, 
 struct TermScore {
   double rms = 0.0;                 // of the samples that count [N]
   std::vector<double> predictions;  // mean squares [N²] of the parts, each predicted by the others
-  /// Returns the probability that the terms' effects on the parts have a mean by chance; empty if
-  /// the parts are too few.
+  /// Probability that chance alone makes the mean of the terms' effects on the parts; empty if the
+  /// parts are too few.
   std::optional<double> p_value;
   std::map<std::string, double> values;  // of the terms' parameters, for a search to begin with
   std::map<std::string, double> law;     // by how much θ of σ, α and Tc moves
