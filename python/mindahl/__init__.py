@@ -6,9 +6,9 @@
     print(result)
 
 fit() fits a record or several, sweep() stiffnesses over an amplitude, track() every cycle of a long one, batch() many files each on its own;
-plan() says what should be measured, contact() predicts the force from materials, validate() tests the
+plan() predicts the errors of a measurement, contact() the force from materials, validate() tests the
 mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
-recommend() and tradeoff() say by which model and method, convert() writes it as another law;
+recommend() and tradeoff() compare models and methods, convert() writes it as another law;
 read_csv() reads a record as the program does, read_mat(), read_hdf5() and read_excel() those of
 other programs; FitResult.load() reads a result that was written as JSON. docs/python.md has them with examples.
 """

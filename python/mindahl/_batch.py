@@ -21,7 +21,7 @@ from ._result import FitWarning, Report
 
 
 class BatchTable(Mapping[str, Any]):
-    """What batch() found: one row a source, an array a column; NaN and None for what is not known.
+    """The answer of batch(): one row a source, an array a column; unknown values are NaN or None.
 
     report: sections of `mindahl batch --json`, `files` with the fit of each, and `repeats`.
     """
@@ -104,11 +104,11 @@ def batch(
     sources: files, data frames, Records or pairs (displacement [m], force [N]), each a test of its
         own. A source that fails does not stop the others.
     strict: True, or "doubtful", as --strict: a source whose fit is not established fails too.
-    threads: that fit; by default one a core. The results do not depend on it.
+    threads: number of worker threads (default: one per core); the results are identical.
     executor: instead of threads, an object with submit(function, *arguments) whose futures have
         result(), or with map(function, arguments): concurrent.futures, dask.distributed's Client.
         What its workers are given and give back can be pickled.
-    keywords: of fit(), but for what is one a record: force, time as arrays.
+    keywords: of fit(), except arrays that belong to one record, as force and time.
     Returns a BatchTable, the columns of `mindahl batch --output`.
     Warns with FitWarning of what was assumed of columns and units and of every source that failed.
     Raises InputError (a ValueError) or ValueError for keywords that break a rule whatever the sources

@@ -59,16 +59,16 @@ def convert(
     beta: float = 0.5, normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
     viscous: float = 0.0,
 ) -> Conversion:
-    """A contact's steady loop by another law or another program.
+    """Converts a contact's steady loop to another law or program.
 
-    sigma [N/m], alpha [-], slip_force Tc [N]: of the law from_, "masing" or "dahl".
-    amplitude: X [m] of the steady loop, the contact's.
+    sigma [N/m], alpha [-], slip_force Tc [N]: parameters of the law from_, "masing" or "dahl".
+    amplitude: X [m] of the contact's steady loop.
     to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts", "yade",
         "mujoco", "mujoco-joint", "urdf" or "sdf".
-    least_amplitude, largest_amplitude [m]: what cannot be exact is fitted between; default X.
-    tolerance: of force and energy [-]. elements: of "iwan". beta: of "bouc-wen".
-    normal_load [N]: of "lammps", "liggghts", "yade". contact_radius [m]: of "lammps".
-    viscous [N s/m]: of "lugre" and the four of robots.
+    least_amplitude, largest_amplitude [m]: range over which an inexact law is fitted; default X.
+    tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
+    normal_load [N]: for "lammps", "liggghts", "yade". contact_radius [m]: for "lammps".
+    viscous [N s/m]: for "lugre" and the four laws of robots.
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
         None for codes of discrete elements without a normal load.
     Raises ValueError naming the quantity, its value and the rule.
@@ -111,7 +111,7 @@ def simulate(
     model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None, asymmetry: float = 0.0,
     load: Any = None, reference_load: float = 1.0,
 ) -> Floats:
-    """Tangential force [N] of a contact along a displacement, exact for any history.
+    """Computes the tangential force [N] of a contact along a displacement, exactly for any history.
 
     displacement: array [m]; the contact is unloaded at 0, and a first sample that is not 0 is the
         first loading step. Used where it is when it is contiguous float64.

@@ -40,17 +40,17 @@ def plan(
     with_: Union[None, str, Sequence[str]] = None,
     want: Optional[Mapping[str, Union[float, str]]] = None, **contact: Optional[Uncertain],
 ) -> Report:
-    """What should be measured: the standard errors that a loop of each amplitude would give.
+    """Plans a measurement: the standard errors that a loop of each amplitude would give.
 
     The contact, one of
         sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of contact();
         record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives contact
             and noise; alpha is used where it does not determine one.
-    rig_stiffness: in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations;
+    rig_stiffness: of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations;
         autocorrelation of the force noise [-], in [0, 1). load_exponent: p of sigma ~ N^p [-].
-    amplitude: X [m], one or several; by default 13 about slip. load_ratio: loads over the contact's
-        own [-], a loop at each. cycles >= 1, samples_per_cycle >= 4.
-    initial_state: "virgin", "steady" or "both". with_: terms that are fitted too, "rig_stiffness",
+    amplitude: X [m], one or several; by default 13 around the onset of slip. load_ratio: loads
+        relative to the contact's own [-], one loop at each. cycles >= 1, samples_per_cycle >= 4.
+    initial_state: "virgin", "steady" or "both". with_: further terms to fit, "rig_stiffness",
         "plateau_slope", "viscous", "force_drift".
     want: parameter to wanted standard error, in its unit or in percent: {"slip_force": "1%"}.
     Returns the sections of `mindahl plan --json`; .to_pandas() has a row a loop; .established is
@@ -97,26 +97,26 @@ def recommend(
     cost: Optional[float] = None, criterion: str = "max", transient_cycles: int = 0,
     **contact: Optional[Uncertain],
 ) -> Report:
-    """The cheapest model and method that meet a tolerance along a motion, with the evidence.
+    """Finds the cheapest model and method that meet a tolerance along a motion.
 
     The contact: sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of
         contact().
     The motion: displacement, an array [m] or a file whose first column it is, in path_unit; or a
         waveform with lambda_ (amplitude over the gross-slip displacement [-]) or amplitude [m] and
         cycles, samples_per_cycle, frequency [Hz], growth, seed as of excitation().
-    tolerance: largest error by the criterion, 0.01 or "1%". cost: the other way round, the most
-        precise that costs no more [ns/sample]. criterion: "max" or "rms" of the force, "energy".
-    transient_cycles: at the start, that do not count.
-    record: instead of all of these a file, data frame, Record or (displacement [m], force [N]): the
-        cheapest law that it does not distinguish from the best.
+    tolerance: largest error by the criterion, 0.01 or "1%". cost: finds instead the most precise
+        that costs no more [ns/sample]. criterion: "max" or "rms" of the force, "energy".
+    transient_cycles: number of cycles at the start that do not count.
+    record: instead of all these, a file, data frame, Record or (displacement [m], force [N]); finds
+        the cheapest law that it does not distinguish from the best.
     Returns the sections of `mindahl recommend --json`; .to_pandas() has a row a candidate, or a law;
-        .established is False where nothing meets what is asked, or no law describes the record.
+        .established is False if nothing meets the request, or no law describes the record.
     Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
     """
     if record is not None:
         if displacement is not None or any(
                 value is not None for value in (sigma, alpha, slip_force, lambda_, amplitude, cost)):
-            raise ValueError("record excludes the contact and the motion: they are those of the record")
+            raise ValueError("record excludes contact and motion, which the record determines")
         read, assumed = _one_record(record)
         return report_of(_mindahl.recommend_for_record(read), "recommendation", ("laws",), assumed)
     drive = _mindahl.DriveRequest()

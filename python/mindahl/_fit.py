@@ -119,7 +119,7 @@ def fit(
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
     displacement_gain, displacement_zero and those of force, time and normal_load: the quantity in
         its unit is gain*(number - zero), as of a column in volts. encoding: of files, as iconv
-        calls it. join: a list is one record in pieces, as of a logger that begins a file with
+        names it. join: a list is one record in pieces, as of a logger that begins a file with
         every stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
     columns: further arrays by name beside displacement and force, for covariate.
@@ -127,13 +127,13 @@ def fit(
     The model
         model: "mindlin-dahl", "mindlin" (alpha = 1/3), "dahl", "jenkins" (alpha = 0), "auto".
         initial_state: "auto", "virgin", "steady". force_sign: "auto", "same", "opposite".
-        noise_in: "force", or "displacement" where the force is imposed and taken as exact: the
-            displacement is fitted, and residuals are in [m].
+        noise_in: the channel that has the noise and is fitted, "force", or "displacement" where the
+            force is imposed and exact; residuals are then in [m].
         offsets: of force [N] and displacement [m], fitted unless False.
         rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
-            slip_force·(1 ± asymmetry): a known value, or "fit"; of the rig also (K, U), U its standard
-            uncertainty, for a rig that is fitted about K.
-        speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
+            slip_force·(1 ± asymmetry): a known value, or "fit"; for the rig also (K, U) to fit it about
+            K with standard uncertainty U.
+        speed_exponent [-]: m of a force C·sgn(v)|v|^m instead of the viscous one; inertia [kg];
             ripple: period [m] of a force over the position; backlash: width [m] of a gap before
             the contact that is crossed at zero force; likewise.
         slip_speed [-]: exponent of a slip force that depends on the speed. slip_trend [-]: k of
@@ -141,25 +141,25 @@ def fit(
         slip_position: "linear" or "quadratic", a slip force that depends on position, differently
             in the two directions.
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
-        terms: "auto" adds those that the record requires, one at a time by predicting cycles
-            held out of the fit; "none"; or names of what is fitted. None: "auto" for one record
-            that the law follows to no better than 5 % of the half gap, where no term is given.
+        terms: "auto" adds those that the record requires, one at a time, as judged by held-out
+            cycles; "none"; or names of terms to fit. None: "auto" for a single record that the law
+            alone misses by more than 5 % of the half gap, if no other keyword gives a term.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
         fix, start: parameter to value; bound: parameter to (low, high); prior: parameter to
-            (value, standard uncertainty), what is known of it before the fit; SI units.
+            (prior value, standard uncertainty); SI units.
 
     What counts
-        cycles, samples: (first, last), counted from 1. skip_cycles: so many at the start.
+        cycles, samples: (first, last), counted from 1. skip_cycles: number left out at the start.
         trim: "off", or "auto" to leave out rests, ramps and running-in at the ends, with a note.
-        max_rows: files of more rows, all together, are refused as soon as that shows. max_memory:
-            likewise files of which a fit needs more memory [bytes]; by default what the process may
-            have. Arrays are there already, and not counted.
+        max_rows: files with more rows in total are refused. max_memory: so are files whose fit needs
+            more memory [bytes]; default: the limit of the process. Arrays in memory are not
+            counted.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
         confidence: of every interval. regions: joint confidence regions, result.regions.
-        starts: starting points refined. seed: of those drawn at random.
+        starts: number of starting points that are refined. seed: of those drawn at random.
 
     What is known of the contact, each a number or (number, standard uncertainty)
         normal_load [N], also a list, one a record; youngs_modulus_1 [Pa], poisson_1 [-], radius_1

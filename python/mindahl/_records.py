@@ -78,9 +78,9 @@ def read_csv(
     displacement_unit, force_unit, time_unit, normal_load_unit: symbols such as "um" and "kN"; by
         default the header's, else m, N and s with a note.
     covariates: further columns, by name or number, kept in units of their own.
-    force_gain, force_zero and those of the others: the force in its unit is gain*(number - zero),
-        as of a column in volts.
-    encoding: as iconv calls it; by default UTF-8, or found by the first bytes.
+    force_gain, force_zero and the like: calibration of a column in volts; the force in its unit is
+        gain*(number - zero).
+    encoding: as iconv names it; by default UTF-8, or found from the first bytes.
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """

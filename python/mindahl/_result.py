@@ -116,14 +116,14 @@ def _wrapped(value: Any, path: str) -> Any:
 class Parameter:
     """A fitted or held parameter, in SI units.
 
-    is_known: does the record tell it? Ask it before the value is used: where it is False, value is
-        only where the fit ended, and repr() has no number of it.
+    is_known: True if the record determines it. Check it before using value: if it is False, value is
+        only where the search ended, and repr() has no number of it.
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
     identifiability: "identifiable", "extrapolated", "bounded_below" or "not_identifiable".
     prior: (value, standard uncertainty) that the fit was given; None without one.
-    moved_by_priors: the value less that of a fit without priors, in its standard errors; None without
-        priors and where the record alone does not determine it.
+    moved_by_priors: value minus that of a fit without priors, in its standard errors; None without
+        priors and if the record alone does not determine it.
     """
 
     name: str
@@ -159,7 +159,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Message:
-    """What was found, in words, and its code, which is stable: docs/contract.md."""
+    """A finding in words, with its stable code: docs/contract.md."""
 
     code: str
     message: str
@@ -167,10 +167,10 @@ class Message:
 
 @dataclass(frozen=True)
 class Region:
-    """A joint confidence region of two parameters, of the noise alone.
+    """A joint confidence region of two parameters, for the noise alone.
 
     parameters: their names. boundary: points of shape (n, 2) [their units], once around the estimate.
-    closed: was the boundary reached in every direction, or alpha = 0 before it?
+    closed: True if the boundary was reached in every direction, or alpha = 0 before it.
     """
 
     parameters: tuple[str, str]

@@ -21,15 +21,15 @@ from ._result import FitWarning
 
 
 class CycleTable(Mapping[str, Any]):
-    """What track() found: one row a cycle, a NumPy array a column; NaN for what is not known.
+    """The answer of track(): one row a cycle, a NumPy array a column; unknown values are NaN.
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
-    changes: what changed over the test beyond chance, sentences; empty where nothing did.
-    energy_counts: of how many fits `accumulated_energy` has their own, "measured"; that of those
-        before them, "replaced"; nothing, "left_out".
+    changes: sentences on changes over the test beyond chance; empty if there are none.
+    energy_counts: number of fits that `accumulated_energy` counts with their own energy,
+        "measured", with that of the fits before them, "replaced", or not at all, "left_out".
     shared_alpha: with alpha="shared" its "value", "standard_error", "scatter" between "cycles" beyond
         their errors and "p_value" of that; else None.
-    quantities: the course of each quantity by name, as `mindahl track --json` has it: "unit",
+    quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
         "stretches" that are straight and the "changes" between them.
     """
 
@@ -133,14 +133,14 @@ def track(
     """Fits every cycle of a long record on its own: one row a cycle.
 
     source, force, displacement, time, normal_load_column, units, gains, zeros and encoding: as of
-        fit(). join: a cycle does not end with its source. A file is read
-        piece by piece, in memory that its length does not change; a list of sources is one test in
-        this order, and a cycle ends with its source.
+        fit(). A file is read piece by piece, in constant memory; a list of sources
+        is one test in this order, and no cycle extends over two sources unless join is
+        True.
     normal_load: [N] of all cycles; by default the column's mean over each.
-    average: so many cycles in a row are one fit. every: one fit of so many that there could be.
+    average: number of consecutive cycles that are fitted together. every: fits only every n-th.
     alpha: "cycle", each its own; "shared", one for all cycles: the mean of a first pass by errors.
-    broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
-    terms: as of fit(); "auto" chooses by the head of the first source, for all cycles.
+    broken_rows: of files, "refuse" or "skip". threads: number of workers; default one per core.
+    terms: as in fit(); "auto" chooses by the first cycles of the first source, for all cycles.
     The others: as of fit(), but that model="auto" and covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of

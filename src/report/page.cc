@@ -226,7 +226,7 @@ void AddFields(const Report& report, std::string_view prefix, Table& table,
 
 std::string MeasuredSection(const Report& report) {
   std::string html = Heading("What the record says without a model");
-  Table table("mean of the widest steady cycles", {"fact", "value", "what it is"});
+  Table table("over the widest steady cycles", {"fact", "value", "what it is"});
   AddFields(report, "loop.amplitude", table);
   AddFields(report, "loop.peak_force", table);
   AddFields(report, "measured.", table, {"measured.closed"});
