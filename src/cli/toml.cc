@@ -61,7 +61,7 @@ class TomlReader {
   void RequireEndOfLine() {
     SkipBlanks();
     if (AtEnd() || Peek() == '\n' || Peek() == '#') return;
-    Fail(line_, fmt::format("'{}' is one thing too many: begin a new line", RestOfLine()));
+    Fail(line_, fmt::format("unexpected '{}': begin a new line", RestOfLine()));
   }
 
   [[nodiscard]] std::string_view RestOfLine() const {

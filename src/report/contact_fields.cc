@@ -20,7 +20,7 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
       {"standard_error", "of the quantity", "standard error from the fit and from the given inputs",
        [](const Item& item) { return Number(item.standard_error); },
        [](const Item&) {
-         return std::string("the record leaves open the parameter that it rests on");
+         return std::string("the record does not determine the parameter that it follows from");
        }},
       {"unit", "", "unit of value and error", [](const Item&) { return Text("-"); }},
       {"from_fit", "-", "fraction of the variance from the fit",
@@ -49,7 +49,8 @@ Value Propagated(const std::optional<PropagatedValue>& value, std::string_view u
 namespace {
 
 std::string WhySlipForceOpen(const Report& report) {
-  return report.slip_forces ? "slip_force and asymmetry are held, or the record leaves it open"
+  return report.slip_forces ? "slip_force and asymmetry are held, or the record does not determine "
+                              "it"
                             : "slip_force or asymmetry is not identifiable";
 }
 
@@ -165,12 +166,12 @@ std::string WhyAlphaNotTested(const Report& report) {
 std::string WhyNoLikelihoodRatio(const Report& report) {
   if (!report.fit.mindlin_test) return "alpha is held or not determined";
   if (!report.alpha.is_rejected) return WhyAlphaNotTested(report);
-  return "the interval of alpha includes more than this model, and says otherwise";
+  return "the interval of alpha includes more than this model, and decides otherwise";
 }
 
 std::string WhyNoRig(const Report& report) {
-  return report.fit.mindlin_test ? "alpha = 1/3 is not rejected, alpha is the larger one, a rig is "
-                                   "fitted, or none helps"
+  return report.fit.mindlin_test ? "alpha = 1/3 is not rejected, alpha is above 1/3, a rig is "
+                                   "fitted, or no rig helps"
                                  : WhyNoLikelihoodRatio(report);
 }
 
@@ -188,7 +189,7 @@ std::string WhyNoRatio(const Report& report) {
              ? "needs a contact radius known apart from the fit: the elastic constants and "
                "radii of both bodies with the load, or a contact radius with the compliance or "
                "the elastic constants"
-             : "the record leaves sigma open";
+             : "the record does not determine sigma";
 }
 
 }  // namespace
@@ -236,10 +237,12 @@ using identification::ParameterEstimate;
 
 namespace {
 
-std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series leaves it open"; }
+std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series does not determine it"; }
 
 std::string WhyNotAlone(const ContactUnderLoad& item) {
-  return item.alone ? "the record by itself leaves it open" : "the record by itself is no fit";
+  return item.alone ? "the record alone does not determine it"
+                    : "the record alone cannot be "
+                      "fitted";
 }
 
 const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
@@ -315,7 +318,7 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
 }
 
 std::string WhyNoInterval(const QuantityUnderLaw& item) {
-  return item.value.standard_error > 0 ? "the series leaves it open"
+  return item.value.standard_error > 0 ? "the series does not determine it"
                                        : "all parameters that it follows from are fixed";
 }
 
@@ -510,7 +513,9 @@ void AddContactFields(FieldTable& table) {
   rows.push_back({"contact.normal_load", "N", "normal load, given or the mean of its column",
                   [](const Report& report) {
                     return report.known.normal_load ? Number(report.known.normal_load->value)
-                                                    : Missing("not given, and no column has it");
+                                                    : Missing(
+                                                          "not given, and no column contains "
+                                                          "it");
                   }});
   rows.push_back(
       {"contact.hertz_mindlin", "",

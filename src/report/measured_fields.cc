@@ -19,7 +19,7 @@ std::string WhyNoSlip(const Report& report) {
 }
 
 constexpr const char* kWhyNoRegime =
-    "slip_force is not identifiable, or has a lower limit that the loop reaches";
+    "slip_force is not identifiable, or its lower limit is within the loop";
 
 /// Makes a getter of the loop's description, null where there is none.
 template <typename Get>
@@ -212,7 +212,7 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
             [](const Item& item) {
               return item.backlash ? Number(item.backlash->width) : Missing();
             },
-            "the force does not stand still after the reversals, or not over the same travel"),
+            "the force does not stay constant after the reversals, or not over the same travel"),
         Fact(
             "slope_after_reversal", "N/m", "slope over the first tenth of the strokes, median",
             [](const Item& item) { return Number(item.slope_after_reversal); },

@@ -15,7 +15,7 @@ namespace {
 std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const char* where,
                                                BranchLaw StartReport::*law) {
   const auto why = [](const StartReport&) {
-    return std::string("the solver came to nothing finite from here");
+    return std::string("the solver reached no finite value from this start");
   };
   const auto row = [&](const char* name, const char* unit, double BranchLaw::*member) {
     return Field<StartReport>{
@@ -30,7 +30,9 @@ std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const 
 const std::vector<Field<StartReport>>& StartFields() {
   using Item = StartReport;
   static const std::vector<Field<Item>> fields = [] {
-    const auto why = [](const Item&) { return std::string("the cost is not finite here"); };
+    const auto why = [](const Item&) {
+      return std::string("the cost is not finite at this start");
+    };
     std::vector<Field<Item>> rows = {
         {"from", "", "grid, or seed where it was drawn",
          [](const Item& item) { return Text(item.drawn ? "seed" : "grid"); }}};
@@ -98,7 +100,7 @@ std::string WhyNoError(const ReportedParameter& item) {
     case ParameterStatus::kFree:
       break;
   }
-  return "the record leaves it open";
+  return "the record does not determine it";
 }
 
 std::string WhyIntervalOpen(const ReportedParameter& item) {
@@ -109,7 +111,7 @@ std::string WhyIntervalOpen(const ReportedParameter& item) {
 
 const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   using Item = identification::IntervalPart;
-  const auto why = [](const Item&) { return std::string("open there"); };
+  const auto why = [](const Item&) { return std::string("open at this end"); };
   static const std::vector<Field<Item>> fields = {
       {"source", "",
        "origin of this part of ci95: parabola, profile, initial_state, other_minimum, "

@@ -25,7 +25,7 @@ const std::vector<Field<Cause>>& CauseFields() {
       {"size", "of the cause", "size of the cause; of several numbers the first",
        [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
        [](const Item&) {
-         return std::string("it is of several numbers, none of which says much");
+         return std::string("it has several numbers, none of which is significant alone");
        }},
       {"unit", "", "unit of the size",
        [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },

@@ -40,16 +40,16 @@ const std::vector<Field<Alternative>>& AlternativeFields() {
 std::string WhyNoChoice(const Report& report) {
   if (report.fit.depth < identification::Depth::kFull) return "the fit was not asked for it";
   if (report.fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
-    return "the model does not describe the record, nor does the other law better";
+    return "the model does not describe the record, and the other law does no better";
   }
-  return "Masing's law and Dahl's own are one for alpha = 0 and before the motion turns, and are "
-         "not compared where sigma or slip_force is held or bounded, or with an asymmetry";
+  return "Masing's law and Dahl's own are the same for alpha = 0 and before the first reversal, "
+         "and are not compared if sigma or slip_force is held or bounded, or with an asymmetry";
 }
 
 std::string WhyNoDifference(const Report& report) {
   return report.fit.law_choice
-             ? "the other law was not fitted, or has no fit: on a steady loop of one amplitude the "
-               "two are one curve"
+             ? "the other law was not fitted, or has no fit: on a steady loop of one amplitude "
+               "both give the same curve"
              : WhyNoChoice(report);
 }
 
