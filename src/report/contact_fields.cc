@@ -513,9 +513,7 @@ void AddContactFields(FieldTable& table) {
   rows.push_back({"contact.normal_load", "N", "normal load, given or the mean of its column",
                   [](const Report& report) {
                     return report.known.normal_load ? Number(report.known.normal_load->value)
-                                                    : Missing(
-                                                          "not given, and no column contains "
-                                                          "it");
+                                                    : Missing("not given, and no column has it");
                   }});
   rows.push_back(
       {"contact.hertz_mindlin", "",
