@@ -184,9 +184,8 @@ void RequireCycles(std::size_t cycles, std::size_t together, const Reading& read
   if (cycles > 0) return;
   if (reading.gate.count > 2) {
     throw InputError(
-        fmt::format("--average {}: {} has only {} reversals, two a cycle: average "
-                    "fewer",
-                    together, source, reading.gate.count));
+        fmt::format("--average {}: {} has only {} reversals, two a cycle: average fewer", together,
+                    source, reading.gate.count));
   }
   throw InputError(fmt::format(
       "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "

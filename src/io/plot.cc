@@ -62,8 +62,7 @@ std::string StyleOfPlot() {
   std::string rules =
       "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
       ".grid,.axis,.mark,.line,.dots{fill:none}.grid{stroke:#e4e4e4}"
-      ".axis{stroke:#444;stroke-width:1.2}"
-      ".mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
+      ".axis{stroke:#444;stroke-width:1.2}.mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
       ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
       ".dots{stroke-width:3.2;stroke-linecap:round}.marker{fill:#fff;stroke-width:1.8}"
       ".area{fill-opacity:.22;stroke:none}.bars{fill-opacity:.35;stroke-width:.8}"

@@ -275,9 +275,8 @@ class ColumnFinder {
     const std::string of_row = UnitOfRow(column);
     if (!StatesOneUnit(column)) {
       throw InputError(fmt::format(
-          "{}: {} has the unit '{}' in its name and '{}' below it: "
-          "choose its unit{}{}",
-          Header(), Label(column), of_name, of_row, option.empty() ? "" : " with ", option));
+          "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}{}", Header(),
+          Label(column), of_name, of_row, option.empty() ? "" : " with ", option));
     }
     return of_name.empty() ? of_row : of_name;
   }
@@ -555,8 +554,7 @@ class RoleAssigner {
     const std::size_t column = finder_.Chosen(choice.column, role);
     if (taken_[column]) {
       throw InputError(
-          fmt::format("{}: {} is chosen for the {} and for another quantity: choose "
-                      "two columns",
+          fmt::format("{}: {} is chosen for the {} and for another quantity: choose two columns",
                       table_.file(), finder_.Label(column), role.name));
     }
     taken_[column] = true;
@@ -799,8 +797,7 @@ void RequireCalibration(const Role& role, const ColumnChoice& choice) {
     return;
   }
   throw InputError(
-      fmt::format("the gain {} and zero {} of the {} are invalid: must be finite, the "
-                  "gain not 0",
+      fmt::format("the gain {} and zero {} of the {} are invalid: must be finite, the gain not 0",
                   choice.gain.value_or(1.0), choice.zero, role.name));
 }
 

@@ -241,8 +241,7 @@ std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series does not
 
 std::string WhyNotAlone(const ContactUnderLoad& item) {
   return item.alone ? "the record alone does not determine it"
-                    : "the record alone cannot be "
-                      "fitted";
+                    : "the record alone cannot be fitted";
 }
 
 const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {

@@ -208,9 +208,8 @@ void RequireLoadsOfRecords(const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == request.files.size()) return;
   throw InputError(
-      fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a "
-                  "file",
-                  loads, request.files.size(), request.files.size() > 1 ? "s" : ""));
+      fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a file", loads,
+                  request.files.size(), request.files.size() > 1 ? "s" : ""));
 }
 
 /// Uses the measured normal load where it was not given: its mean.

@@ -105,8 +105,7 @@ Expectation ExpectationOf(const PlanRequest& request, const Tell& warn) {
   if (request.record) {
     if (IsAnythingGiven(request.law)) {
       throw InputError(
-          "--record excludes --sigma, --slip-force and other options that describe a "
-          "contact");
+          "--record excludes --sigma, --slip-force and other options that describe a contact");
     }
     ExpectFromRecord(request, expected, warn);
   } else {

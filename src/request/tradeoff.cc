@@ -141,8 +141,7 @@ std::string RegionsText(const std::vector<ModelRegion>& regions,
                         const ModelRegionOptions& studied) {
   std::string text =
       "lambda = X/delta_c at which a model, with the contact's sigma, alpha and Tc, is within a "
-      "tolerance of the exact response\n(force: largest error of T*; energy: of that lost in "
-      "the "
+      "tolerance of the exact response\n(force: largest error of T*; energy: of that lost in the "
       "cycle), steady amplitude:\n";
   text += fmt::format("  {:<16} {:>5} {:<7}", "model", "cycle", "");
   for (const double tolerance : studied.tolerances) {
@@ -206,11 +205,9 @@ std::string ToText(const Tradeoff& study) {
 std::string PointsCsv(const Tradeoff& study) {
   std::string text =
       "excitation,model,method,steps,tolerance,cost [ns/sample],measured [ns/sample],cost over "
-      "floor [-],max force "
-      "error "
+      "floor [-],max force error "
       "[-],rms force error [-],energy error [-],on Pareto front,refitted sigma [N/m],refitted "
-      "alpha "
-      "[-],refitted Tc [N]\n";
+      "alpha [-],refitted Tc [N]\n";
   for (const MeasuredExcitation& scene : study.excitations) {
     for (std::size_t i = 0; i < scene.points.size(); ++i) {
       const WorkPrecision& point = scene.points[i];

@@ -73,8 +73,7 @@ std::string Table(const std::vector<identification::ValidationRow>& rows) {
                                   : error(std::max({row.worst_sigma_error, row.worst_alpha_error,
                                                     row.worst_slip_force_error}));
     text += fmt::format(
-        "{:<8g} {:<6g} {:6}   {:>7}  {:>7}     {:>7}  {:>7}     {:>7}  {:>7}     {:5}   "
-        "{:>7} "
+        "{:<8g} {:<6g} {:6}   {:>7}  {:>7}     {:>7}  {:>7}     {:>7}  {:>7}     {:5}   {:>7} "
         "{:>9} {:6}\n",
         row.noise, row.lambda, row.cases, error(row.median_sigma_error),
         error(row.worst_sigma_error), error(row.median_alpha_error), error(row.worst_alpha_error),

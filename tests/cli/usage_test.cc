@@ -415,8 +415,7 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
       {"one.csv", "x [m],F [N]\n1,2\n", "one.csv:2:1: the displacement never changes"},
       {"still.csv", "#\nx [m],F [N]\n1,2\n1,3\n1,4\n", "still.csv:3:1: the displacement never"},
       {"mm.csv", "t [s],F [N],x [mm]\n1,2,5\n2,3,5\n",
-       "mm.csv:2:3: the displacement never "
-       "changes, it is 0.005 m in every row"},
+       "mm.csv:2:3: the displacement never changes, it is 0.005 m in every row"},
       {"slack.csv", "x [m],F [N]\n1,2\n2,2\n1,2\n", "slack.csv:2:2: the force never changes"},
       {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "two.csv:3:2: 2 samples are too few"},
       {"few.csv", "x [m],F [N]\n0,0\n1,1\n0,-1\n1,1\n",
@@ -431,11 +430,9 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
       {"na.csv", "x [m],F [N]\n0,0\n#N/A,1\n0,2\n1,1\n", "na.csv:3:1: '#N/A' is not a number"},
       {"clock.csv", "0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n",
        "clock.csv:1:1: column 1 only grows while column 2 goes to and fro, as a time does: name "
-       "the "
-       "column of the displacement with --displacement"},
+       "the column of the displacement with --displacement"},
       {"speed.csv", "speed,F [N]\n0,0\n1,1\n0,-1\n",
-       "speed.csv:2:1: 'speed' (column 1) is a "
-       "velocity"},
+       "speed.csv:2:1: 'speed' (column 1) is a velocity"},
       {"unfit.csv", "angle [deg],F [N]\n0,0\n1,1\n0,-1\n", "do not match"},
       {"nan.csv", "x [m],F [N]\n0,0\n1,nan\n2,1\n", "nan.csv:3:2: 'nan' is not a number"},
       {"text.csv", "x [m],F [N]\n0,0\n1,one\n2,1\n", "text.csv:3:2"},

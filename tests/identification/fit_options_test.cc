@@ -45,8 +45,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
-       "drag_exponent, plateau_curvature, "
-       "ripple_period, "
+       "drag_exponent, plateau_curvature, ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
       {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
@@ -54,8 +53,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "alpha, slip_force, rig_stiffness, load_exponent, asymmetry, plateau_slope, viscous, "
        "speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
-       "drag_exponent, plateau_curvature, "
-       "ripple_period, "
+       "drag_exponent, plateau_curvature, ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
       {[](FitOptions& o) { o.fixed["sigma"] = 0; },

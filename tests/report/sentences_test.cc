@@ -110,9 +110,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
         "--reversal-gate"}},
       {"glitches_left_out",
        "",
-       {"record 2: ", "3 spikes, 1 held values",
-        "first in data rows 17, "
-        "240"}},
+       {"record 2: ", "3 spikes, 1 held values", "first in data rows 17, 240"}},
       {"path_too_long", "", {"record 2: ", "1.75 times"}},
       {"no_closed_cycle", "", {"record 2: no cycle is closed"}},
       {"energy_contradiction", "", {"15 mJ", "32.5 mJ", "1.75 µm", "jenkins"}},

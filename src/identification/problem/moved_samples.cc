@@ -93,8 +93,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     const std::span<const double> time = record.record.time;
     if (time.empty() == first.record.time.empty() && (time.empty() || GoesOn(time))) continue;
     throw InvalidArgument(
-        "lag needs a time that increases in every record, or records without a "
-        "time");
+        "lag needs a time that increases in every record, or records without a time");
   }
   const Lags lags = LagsOf(options, first);
   for (std::size_t r = 0; r < records.records.size(); ++r) {
