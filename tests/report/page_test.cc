@@ -40,7 +40,8 @@ TEST(Page, BreaksNoOptionAndNoNameWithinAWord) {
   const std::string page = ToPage(MakeReport(MadeInput()), provenance);
   EXPECT_THAT(page, HasSubstr("<pre><code>mindahl fit -- a--b.csv "
                               "<span class=\"option\">--rig-stiffness</span> fit</code></pre>"));
-  EXPECT_THAT(ToPage(MakeReport(MadeInput()), {.options = {{"a_b", "1"}}}),
+  provenance.options = {{"a_b", "1"}};
+  EXPECT_THAT(ToPage(MakeReport(MadeInput()), provenance),
               HasSubstr("<th scope=\"row\">a_<wbr>b</th>"));
 }
 
