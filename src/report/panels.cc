@@ -147,7 +147,8 @@ const std::vector<double>& FittedDisplacement(const Report& report, std::size_t 
 /// The fitted loop of a record; of one that is too long to be drawn whole, of its last cycle.
 PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& units,
                       const std::string& suffix) {
-  constexpr std::size_t kMostSamples = 4000;
+  // A page draws 6000 points of ten series: a line of more would lose the corners of its loops.
+  constexpr std::size_t kMostSamples = 600;
   const RecordFit& fit = report.fit.records[r];
   Group range{.label = "fitted" + suffix, .record = r, .begin = 0, .end = fit.fitted_force.size()};
   const std::vector<std::size_t>& reversals = fit.reversals;
