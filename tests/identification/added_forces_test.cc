@@ -350,5 +350,14 @@ TEST(AddedForces, WhatShapesAColumnNeedsIt) {
   }
 }
 
+TEST(AddedForces, FactorOfTheSpeedNeedsItsExponentAndTheExponentItsFactor) {
+  for (const char* alone :
+       {"slip_speed", "slip_speed_exponent", "drag_fraction", "drag_exponent"}) {
+    FitOptions options;
+    options.terms = {alone};
+    EXPECT_THROW(FitOne(Loop(), options), InvalidArgument) << alone;
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::identification::added_forces_test

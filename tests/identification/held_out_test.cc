@@ -1,9 +1,6 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "identification/term_scores.h"
+#include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Parts of records that are predicted by fits to the rest, and the mean of what is missed.
 namespace mindahl::identification::held_out_test {
@@ -54,6 +51,79 @@ TEST(Strokes, BeginWithTheFirstThatIsNotSkipped) {
   ASSERT_EQ(strokes.size(), 5U);
   EXPECT_EQ(strokes.front().begin, 20U);
   EXPECT_EQ(strokes.back().end, 70U);
+}
+
+/// Three cycles of 100 samples from rest: they turn at 25, 75, … 275, and two of them close.
+struct ThreeCycles {
+  ThreeCycles() {
+    const History displacement = Cycling(Wave::kSine, 3e-6, 3.0, 100);
+    const models::BranchLaw law{4e7, 1.0 / 3, 40.0};
+    Generator generator(3);
+    record =
+        WithForceNoise(MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement)),
+                       0.2, generator);
+    options.initial_state = models::InitialState::kVirgin;
+    fit = FitOne(record, options);
+    views = {record};
+    samples = CountedSamples(fit, views);
+    cycles = ClosedCycles(fit, samples.mask, 0);
+  }
+
+  std::vector<double> Predict(std::size_t free) const {
+    return PredictParts(views, ContinuedFrom(fit, options), free, samples, cycles, 2);
+  }
+
+  loop::Record record;
+  FitOptions options;
+  FitResult fit;
+  std::vector<loop::RecordView> views;
+  ScoredSamples samples;
+  std::vector<Part> cycles;
+};
+
+TEST(PredictParts, NeedAsManySamplesAsParametersBesideThoseHeldOut) {
+  const ThreeCycles made;
+  ASSERT_EQ(made.samples.count, 301U);
+  ASSERT_EQ(made.cycles.size(), 2U);
+  EXPECT_THAT(made.Predict(201), SizeIs(2));
+  EXPECT_THAT(made.Predict(202), IsEmpty());
+}
+
+TEST(PredictParts, AreMeanSquaresOfAFitThatHasNotSeenThePart) {
+  const ThreeCycles made;
+  const std::vector<double> predicted = made.Predict(5);
+  ASSERT_THAT(predicted, SizeIs(2));
+  for (std::size_t k = 0; k < 2; ++k) {
+    FitOptions rest = made.options;
+    rest.preparation.held_out = {std::vector<bool>(301, false)};
+    double squares = 0.0;
+    for (std::size_t i = made.cycles[k].begin; i < made.cycles[k].end; ++i) {
+      rest.preparation.held_out[0][i] = true;
+    }
+    const FitResult fit = FitOne(made.record, rest);
+    for (std::size_t i = made.cycles[k].begin; i < made.cycles[k].end; ++i) {
+      squares += fit.records[0].residual[i] * fit.records[0].residual[i];
+    }
+    // Two searches of one minimum, where the mean square is flat to the root of their tolerance.
+    constexpr double kSameMinimum = 1e-4;
+    EXPECT_NEAR(predicted[k] / (squares / 100), 1.0, kSameMinimum) << k;
+  }
+}
+
+TEST(PredictParts, LeaveOutWhatTheOptionsHoldOut) {
+  // The last quarter of a cycle is spoilt and held out: the fits to the rest must not see it.
+  ThreeCycles made;
+  for (std::size_t i = 276; i < 301; ++i) made.record.force[i] += 100.0;
+  made.options.preparation.held_out = {std::vector<bool>(301, false)};
+  for (std::size_t i = 276; i < 301; ++i) made.options.preparation.held_out[0][i] = true;
+  made.views = {made.record};
+  made.fit = FitOne(made.record, made.options);
+  made.samples = CountedSamples(made.fit, made.views);
+  EXPECT_EQ(made.samples.count, 276U);
+  const std::vector<double> predicted = made.Predict(5);
+  ASSERT_THAT(predicted, SizeIs(2));
+  // Noise of 0.2 N: of a mean of 100 squares the error is √(2/100).
+  for (const double square : predicted) EXPECT_NEAR(square / (0.2 * 0.2), 1.0, 5 * std::sqrt(0.02));
 }
 
 }  // namespace

@@ -122,6 +122,19 @@ TEST(TermSelection, ForceOfPositionIsAddedAlone) {
   EXPECT_NEAR(estimate.value, slope, kStandardErrors * *estimate.standard_error);
 }
 
+TEST(TermSelection, ForceOfPositionThatClosesTheIntervalOfTheSlipForceIsAdded) {
+  // A spring as stiff as Tc over the stroke makes the law's Tc an asymptote, open above.
+  const double slope = kLaw.slip_force / kReach;
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += slope * record.displacement[i];
+  const Record noisy = Noisy(record, 14);
+  ASSERT_FALSE(Fit(std::vector{noisy}, {}).Find("slip_force")->upper95);
+  const TermSelection selection = Select(noisy);
+  EXPECT_THAT(selection.added, ElementsAre("plateau_slope"));
+  const ParameterEstimate& slip_force = *selection.fit.Find("slip_force");
+  EXPECT_NEAR(slip_force.value, kLaw.slip_force, kStandardErrors * *slip_force.standard_error);
+}
+
 TEST(TermSelection, TwoForcesAreAddedTheLargerFirst) {
   const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
   const double slope = 0.2 * kLaw.slip_force / kReach;

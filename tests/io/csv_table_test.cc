@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/csv_layout.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
 
@@ -387,6 +388,13 @@ TEST(CsvTable, NamesUnreadableFileAndReason) {
   ::chmod(path.c_str(), 0);
   EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(path); }),
             "cannot read '" + path.string() + "': Permission denied");
+}
+
+// A note in every second row leaves the column one of notes: the first row is data, not a header.
+TEST(CsvLayout, ColumnWithAsManyNotesAsNumbersIsNoColumnOfNumbers) {
+  EXPECT_EQ(FindCsvLayout("x,F,event\n0,1,start\n1,2,5\n", "loop.csv").data_line, 2u);
+  // With numbers in two rows of three it is one, and the row with the note could only be a header.
+  EXPECT_THROW(FindCsvLayout("x,F,event\n0,1,start\n1,2,5\n2,3,6\n", "loop.csv"), InputError);
 }
 
 }  // namespace

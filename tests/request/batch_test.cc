@@ -1,14 +1,9 @@
 #include "mindahl/request/batch.h"
 
-#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
-
-#include "mindahl/core/error.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::request::batch_test {
 namespace {
@@ -31,6 +26,97 @@ TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
                 [](const report::Report&) -> std::string { throw InputError("the disk is full"); });
   EXPECT_FALSE(entry.done);
   EXPECT_EQ(entry.result.fault, "the disk is full");
+}
+
+/// A fit of which only Tc and the half gap are known.
+struct Made {
+  double slip_force = 0.0;
+  double error = 0.0;
+  double half_width = 0.0;  // of the interval
+  std::string verdict = "identifiable";
+  double half_gap = 0.0;
+  bool done = true;
+};
+
+BatchEntry EntryOf(const Made& made, const std::string& file) {
+  nlohmann::ordered_json json;
+  json["parameters"]["slip_force"] = {
+      {"value", made.slip_force},
+      {"standard_error", made.error},
+      {"ci95", {made.slip_force - made.half_width, made.slip_force + made.half_width}},
+      {"identifiability", made.verdict}};
+  json["measured"]["half_gap"]["value"] = made.half_gap;
+  json["warnings"] = nlohmann::json::array();
+  BatchEntry entry;
+  entry.done = made.done;
+  entry.result.file = file;
+  SetFitJson(entry, json.dump());
+  return entry;
+}
+
+std::vector<BatchEntry> EntriesOf(const std::vector<Made>& made) {
+  std::vector<BatchEntry> entries;
+  for (const Made& one : made) {
+    entries.push_back(EntryOf(one, std::string(1, static_cast<char>('a' + entries.size()))));
+  }
+  return entries;
+}
+
+constexpr double kNormal95 = 1.959963984540054;
+constexpr double kRounding = 1e-12;
+
+TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
+  // Errors of 3, and of 4 by an interval that is inflated to 4 standard errors of 1.96 each.
+  const auto repeats = nlohmann::json::parse(
+      ToJson(EntriesOf({{40, 3, 3 * kNormal95, "identifiable", 41},
+                        {48, 1, 4 * kNormal95, "effective", 43},
+                        {1000, 1, kNormal95, "bounded_below", 48},
+                        {2000, 1, kNormal95, "identifiable", 99, /*done=*/false}}),
+             ""))["repeats"];
+  const auto& slip_force = repeats["slip_force"];
+  EXPECT_EQ(slip_force["files"], 2);
+  EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);
+  EXPECT_NEAR(slip_force["standard_deviation"], std::sqrt(32.0), 10 * kRounding);
+  EXPECT_NEAR(slip_force["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
+  // χ² of one degree of freedom: 8²/(3² + 4²).
+  EXPECT_NEAR(slip_force["p_value"], std::erfc(std::sqrt(64.0 / 25 / 2)), 10 * kRounding);
+  // Measured without a model: no error is stated, and the verdict on Tc is none on the gap.
+  const auto& half_gap = repeats["half_gap"];
+  EXPECT_EQ(half_gap["files"], 3);
+  EXPECT_NEAR(half_gap["mean"], 44.0, kRounding);
+  EXPECT_NEAR(half_gap["standard_deviation"], std::sqrt((9.0 + 1 + 16) / 2), 10 * kRounding);
+  EXPECT_TRUE(half_gap["stated_error"].is_null() && half_gap["p_value"].is_null());
+  EXPECT_FALSE(repeats.contains("sigma"));
+}
+
+TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
+  const auto repeats = nlohmann::json::parse(
+      ToJson(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), ""))["repeats"];
+  EXPECT_NEAR(repeats["slip_force"]["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
+}
+
+TEST(BatchTable, HasTheNumbersOfEachFitInItsRow) {
+  std::vector<BatchEntry> entries = EntriesOf({{40, 3, 6, "identifiable", 41}, {48, 1, 2}});
+  entries.emplace_back();
+  entries.back().result.file = "c";
+  entries.back().result.fault = "no loop";
+  const auto column = [&](std::string_view name) {
+    const std::vector<BatchColumn> table = TableOf(entries);
+    return std::ranges::find(table, name, &BatchColumn::name)->cells;
+  };
+  EXPECT_EQ(column("slip_force"), (std::vector<BatchCell>{40.0, 48.0, {}}));
+  EXPECT_EQ(column("slip_force_error"), (std::vector<BatchCell>{3.0, 1.0, {}}));
+  EXPECT_EQ(column("slip_force_lower95"), (std::vector<BatchCell>{34.0, 46.0, {}}));
+  EXPECT_EQ(column("slip_force_upper95"), (std::vector<BatchCell>{46.0, 50.0, {}}));
+  EXPECT_EQ(column("half_gap"), (std::vector<BatchCell>{41.0, 0.0, {}}));
+  EXPECT_EQ(column("sigma"), (std::vector<BatchCell>{{}, {}, {}}));
+  EXPECT_EQ(column("done"),
+            (std::vector<BatchCell>{std::string("yes"), std::string("yes"), std::string("no")}));
+  EXPECT_EQ(column("fault").back(), BatchCell(std::string("no loop")));
+  EXPECT_THAT(ToText(entries, "t.csv"), StartsWith("2 of 3 files fitted, in t.csv\n"));
+  const std::string csv = TableCsv(entries);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  EXPECT_FALSE(AllDone(entries));
 }
 
 }  // namespace

@@ -1,14 +1,9 @@
 #include "mindahl/request/plan.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <numbers>
-#include <string_view>
-#include <utility>
+#include <nlohmann/json.hpp>
 
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // These tests concern the loops that a plan expects.
 namespace mindahl::request::plan_test {
@@ -47,6 +42,189 @@ TEST(MakePlan, TakesTheDisplacementNoiseOfItsRecordUnlessOneIsGiven) {
   // The estimate from 600 third differences, neighbours correlated, scatters by less than a tenth.
   EXPECT_NEAR(ExpectedDisplacementNoise(0.0), kNoise, 0.3 * kNoise);
   EXPECT_EQ(ExpectedDisplacementNoise(5e-8), 5e-8);
+}
+
+/// One steady loop of a contact that is known, with noise of 0.2 N.
+PlanRequest Known(double alpha = 1.0 / 3) {
+  PlanRequest request;
+  request.law.sigma = 4e7;
+  request.law.alpha = alpha;
+  request.law.slip_force = 40.0;
+  request.force_noise = 0.2;
+  request.amplitudes = {2e-6};
+  request.initial_state = models::InitialState::kSteady;
+  request.samples_per_cycle = 60;
+  return request;
+}
+
+Plan Made(const PlanRequest& request) {
+  return MakePlan(request, [](std::string_view) {});
+}
+
+TEST(MakePlan, CountsAmplitudesInDisplacementsAtSlip) {
+  constexpr double kRounding = 1e-18;
+  EXPECT_NEAR(Made(Known()).slip, 1.5e-6, kRounding);  // Tc/(σ(1 − α))
+  PlanRequest behind = Known();
+  behind.rig_stiffness = 8e7;  // gives way by Tc/k
+  EXPECT_NEAR(Made(behind).slip, 1.5e-6 + 0.5e-6, kRounding);
+  behind.law.alpha = 1.0;  // slip is only approached: three elastic limits
+  EXPECT_NEAR(Made(behind).slip, 3e-6 + 0.5e-6, kRounding);
+  behind.rig_stiffness.reset();
+  EXPECT_NEAR(Made(behind).slip, 3e-6, kRounding);
+}
+
+TEST(MakePlan, LooksAtThirteenAmplitudesAboutSlipOrAtThoseAsked) {
+  PlanRequest request = Known();
+  EXPECT_EQ(Made(request).columns.at(0).loops.size(), 1U);
+  request.amplitudes.clear();
+  request.initial_state.reset();
+  const Plan plan = Made(request);
+  ASSERT_EQ(plan.columns.size(), 2U);
+  EXPECT_EQ(plan.columns[0].initial_state, "virgin");
+  EXPECT_EQ(plan.columns[1].initial_state, "steady");
+  for (const PlannedLoops& column : plan.columns) {
+    ASSERT_EQ(column.loops.size(), 13U);
+    EXPECT_NEAR(column.loops.front().protocol.amplitude, 0.15e-6, 1e-18);
+    EXPECT_NEAR(column.loops[6].protocol.amplitude, 1.5e-6, 1e-18);
+    EXPECT_NEAR(column.loops.back().protocol.amplitude, 15e-6, 1e-18);
+  }
+  EXPECT_EQ(plan.columns[0].loops[6].protocol.initial_state, models::InitialState::kVirgin);
+}
+
+TEST(MakePlan, ExpectsTheErrorsOfItsProtocol) {
+  PlanRequest request = Known();
+  request.rig_stiffness = 8e7;
+  request.with = {"viscous"};
+  request.autocorrelation = 0.3;
+  request.displacement_noise = 2e-9;
+  request.cycles = 2;
+  const Plan plan = Made(request);
+  identification::Expectation expected;
+  expected.law = {4e7, 1.0 / 3, 40.0};
+  expected.rig.stiffness = 8e7;
+  expected.force_noise = 0.2;
+  expected.displacement_noise = 2e-9;
+  expected.autocorrelation = 0.3;
+  identification::FitOptions options;
+  options.terms = {"viscous"};
+  const identification::ExpectedFit fit =
+      identification::ExpectFit(expected,
+                                {.amplitude = 2e-6,
+                                 .cycles = 2,
+                                 .samples_per_cycle = 60,
+                                 .initial_state = models::InitialState::kSteady},
+                                options);
+  const auto json = nlohmann::json::parse(ToJson(plan));
+  const auto& loop = json["loops"][0];
+  EXPECT_EQ(loop["initial_state"], "steady");
+  EXPECT_EQ(loop["amplitude"], 2e-6);
+  EXPECT_EQ(loop["peak_force"], fit.peak_force);
+  for (const char* name : {"sigma", "alpha", "slip_force", "viscous"}) {
+    EXPECT_EQ(loop["parameters"][name]["value"], fit.Find(name)->value) << name;
+    EXPECT_EQ(loop["parameters"][name]["standard_error"], *fit.Find(name)->standard_error) << name;
+  }
+  EXPECT_EQ(json["expected"]["rig_stiffness"], 8e7);
+  EXPECT_EQ(json["expected"]["force_noise"], 0.2);
+  EXPECT_EQ(json["expected"]["displacement_noise"], 2e-9);
+  EXPECT_EQ(json["expected"]["gross_slip_displacement"], plan.slip);
+  EXPECT_EQ(json["protocol"]["cycles"], 2.0);
+  EXPECT_EQ(json["protocol"]["samples_per_cycle"], 60);
+}
+
+TEST(PlanText, StatesErrorsOverTheirValuesAndOfAnExponentAsTheyAre) {
+  const Plan plan = Made(Known());
+  const identification::ExpectedFit& fit = plan.columns[0].loops[0];
+  const std::string text = ToText(plan);
+  const std::string row = text.substr(text.find("2e-06"));
+  std::istringstream cells(row);
+  double amplitude = 0.0;
+  double over_slip = 0.0;
+  std::string bar;
+  double sigma = 0.0;
+  std::string percent;
+  double alpha = 0.0;
+  double slip_force = 0.0;
+  std::string law;
+  cells >> amplitude >> over_slip >> bar >> sigma >> percent >> alpha >> slip_force >> percent >>
+      law;
+  constexpr double kTwoDigits = 0.05;
+  EXPECT_EQ(amplitude, 2e-6);
+  EXPECT_NEAR(over_slip, 2 / 1.5, 0.005);
+  EXPECT_NEAR(sigma / (100 * *fit.Find("sigma")->standard_error / 4e7), 1.0, kTwoDigits);
+  EXPECT_NEAR(alpha / *fit.Find("alpha")->standard_error, 1.0, kTwoDigits);
+  EXPECT_NEAR(slip_force / (100 * *fit.Find("slip_force")->standard_error / 40), 1.0, kTwoDigits);
+  EXPECT_EQ(law, "open");  // of a steady loop both laws are one curve
+}
+
+TEST(PlanText, SaysWhereWhatIsWantedIsReached) {
+  PlanRequest request = Known();
+  request.wanted = {{"slip_force", {.value = 0.01, .is_relative = true}}};
+  const Plan plan = Made(request);
+  ASSERT_TRUE(plan.established() && plan.columns[0].reached);
+  const double reached = plan.columns[0].reached->protocol.amplitude;
+  EXPECT_GE(reached, 0.1 * plan.slip);
+  EXPECT_LE(reached, 10 * plan.slip);
+  EXPECT_LE(*plan.columns[0].reached->Find("slip_force")->standard_error, 0.01 * 40);
+  const std::string text = ToText(plan);
+  std::istringstream words(text.substr(text.find("X >= ") + 5));
+  double amplitude = 0.0;
+  double over_slip = 0.0;
+  std::string unit;
+  words >> amplitude >> unit >> over_slip;
+  constexpr double kThreeDigits = 0.005;
+  EXPECT_NEAR(amplitude / reached, 1.0, kThreeDigits);
+  EXPECT_NEAR(over_slip / (reached / plan.slip), 1.0, kThreeDigits);
+  const auto json = nlohmann::json::parse(ToJson(plan));
+  EXPECT_EQ(json["reached"][0]["least_amplitude"], reached);
+  EXPECT_EQ(json["wanted"]["slip_force"]["standard_error"], 0.01);
+  EXPECT_TRUE(json["wanted"]["slip_force"]["relative"]);
+}
+
+TEST(PlanText, SaysHowManyCyclesWouldReachIt) {
+  PlanRequest request = Known();
+  request.wanted = {{"alpha", {.value = 1e-4}}};
+  const Plan plan = Made(request);
+  EXPECT_FALSE(plan.established());
+  const auto reached = nlohmann::json::parse(ToJson(plan))["reached"][0];
+  EXPECT_TRUE(reached["least_amplitude"].is_null());
+  EXPECT_EQ(reached["fewest_cycles"], plan.columns[0].fewest.cycles);
+  // Errors fall with the root of the cycles: those of three times (error/wanted)².
+  identification::Protocol looked = plan.columns[0].fewest;
+  looked.cycles = request.cycles;
+  const double error =
+      *identification::ExpectFit(plan.expected, looked).Find("alpha")->standard_error;
+  EXPECT_NEAR(plan.columns[0].fewest.cycles, std::ceil(3 * std::pow(error / 1e-4, 2)), 1.0);
+  EXPECT_THAT(ToText(plan), HasSubstr("steady: no amplitude reaches it with 3 cycles"));
+}
+
+TEST(PlanPlot, DrawsRelativeErrorsOverTheAmplitudeAtSlip) {
+  const Plan plan = Made(Known());
+  const io::Plot plot = ToPlot(plan);
+  ASSERT_EQ(plot.panels.size(), 1U);
+  const io::PlotSeries& sigma = plot.panels[0].series.at(0);
+  EXPECT_EQ(sigma.label, "sigma, relative");
+  ASSERT_FALSE(sigma.x.empty());
+  EXPECT_NEAR(sigma.x.back(), 10.0, 1e-12);
+  identification::Protocol widest = plan.columns[0].loops[0].protocol;
+  widest.amplitude = 10 * plan.slip;
+  const identification::ExpectedFit fit = identification::ExpectFit(plan.expected, widest);
+  constexpr double kRounding = 1e-9;
+  EXPECT_NEAR(sigma.y.back() / (*fit.Find("sigma")->standard_error / 4e7), 1.0, kRounding);
+  EXPECT_NEAR(plot.panels[0].series.at(1).y.back() / *fit.Find("alpha")->standard_error, 1.0,
+              kRounding);
+}
+
+TEST(MakePlan, OfALoadSeriesIsOfTheLawAtTheMeanLoad) {
+  PlanRequest request = Known();
+  request.load_ratios = {0.5, 1.0, 3.0};
+  request.load_exponent = 0.4;
+  const identification::ExpectedFit fit = Made(request).columns[0].loops[0];
+  constexpr double kRounding = 1e-9;
+  EXPECT_NEAR(fit.Find("slip_force")->value, 1.5 * 40, 60 * kRounding);  // the mean load is 1.5
+  EXPECT_NEAR(fit.Find("sigma")->value / (4e7 * std::pow(1.5, 0.4)), 1.0, kRounding);
+  EXPECT_NEAR(fit.Find("load_exponent")->value, 0.4, kRounding);
+  request.load_ratios.clear();
+  EXPECT_THROW(Made(request), InputError);
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #include "mindahl/request/track.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/prelude.h"
 
 namespace mindahl::request::track_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 TrackedTest TestOf(std::size_t fits) {
   TrackedTest test;
@@ -30,6 +29,83 @@ TEST(TrackedTest, CountsACycleOnceThatHasTwoFlags) {
   EXPECT_EQ(test.fits, 2U);
   EXPECT_EQ(test.flagged, 1U);
   EXPECT_EQ(test.flags.at("alpha_open"), 1U);
+}
+
+/// A fit of a row that stands for `cycles`, which lose an energy each.
+campaign::CycleFit Losing(double energy, std::vector<std::string> flags = {}) {
+  campaign::CycleFit fit;
+  fit.samples = 101;
+  fit.energy = energy;
+  fit.flags = std::move(flags);
+  return fit;
+}
+
+TrackedTest Lossy(std::vector<campaign::CycleFit> fits, std::size_t together) {
+  TrackedTest test(together);
+  for (campaign::CycleFit& fit : fits) {
+    fit.number = 1 + test.fits * together;
+    test.energy.Add(fit);
+    test.Add(fit);
+  }
+  return test;
+}
+
+TEST(TrackedTest, StatesWhatItsCyclesLoseAndWhichOfThemCount) {
+  // Two cycles a row: 2·(3 + 5), an open row by the median energy a sample of those before, and
+  // again 2·7.
+  TrackedTest test = Lossy(
+      {Losing(3.0), Losing(5.0), Losing(100.0, {"not_closed"}), Losing(7.0, {"sigma_open"})}, 2);
+  test.cycles = 8;
+  test.samples = 812;
+  test.unused_samples = 5;
+  test.output = "t.csv";
+  const auto json = nlohmann::json::parse(ToJson(test, test.courses.Describe()));
+  EXPECT_NEAR(json["accumulated_energy"], 2 * (3.0 + 5 + 4 + 7), 1e-12);
+  EXPECT_EQ(json["energy_counts"]["measured"], 3);
+  EXPECT_EQ(json["energy_counts"]["replaced"], 1);
+  EXPECT_EQ(json["energy_counts"]["left_out"], 0);
+  EXPECT_EQ(json["fits"], 4);
+  EXPECT_EQ(json["flagged"], 2);
+  EXPECT_EQ(json["flags"]["not_closed"], 1);
+  EXPECT_EQ(json["flags"]["not_converged"], 0);
+  EXPECT_EQ(json["input"]["unused_samples"], 5);
+  const std::string text = ToText(test, test.courses.Describe());
+  EXPECT_THAT(text, StartsWith("8 cycles of 812 samples, 4 fits in t.csv\n"));
+  EXPECT_THAT(text,
+              HasSubstr("5 samples at the ends are part of no whole cycle\n38 J dissipated in "
+                        "all, counting 1 that do not close by those before them\n"));
+  EXPECT_THAT(text, HasSubstr("2 cycles have a flag:"));
+}
+
+TEST(TrackedTest, IsEstablishedUnlessNoFitConverged) {
+  EXPECT_TRUE(Lossy({Losing(1.0), Losing(1.0, {"not_converged"})}, 1).established());
+  EXPECT_FALSE(
+      Lossy({Losing(1.0, {"not_converged"}), Losing(1.0, {"not_converged"})}, 1).established());
+}
+
+TEST(SeparateTests, AddUp) {
+  SeparateTests tests("table.csv", /*has_document=*/true);
+  tests.Add("a.csv", "", Lossy({Losing(3.0), Losing(5.0, {"sigma_open"})}, 1), false);
+  EXPECT_TRUE(tests.established());
+  tests.Add("b.csv", "b.csv:7: no number", Lossy({Losing(0.5)}, 4), false);
+  EXPECT_FALSE(tests.established());
+  EXPECT_EQ(tests.size(), 2U);
+  const auto json = nlohmann::json::parse(tests.ToJson());
+  EXPECT_EQ(json["fits"], 3);
+  EXPECT_EQ(json["flagged"], 1);
+  EXPECT_EQ(json["accumulated_energy"], 10.0);
+  ASSERT_EQ(json["tests"].size(), 2U);
+  EXPECT_EQ(json["tests"][0]["file"], "a.csv");
+  EXPECT_EQ(json["tests"][0]["accumulated_energy"], 8.0);
+  EXPECT_TRUE(json["tests"][0]["fault"].is_null());
+  EXPECT_EQ(json["tests"][0]["flags"]["sigma_open"], 1);
+  EXPECT_EQ(json["tests"][1]["fits"], 1);
+  EXPECT_EQ(json["tests"][1]["accumulated_energy"], 2.0);
+  EXPECT_EQ(json["tests"][1]["fault"], "b.csv:7: no number");
+  EXPECT_THAT(
+      tests.ToText(),
+      StartsWith("2 tests, 3 fits in table.csv\n10 J dissipated in all\n1 cycle has a flag\n"
+                 "1 of the tests failed:\n  b.csv:7: no number\n"));
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <iterator>
 #include <numbers>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/nearest_name.h"
@@ -333,6 +336,14 @@ void Parameters::RequireShapedColumns() const {
     if (any) continue;
     throw InvalidArgument(fmt::format("{} has no effect without a term {}: add it",
                                       shaping.term->name, shaping.term->shapes));
+  }
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kTogether = {
+      {{"slip_speed", "slip_speed_exponent"}, {"drag_fraction", "drag_exponent"}}};
+  for (const auto& [size, exponent] : kTogether) {
+    const bool has_size = !parameters_[PositionOf(size, 0)].absent;
+    if (has_size == !parameters_[PositionOf(exponent, 0)].absent) continue;
+    throw InvalidArgument(
+        fmt::format("{} needs {}: add it", has_size ? size : exponent, has_size ? exponent : size));
   }
 }
 

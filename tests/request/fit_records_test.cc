@@ -1,0 +1,198 @@
+#include "io/temporary_directory.h"
+#include "mindahl/report/report.h"
+#include "mindahl/request/fit_request.h"
+#include "support/histories.h"
+#include "support/prelude.h"
+
+// What is refused of records before they are fitted, and what is taken from them.
+namespace mindahl::request::fit_records_test {
+namespace {
+
+const Tell kIgnore = [](std::string_view) {};
+
+/// A loop in 2.5 cycles of 40 samples, in a file whose rows begin with the third line.
+io::RecordFile LoopFile() {
+  io::RecordFile file;
+  for (std::size_t i = 0; i <= 100; ++i) {
+    file.record.displacement.push_back(
+        2e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 40));
+    file.lines.push_back(i + 3);
+  }
+  file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
+                                       file.record.displacement);
+  Generator generator(4);
+  for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
+  file.displacement.number = 2;
+  file.force.number = 4;
+  return file;
+}
+
+std::string RefusalOf(const std::vector<io::RecordFile>& files, FitRequest request = {}) {
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    request.files.push_back(std::string(1, static_cast<char>('a' + k)) + ".csv");
+  }
+  try {
+    FitRecords(request, files, kIgnore);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FitRecords, RefusesADisplacementThatNeverChanges) {
+  io::RecordFile file = LoopFile();
+  file.record.displacement.assign(101, 0.5);
+  EXPECT_THAT(RefusalOf({LoopFile(), file}),
+              StartsWith("b.csv:3:2: the displacement never changes, it is 0.5 m in every row"));
+  file.is_torsional = true;
+  EXPECT_THAT(RefusalOf({file}), HasSubstr("it is 0.5 rad in every row"));
+}
+
+TEST(FitRecords, RefusesAForceThatNeverChangesInAnyFile) {
+  io::RecordFile file = LoopFile();
+  file.record.force.assign(101, -7.0);
+  EXPECT_THAT(RefusalOf({file}), StartsWith("a.csv:3:4: the force never changes, it is -7 N"));
+  EXPECT_THAT(RefusalOf({file, file}), StartsWith("a.csv:3:4"));
+  // A file at rest beside one that is loaded is one of the contact's.
+  EXPECT_THAT(RefusalOf({LoopFile(), file}), Not(HasSubstr("never changes")));
+}
+
+TEST(FitRecords, RefusesUnitsBeyondAnyAtTheWidestValue) {
+  io::RecordFile file = LoopFile();
+  file.record.displacement[20] = 4e101;
+  file.record.displacement[30] = -9e101;
+  EXPECT_THAT(RefusalOf({file}),
+              StartsWith("a.csv:33:2: half the range of the displacement is 6.5e+101 m"));
+  file = LoopFile();
+  for (double& force : file.record.force) force *= 1e-103;
+  EXPECT_THAT(RefusalOf({file}),
+              AllOf(StartsWith("a.csv:"), HasSubstr(":4: half the range of the force is")));
+  file.lines.clear();  // a record that no file gave
+  EXPECT_THAT(RefusalOf({file}), StartsWith("a.csv:4: half the range"));
+}
+
+TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
+  FitRequest request;
+  request.reversal_gate = 4.1e-6;
+  EXPECT_THAT(RefusalOf({LoopFile()}, request),
+              HasSubstr("--reversal-gate 4.1e-06: the whole motion is 4e-06 m wide"));
+  io::RecordFile wider = LoopFile();
+  for (double& x : wider.record.displacement) x *= 1.1;
+  EXPECT_THAT(RefusalOf({LoopFile(), wider}, request), Not(HasSubstr("--reversal-gate")));
+  request.noise_in = "displacement";
+  request.reversal_gate = 1000.0;
+  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("the whole force is"));
+}
+
+TEST(FitRecords, RefusesAForceBesideATorque) {
+  io::RecordFile torque = LoopFile();
+  torque.is_torsional = true;
+  EXPECT_EQ(RefusalOf({torque, LoopFile()}),
+            "b.csv holds a force and a.csv a torque: fit them apart");
+  EXPECT_EQ(RefusalOf({LoopFile(), torque}),
+            "a.csv holds a force and b.csv a torque: fit them apart");
+}
+
+TEST(FitRecords, RefusesALoadWindowThatHoldsNoSample) {
+  io::RecordFile file = LoopFile();
+  for (std::size_t i = 0; i <= 100; ++i) file.record.normal_load.push_back(i < 50 ? 80 : 120);
+  FitRequest request;
+  request.load_window = {90, 110};
+  EXPECT_EQ(RefusalOf({file}, request),
+            "a.csv: --load-window 90:110 holds no sample: the normal load runs from 80 to 120 N");
+  request.load_window = {121, 130};
+  EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
+  request.load_window = {60, 79};
+  EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
+  request.load_window = {60, 80};
+  EXPECT_THAT(RefusalOf({file}, request), Not(HasSubstr("holds no sample")));
+  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("--load-window needs a normal load"));
+}
+
+TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {
+  FitRequest request;
+  request.contact.normal_loads = {{50.0, 0.0}, {60.0, 0.0}};
+  EXPECT_THAT(RefusalOf({LoopFile()}, request), StartsWith("--normal-load: 2 loads for 1 file:"));
+  EXPECT_THAT(RefusalOf({LoopFile(), LoopFile(), LoopFile()}, request),
+              StartsWith("--normal-load: 2 loads for 3 files:"));
+}
+
+TEST(FitRecords, RefusesAUnitOfAColumnThatNoFileHas) {
+  FitRequest request;
+  request.columns.time.unit = "ms";
+  EXPECT_THAT(RefusalOf({LoopFile()}, request),
+              StartsWith("--time-unit ms: a.csv has no column of the time"));
+  io::RecordFile timed = LoopFile();
+  timed.time.emplace().number = 1;
+  EXPECT_THAT(RefusalOf({LoopFile(), timed}, request), Not(HasSubstr("--time-unit")));
+}
+
+TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {
+  io::RecordFile file = LoopFile();
+  for (std::size_t i = 0; i <= 100; ++i) {
+    file.record.normal_load.push_back(i == 7 ? 300.0 : i == 50 ? 1.0 : i % 2 == 0 ? 79.9 : 80.3);
+  }
+  FitRequest request;
+  request.files = {"a.csv"};
+  request.load_window = {70, 90};
+  std::string told;
+  const report::Report report =
+      FitRecords(request, {file}, [&](std::string_view text) { told += text; });
+  // 50 even samples of 79.9 and 49 odd ones of 80.3 are within it.
+  const double mean = (50 * 79.9 + 49 * 80.3) / 99;
+  ASSERT_TRUE(report.known.normal_load);
+  EXPECT_NEAR(report.known.normal_load->value, mean, 1e-9);
+  EXPECT_THAT(told, HasSubstr("normal load: the mean of its column, 80.098 N"));
+}
+
+TEST(FitRecords, JoinsPiecesOfOneRecord) {
+  const io::RecordFile whole = LoopFile();
+  io::RecordFile first = whole;
+  io::RecordFile second = whole;
+  const auto cut = [](std::vector<double>& column, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    column = std::vector<double>(column.begin() + begin, column.begin() + end);
+  };
+  cut(first.record.displacement, 0, 41);
+  cut(first.record.force, 0, 41);
+  cut(second.record.displacement, 41, 101);
+  cut(second.record.force, 41, 101);
+  FitRequest request;
+  request.files = {"a.csv", "b.csv"};
+  request.join = true;
+  const report::Report joined = FitRecords(request, {first, second}, kIgnore);
+  EXPECT_EQ(joined.files, std::vector<std::string>{"a.csv … b.csv"});
+  request.files = {"a.csv"};
+  request.join = false;
+  const report::Report one = FitRecords(request, {whole}, kIgnore);
+  EXPECT_EQ(joined.fit.law.slip_force, one.fit.law.slip_force);
+  EXPECT_EQ(joined.fit.rms, one.fit.rms);
+}
+
+TEST(ReadRecords, HoldNoMoreRowsInAllThanAreAllowed) {
+  const TemporaryDirectory directory;
+  FitRequest request;
+  request.files = {directory.Write("a.csv", "x [m],F [N]\n0,0\n1,1\n0,2\n").string(),
+                   directory.Write("b.csv", "x [m],F [N]\n0,0\n1,1\n").string()};
+  // Three rows leave three, as many as the second file has lines: a header is not known before.
+  request.max_rows = 6;
+  EXPECT_EQ(ReadRecords(request, kIgnore).size(), 2U);
+  request.max_rows = 5;
+  EXPECT_THROW(ReadRecords(request, kIgnore), InputError);
+  request.files.pop_back();
+  EXPECT_EQ(ReadRecords(request, kIgnore).size(), 1U);
+}
+
+TEST(WarningsBesideText, OfAnInadequateFitAreThoseOfTheRecord) {
+  report::Report report;
+  report.fit_warnings = {{"fit_failed", "1"},
+                         {"slip_force_bounded_below", "2"},
+                         {"no_closed_cycle", "3"},
+                         {"few_places", "4"}};
+  report.contact_warnings = {{"contact_implausible", "5"}, {"redundant_input", "6"}};
+  EXPECT_THAT(WarningsBesideText(report), ElementsAre("2", "3", "4", "5"));
+  report.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
+  EXPECT_THAT(WarningsBesideText(report), ElementsAre("3", "4", "5"));
+}
+
+}  // namespace
+}  // namespace mindahl::request::fit_records_test

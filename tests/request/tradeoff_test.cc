@@ -1,0 +1,136 @@
+#include "mindahl/request/tradeoff.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/prelude.h"
+
+// What is said of a study that is made by hand.
+namespace mindahl::request::tradeoff_test {
+namespace {
+
+using tradeoff::Criterion;
+using tradeoff::WorkPrecision;
+
+WorkPrecision Point(std::string model, std::string method, double cost, double max_force) {
+  return {
+      .approximation = {std::move(model), std::move(method)},
+      .precision = {.max_force = max_force, .rms_force = max_force / 2, .energy = max_force / 4},
+      .cost = cost,
+      .measured_cost = 2 * cost};
+}
+
+/// Jenkins' model and the exact law along one drive, and where each serves.
+Tradeoff Study() {
+  Tradeoff study;
+  study.law = {4e7, 1.0 / 3, 40.0};
+  study.studied.tolerances = {0.01, 0.05};
+  study.excitations.push_back(
+      {.name = "micro",
+       .title = "micro-slip",
+       .samples = 1001,
+       .floor = {.memory = 0.5, .arithmetic = 1.5},
+       .points = {Point("jenkins", "exact", 3.0, 0.08), Point("mindlin", "exact", 12.0, 0.0)},
+       .front = {true, false}});
+  const double least = study.studied.least_lambda;
+  const double greatest = study.studied.greatest_lambda;
+  const auto add = [&](std::size_t cycle, double tolerance,
+                       std::vector<tradeoff::LambdaRange> ranges) {
+    study.regions.push_back({"jenkins", cycle, Criterion::kMaxForce, tolerance, std::move(ranges)});
+  };
+  add(1, 0.01, {{least, 0.02}, {1.25, greatest}});
+  add(1, 0.05, {{0.25, 0.75}});
+  add(2, 0.01, {{least, 0.02}, {1.25, greatest}});
+  add(2, 0.05, {{0.25, 0.75}});
+  add(3, 0.01, {});
+  add(3, 0.05, {{least, greatest}});
+  return study;
+}
+
+std::vector<std::string> LinesWith(const std::string& text, std::string_view words) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find(words) != std::string::npos) lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(TradeoffText, SaysRangesByTheirEndsWithinWhatWasStudied) {
+  const std::vector<std::string> rows = LinesWith(ToText(Study()), "jenkins   ");
+  // The points' row, then cycles 1 and 3: the second is like the first.
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_THAT(rows[0],
+              AllOf(HasSubstr(" 1 force"), HasSubstr("< 0.02, > 1.25"), HasSubstr("0.25 … 0.75")));
+  EXPECT_THAT(rows[1], AllOf(HasSubstr(" 3 force"), HasSubstr(" -  "), HasSubstr(" all ")));
+  EXPECT_LT(rows[0].find("1.25"), rows[0].find("0.25"));  // in the order of the tolerances
+}
+
+TEST(TradeoffText, StatesThePointsWithTheirCostOverTheFloor) {
+  const std::string text = ToText(Study());
+  EXPECT_THAT(text, AllOf(HasSubstr("sigma = 4e+07 N/m, alpha = 0.333333, Tc = 40 N"),
+                          HasSubstr("micro-slip: 1001 samples"),
+                          HasSubstr("0.50 ns/sample for memory, 1.50 with")));
+  const std::vector<std::string> rows = LinesWith(text, "jenkins by exact");
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_THAT(rows[0], StartsWith("* jenkins"));
+  EXPECT_THAT(LinesWith(text, "mindlin by exact")[0], StartsWith("  mindlin"));
+  std::istringstream cells(rows[0].substr(rows[0].find("exact") + 5));
+  double cost = 0.0;
+  double measured = 0.0;
+  double over_floor = 0.0;
+  double max_force = 0.0;
+  double rms_force = 0.0;
+  double energy = 0.0;
+  cells >> cost >> measured >> over_floor >> max_force >> rms_force >> energy;
+  EXPECT_EQ(cost, 3.0);
+  EXPECT_EQ(measured, 6.0);
+  EXPECT_NEAR(over_floor, 3.0 / tradeoff::ModelledCostFloor().arithmetic, 0.05);  // one decimal
+  EXPECT_EQ(max_force, 0.08);
+  EXPECT_EQ(rms_force, 0.04);
+  EXPECT_EQ(energy, 0.02);
+}
+
+TEST(TradeoffCsv, HasARowForEveryPointAndEveryRange) {
+  const std::string points = PointsCsv(Study());
+  EXPECT_THAT(points, HasSubstr("\nmicro,jenkins,exact,,,3,6.0,"));
+  EXPECT_THAT(points, HasSubstr(",0.08,0.04,0.02,1,,,\n"));
+  EXPECT_THAT(points, HasSubstr("\nmicro,mindlin,exact,,,12,24.0,"));
+  EXPECT_THAT(points, HasSubstr(",0,0,0.0,0,,,\n"));
+  const std::string regions = RegionsCsv(Study());
+  EXPECT_EQ(std::ranges::count(regions, '\n'), 1 + 2 + 1 + 2 + 1 + 1);
+  EXPECT_THAT(regions, HasSubstr("\njenkins,2,force,0.05,0.25,0.75\n"));
+}
+
+TEST(TradeoffJson, HasWhatTheStudyHas) {
+  const auto json = nlohmann::json::parse(ToJson(Study()));
+  EXPECT_EQ(json["law"]["sigma"], 4e7);
+  EXPECT_EQ(json["law"]["slip_force"], 40.0);
+  const auto& scene = json["excitations"][0];
+  EXPECT_EQ(scene["samples"], 1001);
+  EXPECT_TRUE(scene["points"][0]["pareto"]);
+  EXPECT_FALSE(scene["points"][1]["pareto"]);
+  EXPECT_EQ(scene["points"][0]["measured_ns_per_sample"], 6.0);
+  EXPECT_EQ(scene["points"][0]["energy_error"], 0.02);
+  ASSERT_EQ(json["model_regions"].size(), 6U);
+  EXPECT_EQ(json["model_regions"][1]["lambda"][0], (std::vector<double>{0.25, 0.75}));
+  EXPECT_EQ(json["model_regions"][0]["lambda"][1][0], 1.25);
+}
+
+TEST(TradeoffPlot, DrawsErrorsOverCostsAndAnExactOneAboveNought) {
+  const io::Plot plot = ToPlot(Study());
+  ASSERT_EQ(plot.panels.size(), 1U);
+  EXPECT_TRUE(plot.panels[0].log_x && plot.panels[0].log_y);
+  ASSERT_EQ(plot.panels[0].series.size(), 2U);
+  const io::PlotSeries& jenkins = plot.panels[0].series[0];
+  EXPECT_EQ(jenkins.label, "jenkins");
+  EXPECT_EQ(jenkins.x, std::vector{3.0});
+  EXPECT_EQ(jenkins.y, std::vector{0.08});
+  const io::PlotSeries& exact = plot.panels[0].series[1];
+  EXPECT_EQ(exact.label, "exact");
+  EXPECT_EQ(exact.x, std::vector{12.0});
+  EXPECT_GT(exact.y[0], 0.0);
+}
+
+}  // namespace
+}  // namespace mindahl::request::tradeoff_test

@@ -1,0 +1,290 @@
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "mindahl/identification/terms.h"
+#include "mindahl/report/report.h"
+#include "mindahl/request/fit_request.h"
+#include "report/fields.h"
+#include "support/histories.h"
+#include "support/prelude.h"
+#include "support/unit_scale.h"
+
+// Every number of a fit's JSON follows the units of its record, as the contract states its unit.
+// The factors are powers of two, which round nothing: what is scaled is the same but for its
+// exponent.
+namespace mindahl::request::units_test {
+namespace {
+
+using nlohmann::json;
+
+/// Splits "parameters.sigma.ci95[0]" into its names and places.
+std::vector<std::string> PartsOf(std::string_view path) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end =
+        std::min(path.find_first_of(".[", path[begin] == '[' ? begin + 1 : begin), path.size());
+    parts.emplace_back(path.substr(begin, end - begin));
+    begin = end < path.size() && path[end] == '.' ? end + 1 : end;
+  }
+  return parts;
+}
+
+bool Describes(const std::vector<std::string>& pattern, const std::vector<std::string>& path) {
+  return std::ranges::equal(pattern, path, [](const std::string& one, const std::string& other) {
+    const bool is_place = one == "[]" && other.starts_with('[');
+    return one == other || one == "NAME" || one == "QUANTITY" || is_place;
+  });
+}
+
+/// Returns the unit that the contract states of a path; empty where it states none.
+const std::string& StatedUnit(const std::string& path) {
+  static const auto described = [] {
+    std::vector<std::pair<std::vector<std::string>, std::string>> rows;
+    for (const report::FieldDescription& field : report::DescribeFields()) {
+      rows.emplace_back(PartsOf(field.path), field.unit);
+    }
+    return rows;
+  }();
+  static std::map<std::string, std::string> known;
+  const auto found = known.find(path);
+  if (found != known.end()) return found->second;
+  // A list with one entry a file, and a value with its error, may be described by their own path.
+  std::vector<std::string> parts = PartsOf(path);
+  const auto row_of = [&] {
+    return std::ranges::find_if(described,
+                                [&](const auto& one) { return Describes(one.first, parts); });
+  };
+  auto row = row_of();
+  const auto is_detail = [](const std::string& part) {
+    return part.starts_with('[') || part == "value" || part == "standard_error";
+  };
+  while (row == described.end() && is_detail(parts.back())) {
+    parts.pop_back();
+    row = row_of();
+  }
+  return known[path] = row == described.end() ? "" : row->second;
+}
+
+struct Leaf {
+  json value;
+  std::string unit;
+};
+
+/// Lists the numbers, flags and codes; what is a sentence or the name of a unit is not compared.
+void Collect(const json& value, const std::string& path, const std::string& own_unit,
+             bool is_forced, std::map<std::string, Leaf>& leaves) {
+  if (value.is_object()) {
+    const std::string unit = value.contains("unit") && value["unit"].is_string()
+                                 ? value["unit"].get<std::string>()
+                                 : own_unit;
+    for (const auto& [key, member] : value.items()) {
+      static const std::set<std::string> kWords = {"message", "unit",    "label", "formula",
+                                                   "version", "meaning", "text",  "files",
+                                                   "units",   "boundary"};
+      if (kWords.contains(key)) continue;
+      Collect(member, path.empty() ? key : path + "." + key, unit, is_forced, leaves);
+    }
+  } else if (value.is_array()) {
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      Collect(value[k], path + "[" + std::to_string(k) + "]", own_unit, is_forced, leaves);
+    }
+  } else {
+    std::string unit = StatedUnit(path);
+    if (unit == "N or m") unit = is_forced ? "m" : "N";
+    if (unit == "m or N") unit = is_forced ? "N" : "m";
+    if (unit.starts_with("of the")) unit = own_unit;
+    if (path.ends_with("_cost")) unit = is_forced ? "m²" : "N²";  // half a sum of squares
+    leaves[path] = {value, unit};
+  }
+}
+
+std::map<std::string, Leaf> LeavesOf(const report::Report& report, bool is_forced) {
+  std::map<std::string, Leaf> leaves;
+  Collect(json::parse(report::ToJson(report)), "", "", is_forced, leaves);
+  return leaves;
+}
+
+constexpr std::size_t kCycle = 64;  // samples
+
+/// A loop beyond gross slip from rest, with noise, a normal load and a time in steps of 2⁻⁷ s.
+loop::Record MeasuredLoop(std::uint64_t seed, double load = 1.0) {
+  Generator generator(seed);
+  loop::Record record;
+  for (std::size_t i = 0; i <= 5 * kCycle / 2; ++i) {
+    const double phase = static_cast<double>(i) / static_cast<double>(kCycle);
+    record.displacement.push_back(2.4e-6 * std::sin(2 * std::numbers::pi * phase));
+    record.time.push_back(std::ldexp(static_cast<double>(i), -7));
+  }
+  record.force =
+      testing::Respond(testing::Model("mindlin-dahl"),
+                       {4e7 * std::cbrt(load), 1.0 / 3, 40.0 * load}, record.displacement);
+  for (double& force : record.force) force += 0.2 * testing::Normal(generator);
+  return record;
+}
+
+io::RecordFile FileOf(loop::Record record, const UnitScale& scale) {
+  const auto multiply = [](std::vector<double>& column, double factor) {
+    for (double& value : column) value *= factor;
+  };
+  multiply(record.displacement, scale.length);
+  multiply(record.force, scale.force);
+  multiply(record.time, scale.time);
+  multiply(record.normal_load, scale.force);
+  io::RecordFile file;
+  file.record = std::move(record);
+  return file;
+}
+
+/// A question and the records that it is asked of, in some units.
+struct Question {
+  std::string name;
+  std::function<FitRequest(const UnitScale&)> request;
+  std::function<std::vector<loop::Record>()> records;
+  bool is_forced = false;
+};
+
+void PrintTo(const Question& question, std::ostream* out) { *out << question.name; }
+
+report::Report Ask(const Question& question, const UnitScale& scale) {
+  FitRequest request = question.request(scale);
+  std::vector<io::RecordFile> files;
+  for (const loop::Record& record : question.records()) {
+    request.files.push_back("loop" + std::to_string(files.size() + 1));
+    files.push_back(FileOf(record, scale));
+  }
+  return FitRecords(request, std::move(files), [](std::string_view) {});
+}
+
+FitRequest WithTerms(std::initializer_list<std::string_view> names) {
+  FitRequest request;
+  for (const std::string_view name : names) request.terms[name] = {};
+  return request;
+}
+
+/// What is known of a steel sphere on a plane, in some units.
+void DescribeContact(const UnitScale& scale, ContactOptions& contact) {
+  const double pressure = scale.force / (scale.length * scale.length);
+  for (contact::KnownBody* const body : {&contact.known.body_1, &contact.known.body_2}) {
+    body->youngs_modulus = contact::UncertainValue{210e9 * pressure, 5e9 * pressure};
+    body->poisson_ratio = contact::UncertainValue{0.3, 0.01};
+  }
+  contact.known.body_1.radius = contact::UncertainValue{0.02 * scale.length, 1e-4 * scale.length};
+  contact.known.body_2.radius = contact::UncertainValue{std::numeric_limits<double>::infinity(), 0};
+}
+
+std::vector<Question> Questions() {
+  const auto one = [] { return std::vector{MeasuredLoop(1)}; };
+  const auto plain = [](FitRequest request) {
+    return [request](const UnitScale&) { return request; };
+  };
+  FitRequest dahl;
+  dahl.model = "dahl";
+  FitRequest forced;
+  forced.noise_in = "displacement";
+  FitRequest robust;
+  robust.loss = "huber";
+  FitRequest of_position = WithTerms({"slip_trend"});
+  of_position.terms["slip_slope"].form = "quadratic";
+  FitRequest automatic;
+  automatic.model = "auto";
+  return {
+      {"plain", plain({}), one},
+      {"dahl", plain(dahl), one},
+      {"robust", plain(robust), one},
+      {"model_auto", plain(automatic), one},
+      {"displacement_fitted", plain(forced), one, true},
+      {"noise_given",
+       [](const UnitScale& scale) {
+         FitRequest request;
+         request.force_noise = 0.2 * scale.force;
+         request.displacement_noise = 5e-9 * scale.length;
+         request.fix["sigma"] = 4.1e7 * scale.force / scale.length;
+         request.start["slip_force"] = 35 * scale.force;
+         request.reversal_gate = 1e-8 * scale.length;
+         return request;
+       },
+       one},
+      {"prior",
+       [](const UnitScale& scale) {
+         FitRequest request;
+         request.prior["slip_force"] = {41 * scale.force, 0.5 * scale.force};
+         request.regions = true;
+         return request;
+       },
+       one},
+      {"forces_of_motion", plain(WithTerms({"viscous", "inertia", "force_drift"})), one},
+      {"forces_of_position", plain(WithTerms({"plateau_slope", "plateau_curvature"})), one},
+      {"slip_of_position", plain(of_position), one},
+      {"slip_of_speed", plain(WithTerms({"slip_speed_exponent"})), one},
+      {"rig", plain(WithTerms({"rig_stiffness"})), one},
+      {"lag", plain(WithTerms({"lag"})), one},
+      {"backlash", plain(WithTerms({"backlash"})), one},
+      {"asymmetry", plain(WithTerms({"asymmetry"})), one},
+      {"load_series",
+       [](const UnitScale& scale) {
+         FitRequest request;
+         const std::vector<contact::UncertainValue> loads = {{60 * scale.force, 0.5 * scale.force},
+                                                             {120 * scale.force, scale.force}};
+         SetNormalLoads(request.contact, loads);
+         DescribeContact(scale, request.contact);
+         return request;
+       },
+       [] {
+         return std::vector{MeasuredLoop(2, 0.75), MeasuredLoop(3, 1.5)};
+       }},
+      {"measured_load",
+       [](const UnitScale& scale) {
+         FitRequest request;
+         DescribeContact(scale, request.contact);
+         return request;
+       },
+       [] {
+         loop::Record record = MeasuredLoop(4);
+         for (std::size_t i = 0; i < record.size(); ++i) {
+           record.normal_load.push_back(80 + 0.2 * std::sin(0.37 * static_cast<double>(i)));
+         }
+         return std::vector{record};
+       }},
+  };
+}
+
+class AnyQuestion : public ::testing::TestWithParam<Question> {};
+
+TEST_P(AnyQuestion, IsAnsweredInTheUnitsOfTheRecord) {
+  // Within what is thought plausible of a contact: E of 53 GPa.
+  constexpr UnitScale kOther{.length = 4.0, .force = 4.0, .time = 0.25};
+  constexpr double kRounding = 1e-9;
+  const auto plain = LeavesOf(Ask(GetParam(), {}), GetParam().is_forced);
+  const auto scaled = LeavesOf(Ask(GetParam(), kOther), GetParam().is_forced);
+  ASSERT_GT(plain.size(), 100U);
+  ASSERT_EQ(plain.size(), scaled.size());
+  for (const auto& [path, leaf] : plain) {
+    ASSERT_TRUE(scaled.contains(path)) << path;
+    const json& other = scaled.at(path).value;
+    if (!leaf.value.is_number_float() || !other.is_number_float()) {
+      EXPECT_EQ(leaf.value, other) << path;
+      continue;
+    }
+    const double expected = leaf.value.get<double>() * kOther.Of(leaf.unit);
+    EXPECT_NEAR(other.get<double>(), expected, kRounding * std::abs(expected))
+        << path << " [" << leaf.unit << "]";
+  }
+}
+
+TEST_P(AnyQuestion, IsAnsweredAlikeWheneverTheRecordBegins) {
+  Question later = GetParam();
+  later.records = [records = GetParam().records] {
+    std::vector<loop::Record> shifted = records();
+    for (loop::Record& record : shifted) {
+      for (double& time : record.time) time += 1024.0;  // whole steps: nothing is rounded
+    }
+    return shifted;
+  };
+  EXPECT_EQ(report::ToJson(Ask(GetParam(), {})), report::ToJson(Ask(later, {})));
+}
+
+INSTANTIATE_TEST_SUITE_P(, AnyQuestion, ::testing::ValuesIn(Questions()),
+                         [](const auto& question) { return question.param.name; });
+
+}  // namespace
+}  // namespace mindahl::request::units_test
