@@ -29,10 +29,11 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
 
 void AddContactCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ContactCommandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "contact",
-      "Computes sigma = 8a/G*, alpha = 1/3 and Tc = mu N of a contact from materials, radii, load\n"
-      "and friction, or from contact radius and compliance, by Hertz and Mindlin.");
+  CLI::App* command =
+      app.add_subcommand("contact",
+                         "Computes sigma = 8a/G*, alpha = 1/3 and Tc = mu N of a contact from\n"
+                         "materials, radii, load and friction, or from contact radius and\n"
+                         "compliance, by Hertz and Mindlin.");
   AddExamples(
       *command, app,
       {"mindahl contact --friction 0.3 --normal-load 50±0.5 --radius-1 0.05 --radius-2 inf \\",

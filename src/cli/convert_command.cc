@@ -47,10 +47,11 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
 
 void AddConvertCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ConvertCommandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "convert",
-      "Converts a contact's steady loop to another law or program: parameters,\nthe remaining "
-      "error, and the amplitudes at which it is small.");
+  CLI::App* command =
+      app.add_subcommand("convert",
+                         "Converts a contact's steady loop to another law or program: the\n"
+                         "parameters, the remaining error, and the amplitudes at which it is\n"
+                         "small.");
   AddExamples(
       *command, app,
       {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",

@@ -144,13 +144,12 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
 
 void AddFitCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<FitCommandOptions>();
-  CLI::App* command = app.add_subcommand("fit",
-                                         "Fits sigma, alpha and Tc to one or more records of a "
-                                         "contact (several files: one joint fit)\n"
-                                         "and translates them into the contact. Exit status 3 when "
-                                         "the fit does not converge or, with\n"
-                                         "--strict, the model is not adequate or a parameter not "
-                                         "identifiable.");
+  constexpr const char* kAbout =
+      "Fits sigma, alpha and Tc to one or more records of a contact (several\n"
+      "files: one joint fit) and translates them into the contact. Exit\n"
+      "status 3 when the fit does not converge or, with --strict, the model\n"
+      "is not adequate or a parameter not identifiable.";
+  CLI::App* command = app.add_subcommand("fit", kAbout);
   AddExamples(*command, app,
               {"mindahl fit loop.csv --normal-load 50",
                "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",

@@ -102,10 +102,11 @@ void RunPlan(const PlanOptions& options, Console& console) {
 
 void AddPlanCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = app.add_subcommand(
-      "plan",
-      "Plans a measurement: the standard errors that a loop of each amplitude\nwould give, and the "
-      "smallest amplitude that reaches a wanted precision.\nExit status 3 when none does.");
+  CLI::App* command =
+      app.add_subcommand("plan",
+                         "Plans a measurement: the standard errors that a loop of each\n"
+                         "amplitude would give, and the smallest amplitude that reaches a wanted\n"
+                         "precision. Exit status 3 when none does.");
   AddExamples(
       *command, app,
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",

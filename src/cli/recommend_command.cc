@@ -75,9 +75,9 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<RecommendCommandOptions>();
   CLI::App* command =
       app.add_subcommand("recommend",
-                         "Finds the cheapest model and method that meet a tolerance along a given "
-                         "displacement: each\nis run and compared with the contact's exact Masing "
-                         "response (Mindlin's for alpha = 1/3).");
+                         "Finds the cheapest model and method that meet a tolerance along a\n"
+                         "given displacement: each is run and compared with the exact Masing\n"
+                         "response of the contact (Mindlin's for alpha = 1/3).");
   AddExamples(
       *command, app,
       {"mindahl recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --tolerance 1%",

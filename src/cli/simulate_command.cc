@@ -89,12 +89,13 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
 
 void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "simulate",
-      "Computes the tangential force of a model along an imposed displacement, or the "
-      "displacement\nunder an imposed force (--force-path), exactly for any history.\nThe contact "
-      "is unloaded at displacement zero; a first row that is not zero is the first\nloading step. "
-      "Writes time [s], displacement [m], force [N].");
+  CLI::App* command =
+      app.add_subcommand("simulate",
+                         "Computes the tangential force along an imposed displacement, or the\n"
+                         "displacement under an imposed force (--force-path), exactly for any\n"
+                         "history. The contact is unloaded at displacement zero; a first row\n"
+                         "that is not zero is the first loading step. Writes time [s],\n"
+                         "displacement [m], force [N].");
   AddExamples(*command, app,
               {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
                "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "

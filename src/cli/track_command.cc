@@ -603,9 +603,9 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
   CLI::App* command =
       app.add_subcommand("track",
-                         "Fits every cycle of a long record while reading it, in constant "
-                         "memory:\none row a cycle, and the changes over the test. --resume "
-                         "continues a\nrun that was ended. Exit status 3 when no fit converged.");
+                         "Fits every cycle of a long record while reading it, in constant\n"
+                         "memory: one row a cycle, and the changes over the test. --resume\n"
+                         "continues a run that was ended. Exit status 3 when no fit converged.");
   AddExamples(*command, app,
               {"mindahl track day1.csv --output cycles.csv",
                "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "

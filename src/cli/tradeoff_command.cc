@@ -68,11 +68,12 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
 
 void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
-  CLI::App* command = app.add_subcommand(
-      "tradeoff",
-      "Compares error and cost of every method and model along five excitations, the cost "
-      "by\ncounted operations and as measured in this run, and lists the amplitudes at which each "
-      "model\nis good enough. The default contact is that of Peyret et al. (2017).");
+  CLI::App* command =
+      app.add_subcommand("tradeoff",
+                         "Compares error and cost of every method and model along five\n"
+                         "excitations, the cost by counted operations and as measured in this\n"
+                         "run, and lists the amplitudes at which each model is good enough. The\n"
+                         "default contact is that of Peyret et al. (2017).");
   AddExamples(*command, app,
               {"mindahl tradeoff --excitation micro",
                "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "

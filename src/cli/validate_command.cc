@@ -44,13 +44,11 @@ void AddValidateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ValidateOptions>();
   CLI::App* command =
       app.add_subcommand("validate",
-                         "Tests the mapping: fits Mindlin loops of many contacts "
-                         "at many amplitudes and noise levels,\n"
-                         "by Masing's law and by Dahl's own, and compares sigma "
-                         "with 8a/G*, alpha with 1/3 and Tc with\n"
-                         "mu N. Exit status 3 when a case misses its tolerance, or the 95 % "
-                         "intervals cover the truth\n"
-                         "too rarely or too often.");
+                         "Tests the mapping: fits Mindlin loops of many contacts at many\n"
+                         "amplitudes and noise levels, by Masing's law and by Dahl's own, and\n"
+                         "compares sigma with 8a/G*, alpha with 1/3 and Tc with mu N. Exit\n"
+                         "status 3 when a case misses its tolerance, or the 95 % intervals cover\n"
+                         "the truth too rarely or too often.");
   AddExamples(
       *command, app,
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});

@@ -29,9 +29,8 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"mindahl": 13, "fit": 11, "simulate": 6, "contact": 2, "tradeoff": 3, "convert": 1,
-                   "recommend": 3, "plan": 2,
-                   "track": 8, "batch": 10}  # those that it shares with fit
+WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1, "recommend": 2,
+                   "plan": 1, "track": 4, "batch": 5}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")

@@ -158,8 +158,8 @@ TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
   EXPECT_THAT(text_of(50, false),
               HasSubstr("the intervals of slip_force are extended to include the effect of omitted "
                         "terms\n"));
-  EXPECT_THAT(text_of(50, true), HasSubstr("the effect of omitted terms and\n"
-                                           "  the measured half gap, 800 mN\n"));
+  EXPECT_THAT(text_of(50, true), HasSubstr("the effect of omitted terms and the measured\n"
+                                           "  half gap, 800 mN\n"));
   EXPECT_THAT(text_of(2, false), Not(HasSubstr("are extended")));
 }
 
