@@ -79,7 +79,7 @@ std::string InWords(const EnergyCounts& counts) {
   std::vector<std::string> parts;
   if (counts.replaced > 0) {
     parts.push_back(
-        fmt::format("{} unclosed cycles by the mean of those before them", counts.replaced));
+        fmt::format("{} unclosed cycles by the median of those before them", counts.replaced));
   }
   if (counts.left_out > 0) parts.push_back(fmt::format("{} as zero", counts.left_out));
   return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));

@@ -40,8 +40,9 @@ TEST(TestPage, ReportsSharedAlphaAndSourceOfEnergies) {
   test.energy_counts = {.measured = 95, .replaced = 3, .left_out = 2};
   const std::string page = ToPage(test);
   EXPECT_THAT(page, HasSubstr("shared alpha 0.35 ± 0.05, from 2 cycles"));
-  EXPECT_THAT(page,
-              HasSubstr("counting 3 that do not close by those before them and 2 by nothing"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("counting 3 unclosed cycles by the median of those before them and 2 as zero"));
 }
 
 TEST(Evolution, DrawsTimeHistoryBandAndChange) {

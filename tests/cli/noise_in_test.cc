@@ -114,7 +114,7 @@ TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
   EXPECT_THAT(refusal({"--force-noise", "0.1"}), HasSubstr("give --displacement-noise"));
   EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
               HasSubstr("rig_stiffness has no place in a fit of the displacement"));
-  EXPECT_THAT(refusal({"--reversal-gate", "100"}), HasSubstr("the whole force is 27 N wide"));
+  EXPECT_THAT(refusal({"--reversal-gate", "100"}), HasSubstr("the force ranges over 27 N only"));
   EXPECT_THAT(refusal({"--backbone", (directory_.path() / "b.csv").string()}),
               HasSubstr("--noise-in displacement"));
 }

@@ -53,7 +53,8 @@ TEST(Toml, NamesFileAndLineOfAFault) {
         Fault{"a =\n", "x.toml:1: a value is missing"},
         Fault{"a = \"b\nc = 1\n", "x.toml:1: a string is never closed"},
         Fault{"a = [1\n2]\n", "x.toml:2: a comma is missing before '2]'"},
-        Fault{"a = [[1]]\n", "x.toml:1: '[' is no value"}, Fault{"a = \"b\" c\n", "x.toml:1: 'c'"},
+        Fault{"a = [[1]]\n", "x.toml:1: '[' is no value"},
+        Fault{"a = \"b\" c\n", "x.toml:1: unexpected 'c'"},
         Fault{"a = \"b\\n\"\n", "x.toml:1: '\\n' is no escape"},
         Fault{"\n[fit\n", "x.toml:2: '[fit' lacks its ']'"}}) {
     EXPECT_THAT(MessageOf<InputError>([&] { ReadToml(fault.text, "x.toml"); }),

@@ -198,7 +198,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"GateNegative", {"fit", "@", "--reversal-gate", "-1"}, "--reversal-gate [m] = -1"},
     {"GateWiderThanTheMotion",
      {"fit", "@", "--reversal-gate", "1"},
-     "--reversal-gate 1: the whole motion is "},
+     "--reversal-gate 1: the motion ranges over "},
     {"LoadNotPositive", {"fit", "@", "--normal-load", "0"}, "--normal-load [N] = 0"},
     {"LoadNotANumber", {"fit", "@", "--normal-load", "ten"}, "--normal-load"},
     {"PoissonTooLarge", {"fit", "@", "--poisson-1", "0.6"}, "--poisson-1 [-] = 0.6"},

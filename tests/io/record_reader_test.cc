@@ -200,9 +200,9 @@ TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
 TEST(RecordReader, TakesSiWithNoteWhenNoUnitIsNamed) {
   EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
             (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m; "
-                     "--displacement-unit states another",
+                     "--displacement-unit sets another",
                      "loop.csv: force 'F' (column 2) names no unit: taken as N; "
-                     "--force-unit states another"}));
+                     "--force-unit sets another"}));
 }
 
 TEST(RecordReader, NotesColumnsTakenByPosition) {

@@ -110,8 +110,8 @@ def test_units_that_a_frame_does_not_name_are_warned_of_once(sphere):
     said = [str(warning.message) for warning in caught]
     assert said == [
         "record: displacement 'displacement' (column 1) names no unit: taken as m; displacement_unit "
-        "states another",
-        "record: force 'force' (column 2) names no unit: taken as N; force_unit states another"]
+        "sets another",
+        "record: force 'force' (column 2) names no unit: taken as N; force_unit sets another"]
     assert {warning.category for warning in caught} == {mindahl.FitWarning}
     assert {warning.filename for warning in caught} == {__file__}
     with warnings.catch_warnings():
