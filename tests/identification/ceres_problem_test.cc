@@ -37,8 +37,9 @@ FitOptions OptionsOf(const std::string& model, const std::string& term) {
   options.initial_state = InitialState::kVirgin;
   options.preparation.force_sense = 1;
   if (!term.empty()) options.terms = {term};
-  // The exponent of a force of the speed needs its factor.
+  // The exponent of a force of the speed, or of a slip force of the speed, needs its factor.
   if (term == "speed_exponent") options.terms.emplace_back("viscous");
+  if (term == "slip_speed_exponent") options.terms.emplace_back("slip_speed");
   if (term == "ripple_period") {
     for (const char* factor :
          {"ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down", "ripple_sine_down"}) {
