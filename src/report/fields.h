@@ -29,7 +29,7 @@ struct Value {
   /// Adds or replaces a member whose name is any text.
   void Set(const std::string& key, Value value);
   /// Adds the members of another value.
-  void Add(Value members);
+  void Add(const Value& members);
   /// Adds an element of a list.
   void Append(Value value);
 };

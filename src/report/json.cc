@@ -41,7 +41,7 @@ void Value::Set(const std::string& key, Value value) {
   AddNulls(nulls, key, std::move(value.nulls));
 }
 
-void Value::Add(Value members) {
+void Value::Add(const Value& members) {
   json.update(members.json);
   nulls.insert(nulls.end(), members.nulls.begin(), members.nulls.end());
 }

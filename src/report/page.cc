@@ -41,25 +41,24 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
          (WhatIsShown(*estimate) == Shown::kValue || WhatIsShown(*estimate) == Shown::kHeld);
 }
 
+/// True if the model misses something, whose causes were tried.
+bool IsUnexplained(const Report& report) {
+  return IsJudged(report) && report.fit.adequacy.verdict != AdequacyVerdict::kAdequate;
+}
+
 // --- the verdict
 
 std::string VerdictSection(const Report& report) {
   // The sentence begins with the verdict itself.
   std::string sentence = VerdictSentence(report);
   const std::string word(VerdictWord(report));
-  if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
+  for (const char* end : {": ", ", "}) {
+    if (sentence.starts_with(word + end)) sentence.erase(0, word.size() + 2);
+  }
   if (!report.fit.converged) sentence = report.fit.solver.message;
   std::string html = VerdictBlock(CssClass(JudgementOf(word)), word, sentence);
-  const identification::Adequacy& adequacy = report.fit.adequacy;
-  if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
-  const std::string next = NextStep(report);
-  if (!next.empty()) html += Paragraph("Next: " + next);
-  std::vector<std::string> others;
-  for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
-    others.push_back(Sentence(adequacy.causes[i], report.fit.response));
-  }
-  if (!others.empty()) html += Paragraph("It may also be:") + SentenceList(others);
-  return html;
+  const std::string next = IsUnexplained(report) ? NextStep(report) : "";
+  return next.empty() ? html : html + Paragraph("Next: " + next);
 }
 
 // --- parameters
@@ -88,7 +87,7 @@ std::string ParameterSection(const Report& report) {
     if (value != kNone && !unit.name.empty()) value += " " + unit.name;
     table.Row(PlainName(estimate.name),
               {Number(value), Number(interval),
-               Number(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
+               Words(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
   }
   const FitResult& fit = report.fit;
   std::string about = fmt::format("{}; initial state {}", fit.model->title,
@@ -134,7 +133,7 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
     html += Paragraph(why) + CommandBlock(fmt::format("{} {}", command, option));
   };
   const FitResult& fit = report.fit;
-  if (IsJudged(report) && fit.adequacy.verdict != AdequacyVerdict::kAdequate) {
+  if (IsUnexplained(report)) {
     for (const identification::Cause& cause : fit.adequacy.causes) {
       if (cause.option.empty()) continue;
       add(fmt::format("Adds a term that explains {:.0f} % of the misfit:", 100 * cause.explains),
@@ -168,6 +167,12 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
   const std::string next = NextSection(report, provenance);
   std::string html = Heading("Warnings and what to do");
   html += warnings.empty() ? Paragraph("No warning.") : SentenceList(warnings);
+  std::vector<std::string> others;
+  const std::vector<identification::Cause>& causes = report.fit.adequacy.causes;
+  for (std::size_t i = 1; i < causes.size() && IsUnexplained(report); ++i) {
+    others.push_back(Sentence(causes[i], report.fit.response));
+  }
+  if (!others.empty()) html += Paragraph("It may also be:") + SentenceList(others);
   html += next;
   if (!report.notes.empty()) html += SubHeading("Notes") + SentenceList(MessagesOf(report.notes));
   return html;
@@ -229,7 +234,7 @@ std::string FirstScreen(const Report& report) {
          "</div>\n" +
          Figure(LoopPanel(report, PrefixedUnits(report), LoopColours::kByCycle), "loop",
                 "Measured and fitted loop",
-                "Where the line leaves the points, the model misses something; circles are where "
+                "Where the line leaves the points, the model misses something; markers are where "
                 "the motion was found to turn.") +
          "</div>\n";
 }

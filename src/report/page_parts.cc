@@ -80,9 +80,7 @@ std::string CommandBlock(std::string_view command) {
   return fmt::format("<pre><code>{}</code></pre>\n", Prose(command));
 }
 
-Cell Number(std::string text, std::string_view css_class) {
-  return {.text = std::move(text), .css_class = css_class};
-}
+Cell Number(std::string text) { return {.text = std::move(text)}; }
 
 Cell Words(std::string text, std::string_view css_class) {
   return {.text = std::move(text), .kind = Cell::Kind::kWords, .css_class = css_class};

@@ -35,7 +35,7 @@ struct Cell {
   Kind kind = Kind::kNumber;
   std::string_view css_class = {};  ///< "good", "poor" or "bad" where it is a judgement
 };
-[[nodiscard]] Cell Number(std::string text, std::string_view css_class = {});
+[[nodiscard]] Cell Number(std::string text);
 [[nodiscard]] Cell Words(std::string text, std::string_view css_class = {});
 
 /// A table whose first column names its rows. It scrolls by itself where it is wider than the page.

@@ -77,6 +77,10 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     printed = program("track", long_record, worn, "--output", tmp_path / "third.csv")
     assert tracked.text() == printed.replace(f" in {tmp_path}/third.csv", "")
     assert "<pre>" in tracked._repr_html_() and tracked.established
+    # Pieces of one record: a cycle goes on in the next, and what is left of the last one counts.
+    joined = program_json("track", long_record, worn, "--join", "--output", tmp_path / "joined.csv")
+    assert joined["input"]["unused_samples"] > 0
+    assert mindahl.track([long_record, worn], join=True).to_dict()["input"] == joined["input"]
     step, = tracked.quantities["slip_force"]["changes"]
     assert step["kind"] == "transition"
     assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)
@@ -98,6 +102,10 @@ def test_track_shares_an_alpha_and_counts_energies_as_the_program_does(long_reco
     of_arrays = mindahl.track(displacement, force, time=time, alpha="shared")
     assert of_arrays.shared_alpha == tracked.shared_alpha
     assert mindahl.track(long_record).shared_alpha is None
+    worn = tmp_path / "untimed.csv"
+    worn.write_text("displacement [m],force [N]\n0,1\n1e-6,2\n")
+    with pytest.raises(ValueError, match="has a time"):
+        mindahl.track([long_record, worn], join=True)
 
 
 def test_excitation_is_the_program_s_waveform():
