@@ -193,7 +193,8 @@ std::string BatchIndexPage(std::span<const FileResult> files,
   body += "</tbody></table></div>\n";
 
   Table scatter("over the fitted files in which the quantity is known",
-                {"quantity", "files", "mean", "scatter between files", "stated error", ""});
+                {"quantity", "files", "mean", "its error", "scatter between files", "by noise",
+                 "common to all", ""});
   for (const RepeatedQuantity& quantity : repeated) {
     const Repeats& repeats = quantity.repeats;
     const report::ScaledUnit unit = report::UnitFor(quantity.unit, repeats.mean);
@@ -201,11 +202,13 @@ std::string BatchIndexPage(std::span<const FileResult> files,
       return Number(
           fmt::format("{:.3g}{}{}", value / unit.factor, unit.name.empty() ? "" : " ", unit.name));
     };
-    scatter.Row(quantity.name,
-                {Number(std::to_string(repeats.count)),
-                 Number(Quantity(repeats.mean, quantity.unit)), cell(repeats.standard_deviation),
-                 repeats.stated_error ? cell(*repeats.stated_error) : Number(kNone),
-                 Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
+    scatter.Row(
+        quantity.name,
+        {Number(std::to_string(repeats.count)), Number(Quantity(repeats.mean, quantity.unit)),
+         cell(repeats.mean_error()), cell(repeats.standard_deviation),
+         repeats.stated_error ? cell(*repeats.stated_error) : Number(kNone),
+         repeats.common_error ? cell(*repeats.common_error) : Number(kNone),
+         Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
   }
   if (!scatter.empty()) body += Heading("If these are repeats") + scatter.Html();
   std::string figures;

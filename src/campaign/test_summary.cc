@@ -130,9 +130,26 @@ std::string Repeats::InWords() const {
                          : fmt::format("as the errors say, p {:.2g}", *p_value);
 }
 
+double Repeats::mean_error() const {
+  const double own = std::max(standard_deviation, stated_error.value_or(0.0));
+  return std::hypot(own / std::sqrt(static_cast<double>(count)), common_error.value_or(0.0));
+}
+
+namespace {
+
+double RootMeanSquare(std::span<const double> values) {
+  double squares = 0.0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
 std::optional<Repeats> DescribeRepeats(std::span<const double> values,
-                                       std::span<const double> errors) {
+                                       std::span<const double> errors,
+                                       std::span<const double> common) {
   if (!errors.empty()) RequireSameSize("values", values.size(), "errors", errors.size());
+  if (!common.empty()) RequireSameSize("values", values.size(), "common errors", common.size());
   if (values.size() < 2) return std::nullopt;
   const auto count = static_cast<double>(values.size());
   Repeats repeats{.count = values.size()};
@@ -140,16 +157,15 @@ std::optional<Repeats> DescribeRepeats(std::span<const double> values,
   double squares = 0.0;
   for (const double value : values) squares += (value - repeats.mean) * (value - repeats.mean);
   repeats.standard_deviation = std::sqrt(squares / (count - 1));
+  if (!common.empty()) repeats.common_error = RootMeanSquare(common);
   if (errors.empty()) return repeats;
-  double mean_square = 0.0;
   double weights = 0.0;
   double weighted = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    mean_square += errors[k] * errors[k] / count;
     weights += 1 / (errors[k] * errors[k]);
     weighted += values[k] / (errors[k] * errors[k]);
   }
-  repeats.stated_error = std::sqrt(mean_square);
+  repeats.stated_error = RootMeanSquare(errors);
   double chi_squared = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const double off = (values[k] - weighted / weights) / errors[k];

@@ -140,6 +140,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
     result.adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
   result.adequacy = GradeUse(thresholds, result);
+  result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   const std::vector<ParameterEstimate> plain = result.parameters;
   WidenByDepartures(problem, solution, causes,
@@ -147,6 +148,18 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
                     result.parameters);
   result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
+}
+
+/// Takes Tc off the parameters that a limit of the search leaves open, where its interval covers
+/// what a loop that slides has carried: a limit of another term does not move that.
+void KeepMeasuredSlipForce(const Thresholds& thresholds, FitResult& result) {
+  const bool is_measured = result.Find("slip_force")->includes_discrepancy &&
+                           SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds);
+  if (!is_measured) return;
+  for (Finding& finding : result.findings) {
+    const bool is_limit = std::string_view(finding.code) == "search_limit";
+    if (is_limit) std::erase(finding.parameters, "slip_force");
+  }
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -331,6 +344,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
+    KeepMeasuredSlipForce(thresholds, result);
   }
   result.parameters[kStiffness] = CoverSlipFactor(
       problem, solution, std::move(result.parameters[kStiffness]), buffers.response);

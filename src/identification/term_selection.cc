@@ -263,14 +263,6 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   });
 }
 
-/// Drops the causes that explain less than half of what is left beside terms that were added: of
-/// what several things make together none is to be blamed.
-void DropLesserCauses(std::vector<Cause>& causes) {
-  constexpr double kMostOfIt = 0.5;
-  std::erase_if(
-      causes, [](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
-}
-
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -798,7 +790,6 @@ void Selection::Run(const FitOptions& options) {
     if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
     result_.considered.push_back(considered);
   }
-  if (!result_.added.empty()) DropLesserCauses(result_.fit.adequacy.causes);
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
   const auto place = [&](const ConsideredTerm& term) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();

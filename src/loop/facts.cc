@@ -486,7 +486,13 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 
 bool Slides(const LoopFacts& facts) {
   constexpr double kSliding = 0.75;
-  return facts.closed && facts.energy_ratio > kSliding;
+  if (!facts.closed) return false;
+  if (facts.energy_ratio > kSliding) return true;
+  // A spring parallel to the contact raises T*, and neither the energy nor the gap.
+  constexpr double kSameGap = 0.1;  // off the energy of a gap that is the same over the stroke
+  constexpr double kOfPeak = 0.5;
+  if (!facts.half_gap || !(*facts.half_gap > kOfPeak * facts.peak_force)) return false;
+  return std::abs(facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap) - 1) < kSameGap;
 }
 
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mindahl/identification/terms.h"
 #include "mindahl/report/units.h"
 #include "report/names.h"
 #include "report/statements.h"
@@ -151,16 +152,25 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOthersOf
     {"m/sample", "rad/sample"},
 }};
 
-/// Names the parameters whose intervals include what the model misses.
+bool IsOfLaw(const identification::ParameterEstimate& estimate) {
+  return estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
+}
+
+/// Names the parameters of the law whose intervals include what the model misses; others where none
+/// of these does.
 std::string WhatIncludesIt(const identification::FitResult& fit) {
   std::vector<std::string> names;
+  std::vector<std::string> others;
   for (const identification::ParameterEstimate& estimate : fit.parameters) {
     if (estimate.identifiability != identification::Identifiability::kEffective) continue;
-    names.push_back(estimate.name);
+    (IsOfLaw(estimate) ? names : others).push_back(estimate.name);
   }
+  if (names.empty()) names.swap(others);
   if (names.empty()) return "no parameter is usable";
-  return fmt::format("the interval{} of {} include{} this", names.size() > 1 ? "s" : "",
-                     fmt::join(names, ", "), names.size() > 1 ? "" : "s");
+  return fmt::format("the interval{} of {}{} include{} this", names.size() > 1 ? "s" : "",
+                     fmt::join(names, ", "),
+                     others.empty() ? "" : fmt::format(" (and of {} more)", others.size()),
+                     names.size() + others.size() > 1 ? "" : "s");
 }
 
 }  // namespace
@@ -168,6 +178,7 @@ std::string WhatIncludesIt(const identification::FitResult& fit) {
 bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
 
 std::string WhyNoOption(const Cause& cause) {
+  if (cause.has_known_factor()) return cause.option + ", where the factor C is known";
   const bool is_of_speed = cause.code == "viscous_force" || cause.code == "speed_power";
   return is_of_speed ? "needs a time column" : "no option takes it into account yet";
 }
@@ -188,6 +199,10 @@ namespace {
 /// that goes with the motion takes its fraction of the slip force.
 std::string OrHeld(const Cause& cause) {
   if (cause.code != "covariate") return "";
+  if (cause.has_known_factor()) {
+    return " where its factor is known; the column follows the contact's force, and a factor that "
+           "is fitted would take a part of slip_force";
+  }
   return fmt::format(", or {}=C where its factor is known", cause.option);
 }
 
@@ -214,9 +229,17 @@ std::vector<std::string_view> CauseCodes() {
 }
 
 bool IsUsable(const Report& report) {
-  return !IsJudged(report) || report.fit.adequacy.verdict != AdequacyVerdict::kInadequate ||
-         std::ranges::any_of(report.fit.parameters,
-                             &identification::ParameterEstimate::includes_discrepancy);
+  if (!IsJudged(report)) return true;
+  const Adequacy& adequacy = report.fit.adequacy;
+  if (adequacy.verdict == AdequacyVerdict::kInadequate) {
+    return std::ranges::any_of(report.fit.parameters,
+                               &identification::ParameterEstimate::includes_discrepancy);
+  }
+  if (adequacy.verdict == AdequacyVerdict::kAdequate) return true;
+  return adequacy.use != identification::Use::kNone ||
+         std::ranges::any_of(report.fit.parameters, [](const auto& estimate) {
+           return IsOfLaw(estimate) && estimate.is_known();
+         });
 }
 
 std::string MisfitSentence(const Report& report) {
@@ -260,19 +283,46 @@ std::string VerdictSentence(const Report& report) {
 
 namespace {
 
-/// Says how other records are fitted by a model whose terms were chosen, where `--terms` takes all
-/// their names.
+/// Says how other records are fitted by a model whose terms were chosen.
 std::string SameModelAgain(const Report& report) {
   if (!report.terms || report.terms->added.empty()) return "";
-  const std::vector<std::string>& added = report.terms->added;
-  const bool have_names = std::ranges::all_of(added, [](const std::string& name) {
-    return identification::FindTermGroup(name) != nullptr;
-  });
-  return fmt::format("no known cause explains half of the remaining misfit{}",
-                     have_names ? fmt::format("; to fit other records of this contact by the same "
-                                              "model, give --terms {}",
-                                              fmt::join(added, ","))
-                                : "");
+  std::vector<std::string> groups;
+  std::string columns;
+  for (const std::string& name : report.terms->added) {
+    if (identification::FindTermGroup(name) != nullptr) {
+      groups.push_back(name);
+      continue;
+    }
+    const auto column =
+        std::ranges::find(report.options.covariates, name, identification::NameOfCovariate);
+    if (column == report.options.covariates.end()) continue;
+    const char* const quote = column->find(' ') == std::string::npos ? "" : "'";
+    columns += fmt::format(" --covariate {}{}{}", quote, *column, quote);
+  }
+  return fmt::format(
+      "to fit other records of this contact by the same model, give --terms {}{}; no known "
+      "cause explains half of the remaining misfit",
+      groups.empty() ? "none" : fmt::format("{}", fmt::join(groups, ",")), columns);
+}
+
+/// Returns the advice for a loop that is far from sliding and determines no slip force; empty
+/// elsewhere. A spring parallel to a contact that slides lowers the energy ratio, too, but leaves a
+/// gap that is the same over the stroke.
+std::string LargerAmplitude(const Report& report) {
+  constexpr double kFarFromSliding = 0.25;
+  constexpr double kSameGap = 0.15;
+  const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
+  const identification::ParameterEstimate* slip_force = report.fit.Find("slip_force");
+  if (!facts.closed || !(facts.energy_ratio < kFarFromSliding) || slip_force == nullptr ||
+      slip_force->is_known() || report.fit.response != loop::Channel::kForce) {
+    return "";
+  }
+  const double of_gap = 4 * facts.amplitude * std::abs(facts.half_gap.value_or(0.0));
+  if (std::abs(facts.energy_per_cycle - of_gap) < kSameGap * of_gap) return "";
+  return fmt::format(
+      "raise the amplitude until the force levels off: an energy ratio of {:.2g} is far from "
+      "sliding, and the record determines no slip force",
+      facts.energy_ratio);
 }
 
 }  // namespace
@@ -280,6 +330,9 @@ std::string SameModelAgain(const Report& report) {
 std::string NextStep(const Report& report) {
   const Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return "";
+  if (adequacy.causes.empty() || adequacy.causes.front().option.empty()) {
+    if (const std::string larger = LargerAmplitude(report); !larger.empty()) return larger;
+  }
   if (adequacy.causes.empty()) return SameModelAgain(report);
   return "it looks like " + Sentence(adequacy.causes.front(), report.fit.response);
 }

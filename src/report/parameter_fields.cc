@@ -127,6 +127,15 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return item.estimate.unit; }},
       {"standard_error", "of the parameter", "standard error",
        [](const Item& item) { return item.estimate.standard_error; }, WhyNoError},
+      {"repeat_error", "of the parameter",
+       "standard deviation that repeats of the test would have: standard_error of an adequate "
+       "model, else from leaving out parts of the record's cycles",
+       [](const Item& item) { return item.estimate.repeat_error; },
+       [](const Item& item) {
+         return item.estimate.repeat_error || item.estimate.standard_error
+                    ? std::string("fewer than three cycles")
+                    : WhyNoError(item);
+       }},
       {"ci95[0]", "of the parameter", "lower end of the interval",
        [](const Item& item) { return item.estimate.lower95; }, WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the interval",

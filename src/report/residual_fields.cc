@@ -16,7 +16,9 @@ const std::vector<Field<Cause>>& CauseFields() {
   static const std::vector<Field<Item>> fields = {
       {"code", "", "stable name, for scripts", &Item::code},
       {"try", "", "option of the command line that takes it into account",
-       [](const Item& item) { return item.option.empty() ? Missing() : ToValue(item.option); },
+       [](const Item& item) {
+         return item.option.empty() || item.has_known_factor() ? Missing() : ToValue(item.option);
+       },
        WhyNoOption},
       {"delta_aicc", "-", "AICc of the fit with it minus that without: negative where it helps",
        &Item::delta_aicc},

@@ -193,8 +193,8 @@ std::string SearchLimit(const Finding& finding, const FitResult& fit, const Unit
   const std::string& name = finding.parameters.front();
   const identification::ParameterEstimate* estimate = fit.Find(name);
   return fmt::format(
-      "{}: the search stopped at its limit, {}: the best value lies beyond it, and no parameter of "
-      "this fit describes the contact; give --bound {}=LO:HI, or remove its effect from the record",
+      "{}: the search stopped at its limit, {}: the best value lies beyond it, and these "
+      "do not describe the contact; give --bound {}=LO:HI, or remove its effect from the record",
       fmt::join(finding.parameters, ", "),
       Quantity(Needed(finding, "bound"), estimate == nullptr ? "-" : estimate->unit, 4), name);
 }

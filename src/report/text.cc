@@ -464,7 +464,15 @@ std::string FitText(const Report& report) {
 std::string UnusableText(const Report& report, const Style& style) {
   std::string text = AdequacyText(report, style) + MeasuredText(report) +
                      Wrapped("reversals: " + SamplesText(report), 11);
-  for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
+  for (const Warning& note : report.notes) {
+    // What is said of parameters is of no use here.
+    const bool is_of_parameters =
+        std::ranges::any_of(report.fit.findings, [&](const identification::Finding& finding) {
+          return std::string_view(finding.code) == note.code && !finding.parameters.empty();
+        });
+    if (is_of_parameters) continue;
+    text += Wrapped("note: " + note.message, 6);
+  }
   return text;
 }
 

@@ -126,34 +126,46 @@ bool IsMeasured(const Repeated& quantity) {
   return quantity.name == "half_gap" || quantity.name == "energy_per_cycle";
 }
 
-/// One standard error: of an interval that is inflated beyond the noise, a fraction of that.
-std::optional<double> StatedError(const BatchEntry& fit, const Repeated& quantity) {
+/// Errors of one file: what repeats scatter by, and what they have in common.
+struct StatedErrors {
+  double own = 0.0;
+  double common = 0.0;  // of an interval that is wider than by its own error
+};
+
+std::optional<StatedErrors> ErrorsOf(const BatchEntry& fit, const Repeated& quantity) {
   if (IsMeasured(quantity)) return std::nullopt;
-  const std::string_view name = quantity.name;
-  const Json error = ValueOf(fit, std::string(name) + "_error");
-  if (!error.is_number() || !(error.get<double>() > 0)) return std::nullopt;
-  const Json lower = ValueOf(fit, std::string(name) + "_lower95");
-  const Json upper = ValueOf(fit, std::string(name) + "_upper95");
-  if (!lower.is_number() || !upper.is_number()) return error.get<double>();
+  const std::string name(quantity.name);
+  Json own = ValueAt(fit, fmt::format("/parameters/{}/repeat_error", name));
+  if (!own.is_number()) own = ValueOf(fit, name + "_error");
+  if (!own.is_number() || !(own.get<double>() > 0)) return std::nullopt;
+  StatedErrors errors{.own = own.get<double>()};
+  const Json lower = ValueOf(fit, name + "_lower95");
+  const Json upper = ValueOf(fit, name + "_upper95");
+  if (!lower.is_number() || !upper.is_number()) return errors;
   constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
-  return std::max(error.get<double>(), (upper.get<double>() - lower.get<double>()) / kWidth);
+  const double whole = (upper.get<double>() - lower.get<double>()) / kWidth;
+  errors.common = std::sqrt(std::max(0.0, whole * whole - errors.own * errors.own));
+  return errors;
 }
 
 std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
                                            const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;
+  std::vector<double> common;
   for (const BatchEntry& fit : fits) {
     const Json value = ValueOf(fit, quantity.name);
-    const std::optional<double> error = StatedError(fit, quantity);
+    const std::optional<StatedErrors> stated = ErrorsOf(fit, quantity);
     const Json verdict = ValueOf(fit, quantity.verdict);
     const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
     if (!fit.done || !value.is_number() || !is_known) continue;
-    if (!IsMeasured(quantity) && !error) continue;
+    if (!IsMeasured(quantity) && !stated) continue;
     values.push_back(value);
-    if (error) errors.push_back(*error);
+    if (!stated) continue;
+    errors.push_back(stated->own);
+    common.push_back(stated->common);
   }
-  return campaign::DescribeRepeats(values, errors);
+  return campaign::DescribeRepeats(values, errors, common);
 }
 
 struct FoundRepeats {
@@ -277,14 +289,18 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
                                  output.empty() ? "" : ", in ", output);
   const std::vector<FoundRepeats> all = AllRepeats(entries);
   if (!all.empty()) {
-    text += fmt::format("\nif these are repeats:\n  {:<22}{:>6}{:>14}{:>14}{:>14}\n", "", "files",
-                        "mean", "scatter", "stated error");
+    text += fmt::format("\nif these are repeats:\n  {:<17}{:>6}{:>12}{:>10}{:>10}{:>10}{:>10}\n",
+                        "", "files", "mean", "± error", "scatter", "by noise", "common");
   }
   for (const auto& [quantity, found] : all) {
-    text += fmt::format("  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14}   {}\n", quantity.name, found.count,
-                        found.mean, found.standard_deviation,
-                        found.stated_error ? fmt::format("{:.2g}", *found.stated_error) : "-",
-                        found.InWords());
+    const auto cell = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.2g}", *value) : std::string("-");
+    };
+    // A name that is longer than its column, as of the friction coefficient, shifts its row.
+    text += fmt::format("  {:<17}{:>{}}{:>12.6g}{:>10.2g}{:>10.2g}{:>10}{:>10}   {}\n",
+                        quantity.name, found.count, quantity.name.size() > 17 ? 3 : 6, found.mean,
+                        found.mean_error(), found.standard_deviation, cell(found.stated_error),
+                        cell(found.common_error), found.InWords());
   }
   return text;
 }
@@ -309,6 +325,8 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
         {"mean", found.mean},
         {"standard_deviation", found.standard_deviation},
         {"stated_error", NumberOrNull(found.stated_error)},
+        {"common_error", NumberOrNull(found.common_error)},
+        {"mean_error", found.mean_error()},
         {"p_value", NumberOrNull(found.p_value)}};
   }
   return Dump(json);

@@ -35,6 +35,18 @@ TEST(Repeats, WithoutStatedErrorsHaveTheirScatterOnly) {
   EXPECT_EQ(repeats->InWords(), "without stated errors");
 }
 
+TEST(Repeats, AverageOutWhatScattersAndNotWhatTheyHaveInCommon) {
+  // Deviation 1 of three, more than is stated: 1/√3, and 2 that all have.
+  const auto repeats =
+      DescribeRepeats(Numbers{9, 10, 11}, Numbers{0.5, 0.5, 0.5}, Numbers{2, 2, 2});
+  ASSERT_TRUE(repeats);
+  EXPECT_NEAR(*repeats->common_error, 2, kRounding);
+  EXPECT_NEAR(repeats->mean_error(), std::sqrt(1.0 / 3 + 4), kRounding);
+  // Where they agree by chance, no less than their errors say.
+  EXPECT_NEAR(DescribeRepeats(Numbers{10, 10}, Numbers{0.6, 0.8})->mean_error(), 0.5, kRounding);
+  EXPECT_THROW(DescribeRepeats(Numbers{1, 2}, Numbers{1, 1}, Numbers{1}), InvalidArgument);
+}
+
 TEST(Repeats, AreTwoAtLeast) {
   EXPECT_FALSE(DescribeRepeats({}, {}));
   EXPECT_FALSE(DescribeRepeats(Numbers{1}, Numbers{1}));

@@ -78,6 +78,24 @@ TEST(Slides, FromAnEnergyRatioOfThreeQuartersOn) {
   EXPECT_FALSE(Slides(LoopFacts()));
 }
 
+TEST(Slides, BesideASpringThatRaisesThePeakForce) {
+  Parallelogram loop;
+  loop.stiffness = loop.slip_force / 0.05;  // slides over 95 % of the stroke
+  Record record = MakeRecord(loop);
+  // A spring that adds 0.5 Tc at the ends lowers the energy ratio to 0.95/1.5.
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] -= 0.5 * loop.slip_force * record.displacement[i];
+  }
+  const LoopFacts facts = FactsOf(record);
+  ASSERT_LT(facts.energy_ratio, 0.75);
+  EXPECT_TRUE(Slides(facts));
+  // One that adds twice Tc leaves a gap below half the peak: friction of a guide would be alike.
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] -= 1.5 * loop.slip_force * record.displacement[i];
+  }
+  EXPECT_FALSE(Slides(FactsOf(record)));
+}
+
 /// The displacement before a gap that is on the side of the force, over a twentieth of Tc.
 /// @param growth  of the gap in every other cycle
 Record BehindAGap(const Parallelogram& loop, double gap, double growth = 0.0) {

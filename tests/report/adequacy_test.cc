@@ -199,6 +199,31 @@ TEST(AdequacyText, OfAFitThatIsNotUsableHasTenLinesAndNoDashes) {
   }
 }
 
+TEST(AdequacyText, AsksForALargerAmplitudeWhereNothingSlidesAndNoOptionHelps) {
+  const auto next = [](const Cause& cause, double energy) {
+    ReportInput input = Missing(AdequacyVerdict::kInadequate, {cause});
+    loop::LoopFacts& facts = input.fit.records[0].facts;
+    facts.closed = true;
+    facts.amplitude = 1e-6;
+    facts.half_gap = 2.0;  // 4X times it: 8 µJ
+    facts.energy_per_cycle = energy;
+    facts.energy_ratio = 0.16;
+    input.fit.parameters[2].identifiability = identification::Identifiability::kNotIdentifiable;
+    return NextStep(MakeReport(std::move(input)));
+  };
+  const Cause sensor = MadeCause("displacement_sensor");
+  EXPECT_THAT(next(sensor, 13e-6), StartsWith("raise the amplitude"));
+  EXPECT_THAT(next(sensor, 8e-6), StartsWith("it looks like")) << "a spring beside one that slides";
+  EXPECT_THAT(next(Viscous(), 13e-6), HasSubstr("--viscous fit"));
+}
+
+TEST(AdequacyText, OfAColumnThatFollowsTheContactAsksForItsFactor) {
+  const Cause cause = MadeCause("covariate", 6.0, "N/unit", "--covariate a2=C");
+  EXPECT_THAT(Sentence(cause, loop::Channel::kForce),
+              HasSubstr("give --covariate a2=C where its factor is known"));
+  EXPECT_EQ(WhyNoOption(cause), "--covariate a2=C, where the factor C is known");
+}
+
 TEST(AdequacyText, SaysThatRecordIsTooShortToTryTerms) {
   ReportInput input = MadeInput();
   EXPECT_THAT(ToText(MakeReport(std::move(input))),

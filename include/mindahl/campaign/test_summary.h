@@ -100,22 +100,31 @@ struct Repeats {
   std::size_t count = 0;
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< between them
-  /// Root of the mean square of their standard errors; empty where they state none.
+  /// Root of the mean square of the errors by which they should scatter; empty where they state
+  /// none.
   std::optional<double> stated_error = {};
+  /// Root of the mean square of the errors that they have in common, as of a model that misses the
+  /// same in all: these neither scatter nor average out. Empty where they state none.
+  std::optional<double> common_error = {};
   /// P(χ²(n − 1) ≥ Σ((x − x̄)/e)²), x̄ weighted: chance of such a scatter from the stated errors.
   std::optional<double> p_value = {};
 
   /// True if the stated errors make such a scatter with a chance below one in a hundred.
   [[nodiscard]] bool exceed_errors() const { return p_value && *p_value < 0.01; }
+  /// Returns the standard error of the mean: of the larger of scatter and stated error over √n, and
+  /// of what all have in common.
+  [[nodiscard]] double mean_error() const;
   /// Returns "as the errors say, p 0.43", or "no error is stated".
   [[nodiscard]] std::string InWords() const;
 };
 
 /// @param values  of one quantity, one a test
-/// @param errors  their standard errors, > 0; none where they state none
+/// @param errors  standard errors by which they should scatter, > 0; none where they state none
+/// @param common  errors that they have in common, >= 0; none where there are none
 /// @returns nothing for fewer than two
 /// @throws InvalidArgument where sizes differ
 std::optional<Repeats> DescribeRepeats(std::span<const double> values,
-                                       std::span<const double> errors);
+                                       std::span<const double> errors,
+                                       std::span<const double> common = {});
 
 }  // namespace mindahl::campaign

@@ -107,6 +107,10 @@ struct Cause {
   /// Largest shift that it would cause in σ, α or Tc [half width of their 95 % intervals].
   double moves = 0.0;
   bool is_measured = false;  ///< seen in the record without the model, and named first
+
+  /// True if `option` is "--covariate NAME=C": the column follows the contact, and its factor has
+  /// to be known.
+  [[nodiscard]] bool has_known_factor() const { return option.find("=C") != std::string::npos; }
 };
 
 /// Holds whether, and why not, the model describes the records: docs/identification.md.

@@ -165,6 +165,10 @@ struct ParameterEstimate {
   std::vector<IntervalPart> interval = {};
   std::optional<Prior> prior = {};                   ///< prior of this parameter; empty without one
   std::optional<WithoutPriors> without_priors = {};  ///< empty if the fit has no prior
+  /// Standard deviation that repeats of the test would have: `standard_error` of a model that is
+  /// adequate, else what leaving out one part of the record's cycles after the other changes. A
+  /// discrepancy that all repeats have in common is not in it.
+  std::optional<double> repeat_error = {};
 
   /// Returns by how many of the standard errors without priors the priors moved the value; empty
   /// where there is none.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,8 +116,34 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
-/// Returns the option to type: with the name of a covariate, quoted where it has blanks.
-std::string OptionOf(const Problem& problem, const FitOptions& options, const DepartureFit& fit) {
+/// True if a column follows the force of the fitted model: its factor would take a part of Tc.
+bool FollowsContact(const Problem& problem, const Solution& solution, std::size_t covariate) {
+  constexpr double kFollows = 0.3;  // correlation
+  Eigen::VectorXd column(static_cast<Eigen::Index>(problem.data->counted));
+  Eigen::VectorXd force(column.size());
+  Eigen::Index row = 0;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] == 0 || row == column.size()) continue;
+      const double missed =
+          solution.residual.empty() ? 0.0 : solution.residual[begin + i] / record.root_weight[i];
+      column(row) = record.covariates[covariate][i];
+      force(row++) = record.force[i] + missed;
+    }
+    begin += record.size();
+  }
+  column.conservativeResize(row);
+  force.conservativeResize(row);
+  column.array() -= column.mean();
+  force.array() -= force.mean();
+  return std::abs(column.dot(force)) > kFollows * column.norm() * force.norm();
+}
+
+/// Returns the option to type: with the name of a covariate, quoted where it has blanks; of a
+/// column that follows the contact's force with a factor that has to be known.
+std::string OptionOf(const Problem& problem, const Solution& solution, const FitOptions& options,
+                     const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
   if (!fit.covariate) {
     // In a fit of the displacement a drift is the displacement's.
@@ -130,7 +157,10 @@ std::string OptionOf(const Problem& problem, const FitOptions& options, const De
   }
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
   const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
-  return AcceptedOptions(problem, options, fmt::format("--covariate {}{}{}", quote, name, quote));
+  const bool is_known = FollowsContact(problem, solution, *fit.covariate);
+  return AcceptedOptions(
+      problem, options,
+      fmt::format("--covariate {}{}{}{}", quote, name, is_known ? "=C" : "", quote));
 }
 
 double SizeOf(const DepartureFit& fit) {
@@ -221,10 +251,11 @@ namespace {
 
 /// Ranks the causes to name: first a measurement without the model; then another column of the
 /// file, then what an option fits, few numbers before many; a lag, which many others resemble, and
-/// what no option fits come last.
+/// what no option fits come last, a fault of the sensor after a force of the same position.
 int RankOf(const Cause& cause) {
   if (cause.is_measured) return 0;
-  if (cause.code == "covariate") return 1;
+  if (cause.code == "covariate") return cause.has_known_factor() ? 4 : 1;
+  if (cause.code == "displacement_sensor") return 6;
   if (cause.option.empty()) return 5;
   if (cause.code == "channel_lag") return 4;
   return cause.code == "slip_position_quadratic" ? 3 : 2;
@@ -240,7 +271,7 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
   std::ranges::stable_sort(causes, {}, [&](const Cause& cause) {
     const bool is_near = cause.explains >= thresholds.simpler_cause * best;
-    constexpr int kFar = 6;
+    constexpr int kFar = 7;
     return is_near || cause.is_measured ? RankOf(cause) : kFar;
   });
 }
@@ -279,6 +310,14 @@ void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> 
   Order(adequacy.causes, thresholds);
 }
 
+/// Drops the causes that explain less than half of what is left beside terms that are fitted: of
+/// what several things make together none is to be blamed.
+void DropLesserCauses(std::vector<Cause>& causes) {
+  constexpr double kMostOfIt = 0.5;
+  std::erase_if(
+      causes, [&](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
+}
+
 }  // namespace
 
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
@@ -300,7 +339,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
               .explains = fit.explains,
               .size = SizeOf(fit),
               .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
-              .option = OptionOf(problem, options, fit),
+              .option = OptionOf(problem, solution, options, fit),
               .is_measured = fit.is_measured});
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;
@@ -310,6 +349,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
   }
   if (IsDoubtful(test, thresholds) || ends_at_limit) adequacy.verdict = AdequacyVerdict::kDoubtful;
   AddIrregularities(problem, irregularities, options, adequacy);
+  if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }
 

@@ -28,12 +28,14 @@ constexpr std::size_t kParts = 6;  // thirds of the stroke, up and down
 struct StrokeSample {
   Eigen::Index row = 0;  // of the Jacobian
   std::size_t part = 0;
+  std::size_t stroke = 0;  // its number among those of all records
 };
 
 template <typename Visit>
 void ForEachSample(const Problem& problem, const Thresholds& thresholds, Visit visit) {
   constexpr std::size_t kThirds = kParts / 2;
   std::size_t begin = 0;
+  std::size_t number = 0;
   for (const ScaledRecord& record : problem.data->records) {
     for (const MainStroke& stroke :
          MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
@@ -43,8 +45,9 @@ void ForEachSample(const Problem& problem, const Thresholds& thresholds, Visit v
         const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
         const auto third = static_cast<std::size_t>(way * static_cast<double>(kThirds));
         visit(StrokeSample{static_cast<Eigen::Index>(begin + i),
-                           std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds)});
+                           std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds), number});
       }
+      ++number;
     }
     begin += record.size();
   }
@@ -129,40 +132,70 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& es
   return steps;
 }
 
-std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
-                                       const Thresholds& thresholds) {
+namespace {
+
+/// Jackknife of linear steps: what leaving out one part of the samples after the other changes.
+/// @param part_of  part of a sample, less than `parts`
+/// @returns √((n − 1)/n·Σ(θ₋ₖ − θ̄)²) of the free θ; none where the rest does not determine them
+template <typename PartOf>
+std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates,
+                              const Thresholds& thresholds, std::size_t parts, PartOf part_of) {
   const Eigen::Index count = estimates.jacobian().cols();
   if (count == 0) return {};
-  std::array<Eigen::MatrixXd, kParts> matrices;
-  std::array<Eigen::VectorXd, kParts> vectors;
-  matrices.fill(Eigen::MatrixXd::Zero(count, count));
-  vectors.fill(Eigen::VectorXd::Zero(count));
+  std::vector<Eigen::MatrixXd> matrices(parts, Eigen::MatrixXd::Zero(count, count));
+  std::vector<Eigen::VectorXd> vectors(parts, Eigen::VectorXd::Zero(count));
   ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
     const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
-    matrices[sample.part].noalias() += row * row.transpose();
-    vectors[sample.part] -= estimates.residual()(sample.row) * row;
+    const std::size_t part = part_of(sample);
+    matrices[part].noalias() += row * row.transpose();
+    vectors[part] -= estimates.residual()(sample.row) * row;
   });
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(count);
-  for (std::size_t part = 0; part < kParts; ++part) {
+  for (std::size_t part = 0; part < parts; ++part) {
     matrix += matrices[part];
     vector += vectors[part];
   }
-  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(kParts));
-  for (std::size_t part = 0; part < kParts; ++part) {
+  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
+  for (std::size_t part = 0; part < parts; ++part) {
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rest(matrix - matrices[part]);
     if (rest.rank() < count) return {};
     steps.col(static_cast<Eigen::Index>(part)) = rest.solve(vector - vectors[part]);
   }
   steps.colwise() -= steps.rowwise().mean().eval();
-  constexpr double kAll = kParts;
-  const double quantile = StudentQuantile(kAll - 1, estimates.confidence());
-  std::vector<double> spread;
-  spread.reserve(static_cast<std::size_t>(count));
+  const auto all = static_cast<double>(parts);
+  std::vector<double> errors;
+  errors.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
-    spread.push_back(quantile * std::sqrt((kAll - 1) / kAll) * steps.row(k).norm());
+    errors.push_back(std::sqrt((all - 1) / all) * steps.row(k).norm());
   }
+  return errors;
+}
+
+}  // namespace
+
+std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
+                                       const Thresholds& thresholds) {
+  std::vector<double> spread = Jackknife(problem, estimates, thresholds, kParts,
+                                         [](const StrokeSample& sample) { return sample.part; });
+  const double quantile = StudentQuantile(kParts - 1, estimates.confidence());
+  for (double& width : spread) width *= quantile;
   return spread;
+}
+
+std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
+                                        const Thresholds& thresholds) {
+  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kMost = 12;
+  std::size_t strokes = 0;
+  ForEachSample(problem, thresholds,
+                [&](const StrokeSample& sample) { strokes = sample.stroke + 1; });
+  const std::size_t cycles = strokes / 2;
+  if (cycles < kFewest) return {};
+  const std::size_t parts = std::min(cycles, kMost);
+  return Jackknife(problem, estimates, thresholds, parts, [&](const StrokeSample& sample) {
+    return std::min(sample.stroke / 2, cycles - 1) * parts / cycles;
+  });
 }
 
 std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
@@ -301,6 +334,28 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   SetInterval(slip_force,
               {.source = IntervalSource::kDiscrepancy, .lower = range.lower, .upper = range.upper});
   slip_force.includes_discrepancy = true;
+  return parameters;
+}
+
+ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
+                                    const FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  ParameterEstimates parameters = result.parameters;
+  const bool is_adequate = result.adequacy.verdict == AdequacyVerdict::kAdequate;
+  const std::vector<double> errors =
+      is_adequate ? std::vector<double>() : ErrorsBetweenCycles(problem, estimates, thresholds);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const std::size_t p = problem.parameters.reported()[k];
+    const std::size_t place = PlaceOf(problem, p);
+    ParameterEstimate& estimate = parameters[k];
+    if (is_adequate) {
+      estimate.repeat_error = estimate.standard_error;
+    } else if (place < errors.size()) {
+      const Parameter& parameter = problem.parameters[p];
+      estimate.repeat_error =
+          errors[place] * (parameter.term->positive ? estimate.value : std::abs(parameter.scale));
+    }
+  }
   return parameters;
 }
 

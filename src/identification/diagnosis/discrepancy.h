@@ -27,6 +27,14 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& es
 std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
                                        const Thresholds& thresholds);
 
+/// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
+/// record, whole cycles that follow on each other: √((n − 1)/n·Σ(θ₋ₖ − θ̄)²), the jackknife, each
+/// θ₋ₖ by one linear step of all free parameters. What the model misses in the same way in every
+/// cycle is not in them.
+/// @returns none of fewer than three cycles, or where the rest does not determine them
+std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
+                                        const Thresholds& thresholds);
+
 /// The stiffness of the record after its reversals over that of the model: slopes of least squares,
 /// each stroke with an intercept of its own, over the places where the model's force has changed by
 /// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
@@ -53,6 +61,11 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
                                     std::span<const ParameterEstimate> plain,
                                     const Thresholds& thresholds, const FitResult& result);
+
+/// Returns the estimates with their repeat_error: the standard error where the model is adequate,
+/// else of ErrorsBetweenCycles().
+ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
+                                    const FitResult& result);
 
 /// Returns σ with its interval extended by what it is at the reversals, where a slip force depends
 /// on position, speed or time: such a force multiplies that of the contact, and with it the

@@ -196,7 +196,8 @@ constexpr std::array<Departure, 24> kDepartures = {{
      .meaning = "forces in proportion to the square root of the speed, along the motion, and to "
                 "the velocity",
      .unit = "",
-     .option = "--viscous fit --speed-exponent fit",
+     .option = "--slip-speed fit",
+     .term = "speed_exponent",
      .simpler = {"viscous_force"}},
     {.code = "slip_position_quadratic",
      .meaning = "growth of the contact's force over L from the record's middle; and over x², each "
@@ -548,8 +549,8 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     }
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
       const Term& term = *problem.parameters[p].term;
-      return term.name == kDepartures[d].term ||
-             (!term.option.empty() && term.option == LastOption(kDepartures[d].option));
+      if (!kDepartures[d].term.empty()) return term.name == kDepartures[d].term;
+      return !term.option.empty() && term.option == LastOption(kDepartures[d].option);
     });
     const bool is_unknown =
         d == kMeasuredLoad && std::ranges::all_of(records, [](const ScaledRecord& record) {
