@@ -135,15 +135,15 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& es
 namespace {
 
 /// Jackknife of linear steps: what leaving out one part of the samples after the other changes.
-/// @param part_of  part of a sample, less than `parts`
+/// @param part_of  part of a sample; `parts` of one that is never left out
 /// @returns √((n − 1)/n·Σ(θ₋ₖ − θ̄)²) of the free θ; none where the rest does not determine them
 template <typename PartOf>
 std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates,
                               const Thresholds& thresholds, std::size_t parts, PartOf part_of) {
   const Eigen::Index count = estimates.jacobian().cols();
   if (count == 0) return {};
-  std::vector<Eigen::MatrixXd> matrices(parts, Eigen::MatrixXd::Zero(count, count));
-  std::vector<Eigen::VectorXd> vectors(parts, Eigen::VectorXd::Zero(count));
+  std::vector<Eigen::MatrixXd> matrices(parts + 1, Eigen::MatrixXd::Zero(count, count));
+  std::vector<Eigen::VectorXd> vectors(parts + 1, Eigen::VectorXd::Zero(count));
   ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
     const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
     const std::size_t part = part_of(sample);
@@ -152,7 +152,7 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
   });
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(count);
-  for (std::size_t part = 0; part < parts; ++part) {
+  for (std::size_t part = 0; part <= parts; ++part) {
     matrix += matrices[part];
     vector += vectors[part];
   }
@@ -194,7 +194,9 @@ std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates&
   if (cycles < kFewest) return {};
   const std::size_t parts = std::min(cycles, kMost);
   return Jackknife(problem, estimates, thresholds, parts, [&](const StrokeSample& sample) {
-    return std::min(sample.stroke / 2, cycles - 1) * parts / cycles;
+    // An odd stroke at the end stays: without it the two directions would weigh unlike.
+    const std::size_t cycle = sample.stroke / 2;
+    return cycle < cycles ? cycle * parts / cycles : parts;
   });
 }
 
