@@ -36,6 +36,7 @@ struct Made {
   std::string verdict = "identifiable";
   double half_gap = 0.0;
   bool done = true;
+  double repeat_error = 0.0;  // none where it is 0
 };
 
 BatchEntry EntryOf(const Made& made, const std::string& file) {
@@ -45,6 +46,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
       {"standard_error", made.error},
       {"ci95", {made.slip_force - made.half_width, made.slip_force + made.half_width}},
       {"identifiability", made.verdict}};
+  if (made.repeat_error > 0) json["parameters"]["slip_force"]["repeat_error"] = made.repeat_error;
   json["measured"]["half_gap"]["value"] = made.half_gap;
   json["warnings"] = nlohmann::json::array();
   BatchEntry entry;
@@ -66,7 +68,7 @@ constexpr double kNormal95 = 1.959963984540054;
 constexpr double kRounding = 1e-12;
 
 TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
-  // Errors of 3, and of 4 by an interval that is inflated to 4 standard errors of 1.96 each.
+  // Errors of 3, and of 1 with an interval that is inflated to 4: √15 of it are common to repeats.
   const auto repeats = nlohmann::json::parse(
       ToJson(EntriesOf({{40, 3, 3 * kNormal95, "identifiable", 41},
                         {48, 1, 4 * kNormal95, "effective", 43},
@@ -77,9 +79,11 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   EXPECT_EQ(slip_force["files"], 2);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);
   EXPECT_NEAR(slip_force["standard_deviation"], std::sqrt(32.0), 10 * kRounding);
-  EXPECT_NEAR(slip_force["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
-  // χ² of one degree of freedom: 8²/(3² + 4²).
-  EXPECT_NEAR(slip_force["p_value"], std::erfc(std::sqrt(64.0 / 25 / 2)), 10 * kRounding);
+  EXPECT_NEAR(slip_force["stated_error"], std::sqrt((9.0 + 1.0) / 2), 10 * kRounding);
+  EXPECT_NEAR(slip_force["common_error"], std::sqrt(15.0 / 2), 10 * kRounding);
+  EXPECT_NEAR(slip_force["mean_error"], std::sqrt(32.0 / 2 + 15.0 / 2), 10 * kRounding);
+  // χ² of one degree of freedom: 8²/(3² + 1²).
+  EXPECT_NEAR(slip_force["p_value"], std::erfc(std::sqrt(64.0 / 10 / 2)), 10 * kRounding);
   // Measured without a model: no error is stated, and the verdict on Tc is none on the gap.
   const auto& half_gap = repeats["half_gap"];
   EXPECT_EQ(half_gap["files"], 3);
@@ -93,6 +97,16 @@ TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
   const auto repeats = nlohmann::json::parse(
       ToJson(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), ""))["repeats"];
   EXPECT_NEAR(repeats["slip_force"]["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
+}
+
+TEST(Repeats, ScatterByTheErrorOfRepeatsAndNotByThatOfTheModel) {
+  const auto repeats =
+      nlohmann::json::parse(ToJson(EntriesOf({{40, 3, 6 * kNormal95, "effective", 0, true, 0.5},
+                                              {41, 0, 6 * kNormal95, "effective", 0, true, 0.5}}),
+                                   ""))["repeats"];
+  EXPECT_EQ(repeats["slip_force"]["files"], 2) << "at a bound it has no standard error";
+  EXPECT_NEAR(repeats["slip_force"]["stated_error"], 0.5, 10 * kRounding);
+  EXPECT_NEAR(repeats["slip_force"]["common_error"], std::sqrt(36 - 0.25), 10 * kRounding);
 }
 
 TEST(BatchTable, HasTheNumbersOfEachFitInItsRow) {
