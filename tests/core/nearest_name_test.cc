@@ -18,6 +18,12 @@ TEST(NearestName, FindsALetterThatIsMissingTooMuchWrongOrSwapped) {
   EXPECT_EQ(NearestName("--normal_load", kOptions), "--normal-load");
 }
 
+TEST(NearestName, SharesALetterWithTheWord) {
+  const std::vector<std::string> one = {"m"};
+  EXPECT_EQ(NearestName("mn", one), "m");
+  EXPECT_EQ(NearestName("n", one), std::nullopt);
+}
+
 TEST(NearestName, CountsASwapOfNeighboursOnce) {
   // "ab" is one swap from "ba" and two substitutions: a word of two letters is allowed one edit.
   EXPECT_EQ(NearestName("ba", std::vector<std::string>{"ab"}), "ab");

@@ -53,6 +53,26 @@ TEST(Strokes, BeginWithTheFirstThatIsNotSkipped) {
   EXPECT_EQ(strokes.back().end, 70U);
 }
 
+TEST(ContinuedFrom, HoldsWhatRanToABoundAndBeginsWithTheRest) {
+  FitResult fit = FitThatTurns();
+  fit.force_sense = -1;
+  fit.records[0].initial_state = models::InitialState::kVirgin;
+  for (const auto& [name, status] : {std::pair("sigma", ParameterStatus::kFree),
+                                     {"alpha", ParameterStatus::kAtLowerBound},
+                                     {"slip_force", ParameterStatus::kFixed}}) {
+    ParameterEstimate& estimate = fit.parameters.emplace_back();
+    estimate.name = name;
+    estimate.status = status;
+    estimate.value = 7.0;
+  }
+  const FitOptions options = ContinuedFrom(fit, {});
+  EXPECT_EQ(options.start, (std::map<std::string, double>{{"sigma", 7.0}}));
+  EXPECT_EQ(options.fixed, (std::map<std::string, double>{{"alpha", 7.0}}));
+  EXPECT_EQ(options.starts, 1U);
+  EXPECT_EQ(options.preparation.force_sense, -1);
+  EXPECT_THAT(options.initial_states, ElementsAre(models::InitialState::kVirgin));
+}
+
 /// Three cycles of 100 samples from rest: they turn at 25, 75, … 275, and two of them close.
 struct ThreeCycles {
   ThreeCycles() {

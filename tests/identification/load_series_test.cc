@@ -85,6 +85,13 @@ TEST(LoadSeriesFit, SeparatesRigFromContact) {
   EXPECT_NEAR(fit.rig.stiffness / kRigStiffness, 1, kTolerance);
 }
 
+TEST(LoadSeriesFit, EachFileAloneIsWithoutThePriorsOfTheSeries) {
+  FitOptions options = UnderLoads();
+  options.priors["alpha"] = {1.0 / 3, 0.01};
+  const FitResult fit = Fit(Series(1.0 / 3), options);
+  for (const RecordFit& record : fit.records) EXPECT_TRUE(record.alone);
+}
+
 TEST(LoadSeriesFit, CoversTheTruthUnderNoise) {
   // 5 standard errors: for normal errors once in 10⁶.
   constexpr double kErrors = 5.0;

@@ -234,6 +234,31 @@ TEST(Plan, CorrelatedNoiseDistinguishesTheLawsByFewerSamples) {
       0.6, kLeftOut);
 }
 
+TEST(Plan, NoiseOfTheDisplacementActsByTheSlopeOfTheLoop) {
+  // Σ(dT/dδ)² over the samples of the virgin loop, by the public interface.
+  const Protocol protocol = Loop(0.8);
+  const std::vector<double> x =
+      models::MakeExcitation({.amplitude = protocol.amplitude, .cycles = protocol.cycles})
+          .displacement;
+  std::vector<double> force(x.size());
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
+  models::EvaluateForce(model, kLaw,
+                        models::MakeLoadingPath(x, loop::FindReversals(x, 0.0), model.memory,
+                                                {.state = InitialState::kVirgin}),
+                        x, force);
+  double slopes = 0.0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    slopes += std::pow((force[i] - force[i - 1]) / (x[i] - x[i - 1]), 2);
+  }
+  Expectation noisy = Quiet();
+  noisy.displacement_noise = 1e-8;
+  const double acts = slopes / static_cast<double>(x.size()) * 1e-16;
+  constexpr double kSampling = 1e-3;  // both sums are of the same samples but for rounding
+  EXPECT_NEAR(ExpectFit(noisy, protocol).law_evidence / ExpectFit(Quiet(), protocol).law_evidence /
+                  (kForceNoise * kForceNoise / (kForceNoise * kForceNoise + acts)),
+              1.0, kSampling);
+}
+
 TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};

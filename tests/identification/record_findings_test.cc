@@ -214,5 +214,18 @@ TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {
   EXPECT_NE(Fitter(options).Fit(views, Depth::kIntervals).FindFinding("path_too_long"), nullptr);
 }
 
+TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
+  std::pmr::memory_resource* const memory = std::pmr::get_default_resource();
+  ScaledRecords data(memory);
+  ScaledRecord& record = data.records.emplace_back(memory);
+  record.force.assign({0.0, 0.1, 0.2, 0.3});
+  record.load_change.assign({0.5, 0.3, 0.1, 9.0});
+  record.counts.assign({1, 1, 1, 0});
+  const std::vector<Finding> findings = FindVaryingLoads(data);
+  ASSERT_EQ(findings.size(), 1U);
+  // Of 0.5, 0.3 and 0.1 the variance is 0.08/3.
+  EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::record_findings_test

@@ -143,5 +143,20 @@ TEST(RobustLoss, WithoutOutliersLittleIsLost) {
   }
 }
 
+TEST(RobustLoss, ErrorsAreThoseOfNinetyFivePercentEfficiency) {
+  // 1/√0.95, and of ten loops the median deviations scatter by 1.166/√4570 = 1.7 %: three of these.
+  constexpr std::uint64_t kLoops = 10;
+  constexpr double kScaleScatter = 0.052;
+  for (const Loss loss : {Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
+    double ratio = 0.0;
+    for (std::uint64_t seed = 31; seed < 31 + kLoops; ++seed) {
+      const Record clean = NoisyLoop(seed);
+      const double plain = *FitWith(clean, Loss::kNone).Find("slip_force")->standard_error;
+      ratio += *FitWith(clean, loss).Find("slip_force")->standard_error / plain / kLoops;
+    }
+    EXPECT_NEAR(ratio, 1 / std::sqrt(0.95), kScaleScatter) << static_cast<int>(loss);
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::identification::robust_loss_test

@@ -113,6 +113,18 @@ TEST(SimplerLaws, MisfitAndLikelihoodRatioFollowFromTheResiduals) {
   }
 }
 
+TEST(SimplerLaws, ChanceOfTwoParametersLessIsThatOfTwoDegreesOfFreedom) {
+  // A tenth of gross slip: 2 ln Λ of the spring is a hundred or two, of which e^{−x/2} has a value.
+  const SimplerLaws laws = CompareSimplerLaws(Loop("mindlin", kMindlin, 0.1, 0.08));
+  const std::size_t most = laws.scores[laws.best].free_parameters;
+  const LawScore& spring = Find(laws, "spring");
+  ASSERT_EQ(most - spring.free_parameters, 2U);
+  ASSERT_TRUE(spring.p_value);
+  ASSERT_GT(*spring.p_value, 1e-100);
+  EXPECT_NEAR(std::log(*spring.p_value), -spring.likelihood_ratio / 2,
+              1e-9 * spring.likelihood_ratio);
+}
+
 TEST(SimplerLaws, RarelyRejectTheLawThatIsTrue) {
   // Mindlin's against the Masing law with free α, which nests it: ΔAICc of 4 is 2 ln Λ of 6 or so,
   // which chance exceeds once in 70.
@@ -134,6 +146,7 @@ TEST(SimplerLaws, AreIndependentOfForceSign) {
   constexpr double kRounding = 1e-9;
   for (std::size_t i = 0; i < same.scores.size(); ++i) {
     EXPECT_EQ(same.scores[i].told_apart, opposite.scores[i].told_apart);
+    EXPECT_EQ(same.scores[i].converged, opposite.scores[i].converged) << same.scores[i].model;
     EXPECT_NEAR(same.scores[i].rms, opposite.scores[i].rms, kRounding * same.scores[i].rms);
   }
 }

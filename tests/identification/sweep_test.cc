@@ -187,5 +187,23 @@ TEST(FitSweep, RefusesWhatIsNoSweep) {
                InvalidArgument);
 }
 
+TEST(FitSweep, LeastTcOfForcesThatWereReachedIsALimitOfTheLaw) {
+  // Up to 59.9 N of 60: a smaller alpha wants a Tc below what was carried, which holds it.
+  const SweepOptions options{.over_force = true};
+  const std::vector<double> forces = Forces(4.0, 59.9, 30);
+  const SweepFit fit =
+      FitSweep(forces, Noisy(Responses(options, 1.0 / 3.0, forces), 0.01 * kSigma, 9), options);
+  const SweepFit held =
+      FitSweep(forces, Noisy(Responses(options, 1.0 / 3.0, forces), 0.01 * kSigma, 9),
+               {.over_force = true, .fixed = {{"slip_force", 59.9}}});
+  const ParameterEstimate& alpha = fit.parameter("alpha");
+  ASSERT_TRUE(alpha.lower95);
+  // With Tc held there one parameter less is free, of 27 or 28 degrees of freedom.
+  constexpr double kOneDegree = 0.05;
+  const ParameterEstimate& there = held.parameter("alpha");
+  EXPECT_NEAR(*alpha.lower95, *there.lower95, kOneDegree * (there.value - *there.lower95) + 0.01);
+  EXPECT_GT(*alpha.lower95, 0.2);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::sweep_test

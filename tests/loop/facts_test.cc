@@ -365,5 +365,19 @@ TEST(MeasureFacts, OfTheMeasuredTribometerAreItsEnergyAndFriction) {
   EXPECT_EQ(facts.cycles.size(), 10U);
 }
 
+TEST(MeasureFacts, PeakForceTakesTheMeanOfTheTwoEndsOfACycle) {
+  // Up and down in 60 samples each: the force follows the displacement to ±10 but for the last
+  // turn, −20 in one sample. Of means over three samples the least is −40/3, of the two ends −15.
+  Record record;
+  for (int i = 0; i <= 120; ++i) {
+    const double x = i <= 60 ? -1 + i / 30.0 : 3 - i / 30.0;
+    record.displacement.push_back(x);
+    record.force.push_back(i == 120 ? -20.0 : 10 * x);
+  }
+  const LoopFacts facts = FactsOf(record);
+  ASSERT_EQ(facts.cycles.size(), 1U);
+  EXPECT_NEAR(facts.cycles[0].peak_force, (10 + 15) / 2.0, kRounding);
+}
+
 }  // namespace
 }  // namespace mindahl::loop::facts_test

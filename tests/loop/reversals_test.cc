@@ -490,5 +490,37 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
   EXPECT_GT(FindReversals(position, 0.0).size(), 1000U) << "the gate has nothing to do";
 }
 
+TEST(ChooseReversalGate, IsTwiceWhatItRejectsButNotAtTheSmallStrokes) {
+  // Ramps of ±1 with a jump back and forth of 0.01 in their middle, and one with an inner loop of
+  // 0.3 or of 0.03, a third of a ramp long: of the jumps the gate is twice as wide, of those next
+  // to the inner loop the geometric mean.
+  const auto gate_with = [](double inner) {
+    History history = {-1.0};
+    const auto ramp_to = [&](double target, int samples) {
+      const double from = history.back();
+      for (int k = 1; k <= samples; ++k) history.push_back(from + (target - from) * k / samples);
+    };
+    for (int swing = 0; swing < 12; ++swing) {
+      const double target = swing % 2 == 0 ? 1.0 : -1.0;
+      ramp_to(0.0, 60);
+      if (swing == 5) {
+        ramp_to(-target * inner, 60);
+      } else {
+        history.push_back(-target * 0.01);
+        history.push_back(target * 1e-3);
+      }
+      ramp_to(target, 60);
+    }
+    return ChooseReversalGate(history);
+  };
+  constexpr double kRounding = 1e-12;
+  const ReversalGate wide = gate_with(0.3);
+  EXPECT_EQ(wide.count, 13U);  // eleven turns and the inner loop's two
+  EXPECT_NEAR(wide.gate, 2 * 0.01, kRounding);
+  const ReversalGate narrow = gate_with(0.03);
+  EXPECT_EQ(narrow.count, 13U);
+  EXPECT_NEAR(narrow.gate, std::sqrt(0.01 * 0.03), kRounding);
+}
+
 }  // namespace
 }  // namespace mindahl::loop::reversals_test

@@ -75,13 +75,14 @@ TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   FitRequest request;
   request.reversal_gate = 4.1e-6;
   EXPECT_THAT(RefusalOf({LoopFile()}, request),
-              HasSubstr("--reversal-gate 4.1e-06: the whole motion is 4e-06 m wide"));
+              HasSubstr("--reversal-gate 4.1e-06: the motion ranges over 4e-06 m only"));
   io::RecordFile wider = LoopFile();
   for (double& x : wider.record.displacement) x *= 1.1;
   EXPECT_THAT(RefusalOf({LoopFile(), wider}, request), Not(HasSubstr("--reversal-gate")));
   request.noise_in = "displacement";
   request.reversal_gate = 1000.0;
-  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("the whole force is"));
+  EXPECT_THAT(RefusalOf({LoopFile()}, request),
+              HasSubstr("--reversal-gate 1000: the force ranges over"));
 }
 
 TEST(FitRecords, RefusesAForceBesideATorque) {

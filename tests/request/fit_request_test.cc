@@ -24,6 +24,20 @@ TEST(FitRequest, TakesWhatItsTablesName) {
   }
 }
 
+TEST(FitRequest, RefusesAValueThatIsHeldOutsideItsBound) {
+  FitRequest request;
+  request.bound["slip_force"] = {1.0, 5.0};
+  for (const double held : {0.9, 5.1}) {
+    request.fix["slip_force"] = held;
+    try {
+      MakeFitOptions(request);
+      FAIL() << held;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("outside its --bound 1:5"));
+    }
+  }
+}
+
 TEST(FitRequest, ChoosesNoModelForEachCycle) {
   FitRequest request;
   request.model = kAutomatic;

@@ -1,5 +1,7 @@
 
 
+#include <nlohmann/json.hpp>
+
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
@@ -149,6 +151,14 @@ TEST(TrimmedFit, ReportsWhatIsLeftOutAndWhatDependsOnIt) {
   EXPECT_EQ(report.fit.initial_state, models::InitialState::kSteady);
   EXPECT_GT(report.fit.records.front().left_out, 2 * kCycle);
   EXPECT_THAT(report::ToJson(report), HasSubstr("\"reason\": \"running_in\""));
+  const auto trimmed = nlohmann::json::parse(report::ToJson(report))["input"]["trimmed"];
+  ASSERT_FALSE(trimmed.empty());
+  std::size_t next = 1;  // of a record without lines samples count from 1
+  for (const auto& part : trimmed) {
+    EXPECT_EQ(part["first_line"], next);
+    next += part["samples"].get<std::size_t>();
+    EXPECT_EQ(part["last_line"], next - 1);
+  }
 }
 
 TEST(TrimmedFit, SaysThatNothingIsLeftOutAndWhy) {
