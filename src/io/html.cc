@@ -101,7 +101,7 @@ pre{background:var(--panel);border:1px solid var(--grid);border-radius:.3rem;pad
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,27rem),1fr));gap:1.4rem 2rem;
  align-items:start}
 .first{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1fr);gap:.5rem 2rem;align-items:start}
-.first h2{border:0;margin:.8rem 0 .3rem;padding:0} .first p,.first .verdict{margin-top:.2rem} .first td.words{min-width:0}
+.first h2{border:0;margin:.8rem 0 .3rem;padding:0} .first p,.first .verdict{margin-top:.2rem} .first td.words{min-width:0;overflow-wrap:normal} .first th,.first td{padding-right:.6rem}
 @media (max-width:900px){.first{display:block}}
 @media (max-width:600px){body{padding:.8rem .8rem 2rem} th,td{padding-right:.6rem}
  tbody th{min-width:7rem;overflow-wrap:anywhere} td.words{min-width:8rem}}

@@ -146,13 +146,11 @@ const std::vector<double>& FittedDisplacement(const Report& report, std::size_t 
 
 /// The fitted loop of a record; of one that is too long to be drawn whole, of its last cycle.
 PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& units,
-                      const std::string& suffix) {
-  // A page draws 6000 points of ten series: a line of more would lose the corners of its loops.
-  constexpr std::size_t kMostSamples = 600;
+                      std::size_t most_samples) {
   const RecordFit& fit = report.fit.records[r];
-  Group range{.label = "fitted" + suffix, .record = r, .begin = 0, .end = fit.fitted_force.size()};
+  Group range{.label = "fitted", .record = r, .begin = 0, .end = fit.fitted_force.size()};
   const std::vector<std::size_t>& reversals = fit.reversals;
-  if (range.end > kMostSamples / report.records.size() && reversals.size() >= 3) {
+  if (range.end > most_samples && reversals.size() >= 3) {
     range.begin = reversals[reversals.size() - 3];
     range.end = reversals.back() + 1;
     range.label += ", last cycle";
@@ -285,8 +283,12 @@ PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours c
       panel.series.push_back(
           Range(group, record.displacement, per_displacement, record.force, per_force));
     }
+    // A page spreads its points over all series: a line of more would lose the corners of its
+    // loops.
+    constexpr std::size_t kPoints = 6000;
+    const std::size_t most = kPoints / (panel.series.size() + report.records.size() + 1);
     for (std::size_t r = 0; r < report.records.size(); ++r) {
-      PlotSeries line = FittedLine(report, r, units, "");
+      PlotSeries line = FittedLine(report, r, units, most);
       if (r > 0) line.label.clear();
       panel.series.push_back(std::move(line));
     }

@@ -426,7 +426,7 @@ def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
     page = result.page()
     assert page.startswith("<!DOCTYPE html>") and page.count("<svg") >= 4
     assert "a&lt;b&gt;&amp;c.csv" in page and "<b>&c" not in page
-    assert "slip_force" in page and "identifiable" in page
+    assert "slip force Tc" in page and "identifiable" in page
     frame = result._repr_html_()
     assert frame.startswith("<iframe srcdoc=") and frame.count("<") == 2  # all else is escaped
     assert html.unescape(frame).count(page) == 1
