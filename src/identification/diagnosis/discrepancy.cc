@@ -146,9 +146,11 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
   if (count == 0) return {};
   std::vector<Eigen::MatrixXd> matrices(parts + 1, Eigen::MatrixXd::Zero(count, count));
   std::vector<Eigen::VectorXd> vectors(parts + 1, Eigen::VectorXd::Zero(count));
+  double left_out = 0.0;
   ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
     const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
     const std::size_t part = part_of(sample);
+    if (part < parts) ++left_out;
     matrices[part].noalias() += row * row.transpose();
     vectors[part] -= estimates.residual()(sample.row) * row;
   });
@@ -170,10 +172,15 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
   }
   steps.colwise() -= steps.rowwise().mean().eval();
   const auto all = static_cast<double>(parts);
+  double factor = (all - 1) / all;
+  if (keeps_rest) {  // each part is a fraction of all samples that is less than 1/n
+    const double fraction = left_out / all / static_cast<double>(estimates.jacobian().rows());
+    factor = (1 - fraction) * (1 - fraction) / (fraction * (all - 1));
+  }
   std::vector<double> errors;
   errors.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
-    errors.push_back(std::sqrt((all - 1) / all) * steps.row(k).norm());
+    errors.push_back(std::sqrt(factor) * steps.row(k).norm());
   }
   return errors;
 }
