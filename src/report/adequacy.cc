@@ -300,8 +300,8 @@ std::string SameModelAgain(const Report& report) {
     columns += fmt::format(" --covariate {}{}{}", quote, *column, quote);
   }
   return fmt::format(
-      "to fit other records of this contact by the same model, give --terms {}{}; no known "
-      "cause explains half of the remaining misfit",
+      "no known cause explains half of the remaining misfit; to fit other records of this contact "
+      "by the same model, give --terms {}{}",
       groups.empty() ? "none" : fmt::format("{}", fmt::join(groups, ",")), columns);
 }
 

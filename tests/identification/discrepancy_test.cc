@@ -212,7 +212,7 @@ TEST(RepeatError, IsTheScatterOfRepeatsAndNotWhatTheModelMissesInAll) {
   double stated = 0.0;
   double standard_error = 0.0;
   for (std::uint64_t seed = 1; seed <= kRepeats; ++seed) {
-    const ParameterEstimate slip_force = *FitNoisy(OfPosition(0.2), seed).Find("slip_force");
+    const ParameterEstimate slip_force = *FitNoisy(OfPosition(0.1), seed).Find("slip_force");
     ASSERT_TRUE(slip_force.repeat_error && slip_force.standard_error);
     const double off = slip_force.value - kLaw.slip_force;
     sum += off;

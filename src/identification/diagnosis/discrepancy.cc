@@ -136,17 +136,21 @@ namespace {
 
 /// Jackknife of linear steps: what leaving out one part of the samples after the other changes.
 /// @param part_of  part of a sample; `parts` of one that is never left out
+/// @param keeps_rest  the samples besides main strokes too, as of the first loading
 /// @returns √((n − 1)/n·Σ(θ₋ₖ − θ̄)²) of the free θ; none where the rest does not determine them
 template <typename PartOf>
 std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates,
-                              const Thresholds& thresholds, std::size_t parts, PartOf part_of) {
+                              const Thresholds& thresholds, std::size_t parts, PartOf part_of,
+                              bool keeps_rest) {
   const Eigen::Index count = estimates.jacobian().cols();
   if (count == 0) return {};
   std::vector<Eigen::MatrixXd> matrices(parts + 1, Eigen::MatrixXd::Zero(count, count));
   std::vector<Eigen::VectorXd> vectors(parts + 1, Eigen::VectorXd::Zero(count));
+  double left_out = 0.0;
   ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
     const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
     const std::size_t part = part_of(sample);
+    if (part < parts) ++left_out;
     matrices[part].noalias() += row * row.transpose();
     vectors[part] -= estimates.residual()(sample.row) * row;
   });
@@ -156,6 +160,10 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
     matrix += matrices[part];
     vector += vectors[part];
   }
+  if (keeps_rest) {
+    matrix = estimates.jacobian().transpose() * estimates.jacobian();
+    vector = -(estimates.jacobian().transpose() * estimates.residual());
+  }
   Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
   for (std::size_t part = 0; part < parts; ++part) {
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rest(matrix - matrices[part]);
@@ -164,10 +172,15 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
   }
   steps.colwise() -= steps.rowwise().mean().eval();
   const auto all = static_cast<double>(parts);
+  double factor = (all - 1) / all;
+  if (keeps_rest) {  // each part is a fraction of all samples that is less than 1/n
+    const double fraction = left_out / all / static_cast<double>(estimates.jacobian().rows());
+    factor = (1 - fraction) * (1 - fraction) / (fraction * (all - 1));
+  }
   std::vector<double> errors;
   errors.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
-    errors.push_back(std::sqrt((all - 1) / all) * steps.row(k).norm());
+    errors.push_back(std::sqrt(factor) * steps.row(k).norm());
   }
   return errors;
 }
@@ -176,8 +189,9 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
 
 std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
                                        const Thresholds& thresholds) {
-  std::vector<double> spread = Jackknife(problem, estimates, thresholds, kParts,
-                                         [](const StrokeSample& sample) { return sample.part; });
+  std::vector<double> spread = Jackknife(
+      problem, estimates, thresholds, kParts,
+      [](const StrokeSample& sample) { return sample.part; }, /*keeps_rest=*/false);
   const double quantile = StudentQuantile(kParts - 1, estimates.confidence());
   for (double& width : spread) width *= quantile;
   return spread;
@@ -193,11 +207,12 @@ std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates&
   const std::size_t cycles = strokes / 2;
   if (cycles < kFewest) return {};
   const std::size_t parts = std::min(cycles, kMost);
-  return Jackknife(problem, estimates, thresholds, parts, [&](const StrokeSample& sample) {
+  const auto part_of = [&](const StrokeSample& sample) {
     // An odd stroke at the end stays: without it the two directions would weigh unlike.
     const std::size_t cycle = sample.stroke / 2;
     return cycle < cycles ? cycle * parts / cycles : parts;
-  });
+  };
+  return Jackknife(problem, estimates, thresholds, parts, part_of, /*keeps_rest=*/true);
 }
 
 std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,

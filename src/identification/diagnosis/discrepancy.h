@@ -28,9 +28,9 @@ std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& 
                                        const Thresholds& thresholds);
 
 /// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
-/// record, whole cycles that follow on each other: √((n − 1)/n·Σ(θ₋ₖ − θ̄)²), the jackknife, each
-/// θ₋ₖ by one linear step of all free parameters. What the model misses in the same way in every
-/// cycle is not in them.
+/// record, whole cycles that follow on each other: √((1 − f)²/f·Σ(θ₋ₖ − θ̄)²/(n − 1)), the jackknife
+/// of n parts that have a fraction f of the samples each, each θ₋ₖ by one linear step of all free
+/// parameters. What the model misses in the same way in every cycle is not in them.
 /// @returns none of fewer than three cycles, or where the rest does not determine them
 std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
                                         const Thresholds& thresholds);
