@@ -167,10 +167,10 @@ std::string WhatIncludesIt(const identification::FitResult& fit) {
   }
   if (names.empty()) names.swap(others);
   if (names.empty()) return "no parameter is usable";
-  return fmt::format("the interval{} of {}{} include{} this", names.size() > 1 ? "s" : "",
-                     fmt::join(names, ", "),
-                     others.empty() ? "" : fmt::format(" (and of {} more)", others.size()),
-                     names.size() + others.size() > 1 ? "" : "s");
+  const bool are_several = names.size() + others.size() > 1;
+  return fmt::format(
+      "the interval{} of {}{} include{} this", are_several ? "s" : "", fmt::join(names, ", "),
+      others.empty() ? "" : fmt::format(" and {} more", others.size()), are_several ? "" : "s");
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
     (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' cannot be planned"),
     (lambda: mindahl.recommend(**LAW), "lambda_ or amplitude"),
     (lambda: mindahl.recommend(**LAW, lambda_=1, criterion="least"), "criterion: 'least'"),
-    (lambda: mindahl.recommend(record=SPHERE, **LAW), "record excludes the contact"),
+    (lambda: mindahl.recommend(record=SPHERE, **LAW), "record excludes contact"),
     (lambda: mindahl.tradeoff(excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
     (lambda: mindahl.validate(cases=0), "cases = 0 is invalid: must be >= 1"),
     (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
