@@ -11,6 +11,7 @@
 
 #include "core/extremes.h"
 #include "core/probability.h"
+#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/inference/noise.h"
@@ -54,29 +55,6 @@ struct CandidateModel {
   double sum_of_squares = std::numeric_limits<double>::infinity();  // in units of rounding
 };
 
-/// Correlation of two columns of one size; 0 where one is constant.
-double ColumnCorrelation(std::span<const double> one, std::span<const double> other) {
-  double mean_of_one = 0.0;
-  double mean_of_other = 0.0;
-  const auto count = static_cast<double>(one.size());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    mean_of_one += one[i] / count;
-    mean_of_other += other[i] / count;
-  }
-  double product = 0.0;
-  double squares_of_one = 0.0;
-  double squares_of_other = 0.0;
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    const double a = one[i] - mean_of_one;
-    const double b = other[i] - mean_of_other;
-    product += a * b;
-    squares_of_one += a * a;
-    squares_of_other += b * b;
-  }
-  const double norm = std::sqrt(squares_of_one) * std::sqrt(squares_of_other);
-  return norm > 0 ? product / norm : 0.0;
-}
-
 /// Central differences; enough to recognise a measured velocity.
 std::vector<double> RoughVelocity(const RecordView& record) {
   std::vector<double> velocity(record.size(), 0.0);
@@ -94,20 +72,19 @@ std::vector<double> RoughVelocity(const RecordView& record) {
 std::string_view ObstacleTo(const loop::Covariate& covariate, const RecordView& record,
                             const FitResult& law, std::span<const std::string> before) {
   constexpr double kSameChannel = 0.95;
-  constexpr double kFollowsContact = 0.3;
-  const auto follows = [&](std::span<const double> other, double limit) {
-    return std::abs(ColumnCorrelation(covariate.values, other)) > limit;
+  const auto is_channel = [&](std::span<const double> other) {
+    return std::abs(ColumnCorrelation(covariate.values, other)) > kSameChannel;
   };
-  if (follows(record.displacement, kSameChannel) || follows(record.force, kSameChannel) ||
-      follows(record.time.empty() ? record.displacement : record.time, kSameChannel) ||
-      follows(RoughVelocity(record), kSameChannel)) {
+  if (is_channel(record.displacement) || is_channel(record.force) ||
+      is_channel(record.time.empty() ? record.displacement : record.time) ||
+      is_channel(RoughVelocity(record))) {
     return "same_channel";
   }
   for (const loop::Covariate& other : record.covariates) {
     const bool is_before = std::ranges::find(before, other.name) != before.end();
-    if (is_before && follows(other.values, kSameChannel)) return "same_channel";
+    if (is_before && is_channel(other.values)) return "same_channel";
   }
-  return follows(law.records.front().fitted_force, kFollowsContact) ? "confounded" : "";
+  return FollowsContact(covariate.values, law.records.front().fitted_force) ? "confounded" : "";
 }
 
 bool HasCovariate(const RecordView& record, const std::string& name) {

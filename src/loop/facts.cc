@@ -484,6 +484,11 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 
 }  // namespace
 
+std::optional<double> EnergyOverEvenGap(const LoopFacts& facts) {
+  if (!facts.half_gap) return std::nullopt;
+  return facts.energy_per_cycle / (4 * facts.amplitude * std::abs(*facts.half_gap));
+}
+
 bool Slides(const LoopFacts& facts) {
   constexpr double kSliding = 0.75;
   if (!facts.closed) return false;
@@ -492,7 +497,7 @@ bool Slides(const LoopFacts& facts) {
   constexpr double kSameGap = 0.1;  // off the energy of a gap that is the same over the stroke
   constexpr double kOfPeak = 0.5;
   if (!facts.half_gap || !(*facts.half_gap > kOfPeak * facts.peak_force)) return false;
-  return std::abs(facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap) - 1) < kSameGap;
+  return std::abs(*EnergyOverEvenGap(facts) - 1) < kSameGap;
 }
 
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {

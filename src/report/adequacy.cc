@@ -317,8 +317,8 @@ std::string LargerAmplitude(const Report& report) {
       slip_force->is_known() || report.fit.response != loop::Channel::kForce) {
     return "";
   }
-  const double of_gap = 4 * facts.amplitude * std::abs(facts.half_gap.value_or(0.0));
-  if (std::abs(facts.energy_per_cycle - of_gap) < kSameGap * of_gap) return "";
+  const std::optional<double> of_gap = EnergyOverEvenGap(facts);
+  if (of_gap && std::abs(*of_gap - 1) < kSameGap) return "";
   return fmt::format(
       "raise the amplitude until the force levels off: an energy ratio of {:.2g} is far from "
       "sliding, and the record determines no slip force",

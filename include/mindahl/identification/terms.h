@@ -82,6 +82,8 @@ struct Term {
   double start = 0.0;
   /// How the names of the linear parameters begin whose columns depend on this one.
   std::string_view shapes = {};
+  /// Name of the term without which this one cannot be fitted; empty: none.
+  std::string_view needs = {};
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same

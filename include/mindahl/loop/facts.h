@@ -83,8 +83,13 @@ struct LoopFacts {
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 
-/// True if the measured loop slides: if its energy ratio is above 0.75. Masing's loop of α ≤ 1 then
-/// reaches 0.999 of its slip force, and 0.95 for α = 2.
+/// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty without
+/// a half gap.
+std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
+
+/// True if the measured loop slides: if its energy ratio is above 0.75, where Masing's loop reaches
+/// 0.999 of its slip force for α ≤ 1 and 0.95 for α = 2; or if a gap of more than half the peak
+/// force is the same over the stroke to a tenth, as beside a spring parallel to the contact.
 bool Slides(const LoopFacts& facts);
 
 /// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +15,33 @@
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
+
+double ColumnCorrelation(std::span<const double> one, std::span<const double> other) {
+  double mean_of_one = 0.0;
+  double mean_of_other = 0.0;
+  const auto count = static_cast<double>(one.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    mean_of_one += one[i] / count;
+    mean_of_other += other[i] / count;
+  }
+  double product = 0.0;
+  double squares_of_one = 0.0;
+  double squares_of_other = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const double a = one[i] - mean_of_one;
+    const double b = other[i] - mean_of_other;
+    product += a * b;
+    squares_of_one += a * a;
+    squares_of_other += b * b;
+  }
+  const double norm = std::sqrt(squares_of_one) * std::sqrt(squares_of_other);
+  return norm > 0 ? product / norm : 0.0;
+}
+
+bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force) {
+  constexpr double kFollows = 0.3;  // correlation
+  return std::abs(ColumnCorrelation(column, fitted_force)) > kFollows;
+}
 
 namespace {
 
@@ -116,28 +142,23 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
-/// True if a column follows the force of the fitted model: its factor would take a part of Tc.
-bool FollowsContact(const Problem& problem, const Solution& solution, std::size_t covariate) {
-  constexpr double kFollows = 0.3;  // correlation
-  Eigen::VectorXd column(static_cast<Eigen::Index>(problem.data->counted));
-  Eigen::VectorXd force(column.size());
-  Eigen::Index row = 0;
+/// True if a covariate follows the force of the fitted model on the samples that count.
+bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
+                             std::size_t covariate) {
+  std::vector<double> column;
+  std::vector<double> fitted_force;
   std::size_t begin = 0;
   for (const ScaledRecord& record : problem.data->records) {
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] == 0 || row == column.size()) continue;
+      if (record.counts[i] == 0) continue;
       const double missed =
           solution.residual.empty() ? 0.0 : solution.residual[begin + i] / record.root_weight[i];
-      column(row) = record.covariates[covariate][i];
-      force(row++) = record.force[i] + missed;
+      column.push_back(record.covariates[covariate][i]);
+      fitted_force.push_back(record.force[i] + missed);
     }
     begin += record.size();
   }
-  column.conservativeResize(row);
-  force.conservativeResize(row);
-  column.array() -= column.mean();
-  force.array() -= force.mean();
-  return std::abs(column.dot(force)) > kFollows * column.norm() * force.norm();
+  return FollowsContact(column, fitted_force);
 }
 
 /// Returns the option to type: with the name of a covariate, quoted where it has blanks; of a
@@ -157,7 +178,7 @@ std::string OptionOf(const Problem& problem, const Solution& solution, const Fit
   }
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
   const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
-  const bool is_known = FollowsContact(problem, solution, *fit.covariate);
+  const bool is_known = CovariateFollowsContact(problem, solution, *fit.covariate);
   return AcceptedOptions(
       problem, options,
       fmt::format("--covariate {}{}{}{}", quote, name, is_known ? "=C" : "", quote));
@@ -315,7 +336,7 @@ void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> 
 void DropLesserCauses(std::vector<Cause>& causes) {
   constexpr double kMostOfIt = 0.5;
   std::erase_if(
-      causes, [&](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
+      causes, [](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
 }
 
 }  // namespace

@@ -5,14 +5,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <iterator>
 #include <numbers>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/nearest_name.h"
@@ -277,6 +274,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   ApplyOptions(options, data.prior_noise);
   RequireShapedColumns();
+  RequireNeededTerms();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
     if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
@@ -337,13 +335,16 @@ void Parameters::RequireShapedColumns() const {
     throw InvalidArgument(fmt::format("{} has no effect without a term {}: add it",
                                       shaping.term->name, shaping.term->shapes));
   }
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kTogether = {
-      {{"slip_speed", "slip_speed_exponent"}, {"drag_fraction", "drag_exponent"}}};
-  for (const auto& [size, exponent] : kTogether) {
-    const bool has_size = !parameters_[PositionOf(size, 0)].absent;
-    if (has_size == !parameters_[PositionOf(exponent, 0)].absent) continue;
-    throw InvalidArgument(
-        fmt::format("{} needs {}: add it", has_size ? size : exponent, has_size ? exponent : size));
+}
+
+/// Refuses a parameter without the one that it needs.
+void Parameters::RequireNeededTerms() const {
+  for (const Parameter& parameter : parameters_) {
+    const Term& term = *parameter.term;
+    if (parameter.absent || term.needs.empty() || !parameters_[PositionOf(term.needs, 0)].absent) {
+      continue;
+    }
+    throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
   }
 }
 

@@ -193,6 +193,7 @@ class Parameters {
   void ApplyOptions(const FitOptions& options, double prior_noise);
   void ApplyPriors(const FitOptions& options, double noise);
   void RequireShapedColumns() const;
+  void RequireNeededTerms() const;
   void RequireOneMotion() const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne(const FitOptions& options);
