@@ -57,8 +57,8 @@ class ReferenceLoops {
 /// differences; more are those polygons, which come within some hundredths of the least mean square
 /// at one amplitude and are farther from it over many.
 ///
-/// Where no amplitude slips grossly the last of two or more elements sticks at all of them, and has
-/// the slip force that the others leave of the contact's.
+/// The last of two or more elements sticks at every amplitude where none slips grossly; its slip
+/// force is then the contact's less that of the others.
 /// @param masing      the Masing law of the contact, or of its loop at one of the amplitudes
 /// @param amplitudes  [m], > 0
 /// @param elements    >= 1; fewer are returned for α = 0, which is one

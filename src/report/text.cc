@@ -465,7 +465,7 @@ std::string UnusableText(const Report& report, const Style& style) {
   std::string text = AdequacyText(report, style) + MeasuredText(report) +
                      Wrapped("reversals: " + SamplesText(report), 11);
   for (const Warning& note : report.notes) {
-    // What is said of parameters is of no use here.
+    // This text prints no parameters, so a note on one has nothing to refer to.
     const bool is_of_parameters =
         std::ranges::any_of(report.fit.findings, [&](const identification::Finding& finding) {
           return std::string_view(finding.code) == note.code && !finding.parameters.empty();

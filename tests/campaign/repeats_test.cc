@@ -42,7 +42,7 @@ TEST(Repeats, AverageOutWhatScattersAndNotWhatTheyHaveInCommon) {
   ASSERT_TRUE(repeats);
   EXPECT_NEAR(*repeats->common_error, 2, kRounding);
   EXPECT_NEAR(repeats->mean_error(), std::sqrt(1.0 / 3 + 4), kRounding);
-  // Where they agree by chance, no less than their errors say.
+  // Values that agree by chance leave the error of the mean at that of their stated errors.
   EXPECT_NEAR(DescribeRepeats(Numbers{10, 10}, Numbers{0.6, 0.8})->mean_error(), 0.5, kRounding);
   EXPECT_THROW(DescribeRepeats(Numbers{1, 2}, Numbers{1, 1}, Numbers{1}), InvalidArgument);
 }

@@ -223,7 +223,7 @@ TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
   record.counts.assign({1, 1, 1, 0});
   const std::vector<Finding> findings = FindVaryingLoads(data);
   ASSERT_EQ(findings.size(), 1U);
-  // Of 0.5, 0.3 and 0.1 the variance is 0.08/3.
+  // The variance of 0.5, 0.3 and 0.1 is 0.08/3.
   EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
 }
 

@@ -4,7 +4,7 @@
 #include "support/histories.h"
 #include "support/prelude.h"
 
-// What is refused of records before they are fitted, and what is taken from them.
+// These tests concern the records that are refused before a fit, and the options taken from files.
 namespace mindahl::request::fit_records_test {
 namespace {
 

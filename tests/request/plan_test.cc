@@ -65,7 +65,7 @@ TEST(MakePlan, CountsAmplitudesInDisplacementsAtSlip) {
   constexpr double kRounding = 1e-18;
   EXPECT_NEAR(Made(Known()).slip, 1.5e-6, kRounding);  // Tc/(σ(1 − α))
   PlanRequest behind = Known();
-  behind.rig_stiffness = 8e7;  // gives way by Tc/k
+  behind.rig_stiffness = 8e7;  // the rig deflects by Tc/k
   EXPECT_NEAR(Made(behind).slip, 1.5e-6 + 0.5e-6, kRounding);
   behind.law.alpha = 1.0;  // slip is only approached: three elastic limits
   EXPECT_NEAR(Made(behind).slip, 3e-6 + 0.5e-6, kRounding);

@@ -5,7 +5,7 @@
 #include "support/histories.h"
 #include "support/prelude.h"
 
-// What is recommended for a motion or a record, and why.
+// These tests concern the model recommended for a motion or a record, and the stated reason.
 namespace mindahl::request::recommendation_test {
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include "support/prelude.h"
 
-// What is said of a study that is made by hand.
+// These tests concern the sentences on a study whose points are set by hand.
 namespace mindahl::request::tradeoff_test {
 namespace {
 

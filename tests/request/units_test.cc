@@ -161,7 +161,7 @@ FitRequest WithTerms(std::initializer_list<std::string_view> names) {
   return request;
 }
 
-/// What is known of a steel sphere on a plane, in some units.
+/// States the known inputs of a steel sphere on a plane, in the given units.
 void DescribeContact(const UnitScale& scale, ContactOptions& contact) {
   const double pressure = scale.force / (scale.length * scale.length);
   for (contact::KnownBody* const body : {&contact.known.body_1, &contact.known.body_2}) {

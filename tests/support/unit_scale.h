@@ -7,11 +7,11 @@
 #include <map>
 #include <string_view>
 
-/// What a change of units makes of a number. By powers of two nothing is rounded: what is scaled is
-/// the same but for its exponent.
+/// Converts numbers to other units. Powers of two round nothing: a scaled number differs from the
+/// original in its exponent only.
 namespace mindahl::testing {
 
-/// What lengths, forces and times are multiplied by.
+/// Holds the factors of lengths, forces and times.
 struct UnitScale {
   double length = 1.0;
   double force = 1.0;
