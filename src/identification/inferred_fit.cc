@@ -1,11 +1,13 @@
 #include "identification/inferred_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <deque>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -150,15 +152,18 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
 }
 
-/// Takes Tc off the parameters that a limit of the search leaves open, where its interval covers
-/// what a loop that slides has carried: a limit of another term does not move that.
+/// Takes Tc off the parameters that a limit of the search or the choice of a law leaves open, where
+/// its interval covers what a loop that slides has carried: neither moves that.
 void KeepMeasuredSlipForce(const Thresholds& thresholds, FitResult& result) {
   const bool is_measured = result.Find("slip_force")->includes_discrepancy &&
                            SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds);
   if (!is_measured) return;
   for (Finding& finding : result.findings) {
-    const bool is_limit = std::string_view(finding.code) == "search_limit";
-    if (is_limit) std::erase(finding.parameters, "slip_force");
+    constexpr std::array<std::string_view, 3> kOfModel = {"search_limit", "law_undecided",
+                                                          "other_law_fits_better"};
+    const bool is_of_model =
+        std::ranges::find(kOfModel, std::string_view(finding.code)) != kOfModel.end();
+    if (is_of_model) std::erase(finding.parameters, "slip_force");
   }
 }
 
@@ -316,6 +321,8 @@ void CompareModels(const Attempt& attempt, const FittedProblem& fitted,
   }
   result.law_choice = ReportedLaw(laws.choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
+  result.parameters[kSlipForce] = CoverOtherLaw(attempt.options.thresholds, result);
+  KeepMeasuredSlipForce(attempt.options.thresholds, result);
 }
 
 }  // namespace

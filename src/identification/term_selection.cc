@@ -121,14 +121,23 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
     };
     if (is_there || !std::ranges::all_of(records, has_it) || IsConstant(covariate.values)) continue;
     const std::string_view obstacle = ObstacleTo(covariate, records.front(), law, columns);
-    if (obstacle == "same_channel") continue;
-    columns.push_back(covariate.name);
     TermCandidate& candidate = candidates.emplace_back();
     candidate.considered.name = NameOfCovariate(covariate.name);
     candidate.considered.obstacle = obstacle;
+    if (obstacle == "same_channel") continue;  // reported, never fitted
+    columns.push_back(covariate.name);
     candidate.covariate = covariate.name;
   }
   return candidates;
+}
+
+/// True if the slip force lies within a quarter of its value.
+bool KnowsSlipForce(const FitResult& fit) {
+  constexpr double kQuarter = 0.25;
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  if (slip_force.status == ParameterStatus::kFixed) return true;
+  return slip_force.lower95 && slip_force.upper95 &&
+         *slip_force.upper95 - *slip_force.lower95 <= 2 * kQuarter * std::abs(slip_force.value);
 }
 
 /// True if the interval of the slip force was closed and is open.
@@ -283,9 +292,10 @@ class Selection {
   void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
   [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
   [[nodiscard]] bool MayFit(std::size_t more) const {
-    return result_.estimates + more <= selection_.most_fits;
+    return result_.estimates + more + kMostLast <= selection_.most_fits;
   }
 
+  static constexpr std::size_t kMostLast = 4;  // fits of FitLast()
   std::span<const RecordView> records_;
   const TermSelectionOptions& selection_;
   TermSelection& result_;
@@ -543,7 +553,7 @@ bool Selection::Round() {
   const auto fit = [&](const TermTrial& trial) -> std::optional<CandidateModel>* {
     const auto found = fitted.find(trial.candidate);
     if (found != fitted.end()) return &found->second;
-    if (fitted.size() == (is_first ? 2 * kMostTried : kMostTried) || !MayFit(2)) return nullptr;
+    if (fitted.size() == (is_first ? 2 * kMostTried : kMostTried) || !MayFit(1)) return nullptr;
     return &fitted
                 .emplace(trial.candidate,
                          FitFrom(base_, With(*trial.candidate, base_.options), trial.score.values))
@@ -576,7 +586,7 @@ bool Selection::Round() {
   constexpr double kMost = 0.5;
   std::vector<std::pair<const TermTrial*, CandidateModel>> alone;
   for (const TermTrial& trial : trials) {
-    if (!is_first || fitted.size() == kMostTried || !MayFit(3)) break;
+    if (!is_first || fitted.size() == kMostTried || !MayFit(2)) break;
     if (!is_wanted(trial) || trial.candidate->considered.gain < kMost) continue;
     std::optional<CandidateModel> model = *fit(trial);
     if (model && IsNearlyWhite(model->fit)) alone.emplace_back(&trial, std::move(*model));
@@ -674,7 +684,7 @@ bool Selection::MoveWithout(const std::vector<std::string_view>& dropped,
     from.options = With(*simpler, from.options);
     from.fit.parameters.clear();  // from starts of its own
   }
-  if (!MayFit(2)) return false;
+  if (!MayFit(1)) return false;
   std::optional<CandidateModel> model = FitFrom(from, from.options, {});
   if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
       !IsNearlyWhite(model->fit)) {
@@ -729,7 +739,8 @@ void Selection::Run(const FitOptions& options) {
   result_.fit = first.Fit(records_, Depth::kThorough);
   const Adequacy& adequacy = result_.fit.adequacy;
   const bool is_described = adequacy.verdict == AdequacyVerdict::kAdequate ||
-                            (selection_.only_for_use && adequacy.use == Use::kQuantitative);
+                            (selection_.only_for_use && adequacy.use == Use::kQuantitative &&
+                             KnowsSlipForce(result_.fit));
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
   candidates_ = ListTermCandidates(records_, options, result_.fit);
@@ -752,7 +763,11 @@ void Selection::Run(const FitOptions& options) {
     Simplify();
     FitResult law = std::move(result_.fit);
     FitLast();
-    const bool is_of_no_use = selection_.only_for_use && result_.fit.adequacy.use == Use::kNone;
+    // Terms replace a law of quantitative use where nothing but noise is left.
+    const bool is_of_no_use =
+        selection_.only_for_use && (result_.fit.adequacy.use == Use::kNone ||
+                                    (law.adequacy.use == Use::kQuantitative &&
+                                     result_.fit.adequacy.verdict != AdequacyVerdict::kAdequate));
     if (!IsFitted(result_.fit) || is_of_no_use) {
       result_.fit = std::move(law);
       result_.added.clear();

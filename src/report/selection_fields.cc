@@ -163,7 +163,8 @@ const std::vector<Field<identification::ConsideredTerm>>& ConsideredTermFields()
        &Item::is_predicted},
       {"added", "", "true if the term was added", &Item::added},
       {"obstacle", "",
-       "why a term that gains was not added: confounded, rate_dependent, unphysical; may be empty",
+       "why a term was not added: confounded, rate_dependent, unphysical; same_channel: it repeats "
+       "another column and was not tried; may be empty",
        &Item::obstacle},
   };
   return fields;
@@ -180,7 +181,7 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
        &Item::held_out_parts},
       {"fits", "",
        "fits that were made, nearly all of them estimates, the first and the last included; at "
-       "most 40",
+       "most 15",
        &Item::estimates},
   };
   return fields;

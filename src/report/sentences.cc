@@ -131,13 +131,20 @@ bool SeesSlip(const FitResult& fit) {
 
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
                     std::string_view unit) {
-  return fmt::format(
-      "{}: the {} interval {} … {} is too wide for a usable value; record {} (mindahl plan "
-      "--record says which)",
-      parameter, ConfidenceWords(fit), Quantity(Needed(finding, "lower"), unit, 3),
-      Quantity(Needed(finding, "upper"), unit, 3),
-      SeesSlip(fit) ? "more samples, or less noise"
-                    : "more samples, less noise or a larger amplitude");
+  using identification::IntervalSource;
+  const identification::ParameterEstimate* estimate = fit.Find(parameter);
+  const bool is_of_model =
+      estimate != nullptr && (estimate->IsSetBy(IntervalSource::kDiscrepancy) ||
+                              estimate->IsSetBy(IntervalSource::kOmittedTerms));
+  const char* const remedy =
+      is_of_model ? ": it includes what the model misses, which more samples do not change"
+      : SeesSlip(fit)
+          ? "; record more samples, or less noise (mindahl plan --record says which)"
+          : "; record more samples, less noise or a larger amplitude (mindahl plan --record says "
+            "which)";
+  return fmt::format("{}: the {} interval {} … {} is too wide for a usable value{}", parameter,
+                     ConfidenceWords(fit), Quantity(Needed(finding, "lower"), unit, 3),
+                     Quantity(Needed(finding, "upper"), unit, 3), remedy);
 }
 
 std::string AlphaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units&) {
@@ -278,9 +285,11 @@ std::string NameOfLaw(std::string_view model) {
   return model == "dahl" ? "Dahl's own law" : "Masing's law";
 }
 
-/// Returns "sigma = 46 N/µm and slip_force = 15 N" of those that the fit knows; may be empty.
+/// Returns "sigma = 46 N/µm and slip_force = 15 N" of those of the finding's parameters that the
+/// fit knows; may be empty.
 std::string KnownOf(const Finding& finding, const FitResult& fit, const Units& units) {
   const auto is_known = [&](std::string_view name) {
+    if (std::ranges::find(finding.parameters, name) == finding.parameters.end()) return false;
     const identification::ParameterEstimate* estimate = fit.Find(name);
     return estimate == nullptr || estimate->is_known();
   };
@@ -298,9 +307,9 @@ std::string LawUndecided(const Finding& finding, const FitResult& fit, const Uni
   const std::optional<double> delta_aicc = finding.Number("delta_aicc");
   const std::string known = KnownOf(finding, fit, units);
   return fmt::format(
-      "sigma, slip_force: the record does not distinguish {} from {} ({}){}; start from an "
-      "unloaded contact, or record a second amplitude",
-      NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
+      "{}: the record does not distinguish {} from {} ({}){}; start from an unloaded contact, or "
+      "record a second amplitude",
+      fmt::join(finding.parameters, ", "), NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
       delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)
                  : std::string("they give the same steady loop at any one amplitude"),
       known.empty() ? "" : fmt::format("; the latter gives {}", known));
@@ -308,11 +317,13 @@ std::string LawUndecided(const Finding& finding, const FitResult& fit, const Uni
 
 std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "sigma, slip_force: {} fits this record better than {} (ΔAICc = {:.3g}), with sigma = {}, "
-      "alpha = {:.4g} and slip_force = {}; try --model {}",
-      NameOfLaw(finding.kind), NameOfLaw(fit.model->name), Needed(finding, "delta_aicc"),
-      Quantity(Needed(finding, "sigma"), units.stiffness, 5), Needed(finding, "alpha"),
-      Quantity(Needed(finding, "slip_force"), units.force, 5), finding.kind);
+      "{}: {} fits this record better than {} (ΔAICc = {:.3g}), with sigma = {}, alpha = {:.4g} "
+      "and "
+      "slip_force = {}; try --model {}",
+      fmt::join(finding.parameters, ", "), NameOfLaw(finding.kind), NameOfLaw(fit.model->name),
+      Needed(finding, "delta_aicc"), Quantity(Needed(finding, "sigma"), units.stiffness, 5),
+      Needed(finding, "alpha"), Quantity(Needed(finding, "slip_force"), units.force, 5),
+      finding.kind);
 }
 
 std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const Units&) {

@@ -248,7 +248,12 @@ std::string LawStatement(const Report& report) {
                            : fmt::format(" or {}, which the record does not distinguish",
                                          name(*report.fit.model)));
   }
-  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
+  const identification::Finding* finding = choice.decided
+                                               ? report.fit.FindFinding("other_law_fits_better")
+                                               : report.fit.FindFinding("law_undecided");
+  const bool depends = finding == nullptr || std::ranges::find(finding->parameters, "slip_force") !=
+                                                 finding->parameters.end();
+  const bool knows_slip_force = depends && report.fit.Find("slip_force")->is_known();
   std::string text = fmt::format(
       "sigma{} for {}; for {}, which {}, {} {}", knows_slip_force ? " and slip_force are" : " is",
       name(*report.fit.model), name(*choice.alternative),

@@ -300,20 +300,35 @@ std::string SelectionText(const identification::ModelSelection& selection, const
          Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
-/// Returns which terms were added and what each gained, in one line.
+/// Returns "; not tried: p1, p2 (why)", of the columns with an obstacle; may be empty.
+std::string KeptOut(const identification::TermSelection& terms, std::string_view obstacle,
+                    std::string_view how, std::string_view why) {
+  std::vector<std::string> names;
+  for (const identification::ConsideredTerm& term : terms.considered) {
+    const bool is_column = identification::FindTermGroup(term.name) == nullptr;
+    if (is_column && term.obstacle == obstacle && !term.added) names.push_back(term.name);
+  }
+  return names.empty() ? "" : fmt::format("; {}: {} ({})", how, fmt::join(names, ", "), why);
+}
+
+/// Returns which terms were added and what each gained, and which columns were kept out.
 std::string TermsText(const identification::TermSelection& terms) {
-  if (terms.added.empty())
-    return terms.considered.empty() ? "" : "terms: none of those tried improves the fit";
+  const std::string kept_out =
+      KeptOut(terms, "same_channel", "not tried", "repeats another column") +
+      KeptOut(terms, "confounded", "not added", "follows the contact's force");
+  if (terms.added.empty()) {
+    return terms.considered.empty() ? "" : "terms: none of those tried improves the fit" + kept_out;
+  }
   std::vector<std::string> added;
   for (const identification::ConsideredTerm& term : terms.considered) {
     if (!term.added) continue;
     added.push_back(
         fmt::format("{} (-{:.0f} %, p = {:.1g})", term.name, 100 * term.gain, term.p_value));
   }
-  return fmt::format("terms added: {} (change of the rms error of {})", fmt::join(added, ", "),
-                     terms.held_out_parts > 0
-                         ? fmt::format("{} held-out parts", terms.held_out_parts)
-                         : "the fit");
+  return fmt::format(
+      "terms added: {} (change of the rms error of {}){}", fmt::join(added, ", "),
+      terms.held_out_parts > 0 ? fmt::format("{} held-out parts", terms.held_out_parts) : "the fit",
+      kept_out);
 }
 
 /// Says of which amplitude an energy is, where cycles have several.

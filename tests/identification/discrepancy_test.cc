@@ -64,6 +64,43 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
   }
 }
 
+TEST(Discrepancy, ReachesToBothSidesOfASlipForceThatIsOffTheGap) {
+  // The gap is that of the middle of the stroke, Tc that of all of it.
+  for (const double bulge : {-0.3, 0.3}) {
+    Record record = Loop();
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] *= 1 + bulge * std::pow(record.displacement[i] / kReach, 2);
+    }
+    const FitResult fit = FitNoisy(record);
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    ASSERT_TRUE(slip_force.includes_discrepancy) << bulge;
+    // The mean of six parts, up and down by thirds of the stroke, in each of which so much is
+    // missed.
+    const double margin = fit.adequacy.misfit / std::sqrt(6.0);
+    ASSERT_GT((slip_force.value - *fit.records[0].facts.half_gap) / bulge, margin / 0.3) << bulge;
+    const double beyond =
+        bulge > 0 ? *slip_force.upper95 - slip_force.value : slip_force.value - *slip_force.lower95;
+    EXPECT_GE(beyond, 0.99 * margin) << bulge;
+  }
+}
+
+TEST(Discrepancy, SlipForceIncludesThatOfTheOtherLawWhichTheRecordPrefers) {
+  // Dahl's own law from the unloaded contact, that bulges: Masing's reaches a lower asymptote.
+  constexpr BranchLaw kRound{4e7, 1.5, 40.0};
+  const History displacement = Cycling(Wave::kSine, 2 * kReach, 5.0, 300);
+  Record record = MakeRecord(displacement, Respond(Model("dahl"), kRound, displacement));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= 1 + 0.1 * std::pow(record.displacement[i] / (2 * kReach), 2);
+  }
+  const FitResult fit = FitNoisy(record);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  ASSERT_TRUE(fit.law_choice && fit.law_choice->preferred == fit.law_choice->alternative);
+  ASSERT_TRUE(slip_force.includes_discrepancy);
+  EXPECT_TRUE(Contains(slip_force, fit.law_choice->law.slip_force))
+      << *slip_force.lower95 << " " << *slip_force.upper95 << " " << fit.law_choice->law.slip_force;
+  EXPECT_THAT(fit.FindFinding("other_law_fits_better")->parameters, ElementsAre("sigma"));
+}
+
 TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
   const auto width = [](double b) {
     const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");

@@ -23,6 +23,10 @@ Finding Complete(FindingCode code, std::string_view kind = "") {
   Finding finding{.code = code};
   finding.kind = kind;
   finding.parameters = {"alpha", "force_offset"};
+  const std::string_view name(code);
+  if (name == "law_undecided" || name == "other_law_fits_better") {
+    finding.parameters = {"sigma", "slip_force"};
+  }
   finding.numbers = {{"overshoot", 1.25e-7},
                      {"rig_stiffness", 4.5e4},
                      {"alpha", 0.0625},
@@ -90,6 +94,30 @@ TEST(Sentence, OfACombinationAsksForNoLargerAmplitudeWhereTheStiffnessIsNotSeen)
   // In partial slip it would tell them apart.
   fit.parameters[0].identifiability = identification::Identifiability::kBoundedBelow;
   EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce), HasSubstr("record a larger amplitude"));
+}
+
+TEST(Sentence, OfAnIntervalThatTheModelWidensAsksForNoMoreSamples) {
+  const Finding finding{.code = "sigma_not_identifiable",
+                        .parameters = {"sigma"},
+                        .numbers = {{"lower", 1e6}, {"upper", 4e7}},
+                        .kind = "wide"};
+  FitResult fit;
+  fit.parameters = {testing::MadeParameter("sigma", "N/m", 8e6, 1e5)};
+  fit.parameters[0].lower95 = 1e6;
+  fit.parameters[0].upper95 = 4e7;
+  EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce), HasSubstr("record more samples"));
+  fit.parameters[0].interval = {
+      {.source = identification::IntervalSource::kDiscrepancy, .lower = 1e6, .upper = 4e7}};
+  EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce),
+              AllOf(HasSubstr("1 N/µm … 40 N/µm"), HasSubstr("what the model misses"),
+                    Not(HasSubstr("record"))));
+}
+
+TEST(Sentence, OfTwoLawsHasNoSlipForceThatDoesNotDependOnThem) {
+  Finding finding = Complete("law_undecided", "dahl");
+  finding.parameters = {"sigma"};
+  EXPECT_THAT(Say(finding),
+              AllOf(StartsWith("sigma: "), HasSubstr("32.5 N/µm"), Not(HasSubstr("43.5 N"))));
 }
 
 TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {

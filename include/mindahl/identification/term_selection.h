@@ -24,9 +24,10 @@ struct TermSelectionOptions {
   /// model is adequate with it.
   double smallest_gain = 0.03;
   std::size_t most_terms = 7;  ///< largest number of added terms
-  std::size_t most_fits = 40;  ///< in all, nearly all of them at Depth::kEstimate
-  /// If true, adds no term to a law that is of quantitative use alone, nor if the law is of no use
-  /// with terms.
+  std::size_t most_fits = 15;  ///< in all, nearly all of them at Depth::kEstimate
+  /// If true, adds no term if the law is of no use with terms, none to a law that is of quantitative
+  /// use alone and knows Tc within a quarter, and to one that does not only terms with which it is
+  /// adequate.
   bool only_for_use = false;
   /// Names of groups that the options have: they are added one after the other, each from the
   /// solution without it, and are not judged. Nothing is selected then.
@@ -54,7 +55,8 @@ struct ConsideredTerm {
   double p_value = 1.0;  ///< probability that the gain to first order is chance
   bool is_predicted = false;
   bool added = false;
-  /// Reason why it was not added though it gains: "", "confounded", "rate_dependent", "unphysical".
+  /// Reason why it was not added: "", of one that gains "confounded", "rate_dependent" or
+  /// "unphysical", of a column that was not tried since it repeats another one "same_channel".
   std::string_view obstacle;
 };
 

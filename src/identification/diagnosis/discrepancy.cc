@@ -341,17 +341,35 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   GrowingRange range{slip_force.value, slip_force.value};
   range.Include(*half_gap - margin);
   range.Include(*half_gap + margin);
-  const double carried = std::max(*half_gap, facts.peak_force / load_ratio) + margin;
-  const auto limited = [&](double end) { return std::clamp(end, *half_gap - margin, carried); };
+  // The value itself is no better known than the gap.
+  const double least = std::min(*half_gap, slip_force.value) - margin;
+  const double most =
+      std::max({*half_gap, facts.peak_force / load_ratio, slip_force.value}) + margin;
+  const auto limited = [&](double end) { return std::clamp(end, least, most); };
   const double spread = SpreadOf(steps, result.confidence);
   range.Include(limited(slip_force.lower95.value_or(0.0)));
-  range.Include(limited(slip_force.upper95.value_or(carried)));
+  range.Include(limited(slip_force.upper95.value_or(most)));
   range.Include(limited(slip_force.value * std::exp(-spread)));
   range.Include(limited(slip_force.value * std::exp(spread)));
   SetInterval(slip_force,
               {.source = IntervalSource::kDiscrepancy, .lower = range.lower, .upper = range.upper});
   slip_force.includes_discrepancy = true;
   return parameters;
+}
+
+ParameterEstimate CoverOtherLaw(const Thresholds& thresholds, const FitResult& result) {
+  constexpr double kRunAway = 0.25;  // of the half gap
+  ParameterEstimate slip_force = *result.Find("slip_force");
+  const std::optional<LawChoice>& choice = result.law_choice;
+  const std::optional<double> half_gap = MeasuredHalfGap(result);
+  if (!choice || choice->preferred == result.model || !slip_force.includes_discrepancy ||
+      !half_gap || !SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds)) {
+    return slip_force;
+  }
+  const double other = choice->law.slip_force;
+  if (std::abs(other - *half_gap) > kRunAway * *half_gap) return slip_force;
+  Include(slip_force, {.source = IntervalSource::kDiscrepancy, .lower = other, .upper = other});
+  return slip_force;
 }
 
 ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,

@@ -46,8 +46,8 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 
 /// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
 /// where the measured loop slides over most of its stroke: it becomes the union of the fitted
-/// value, the measured half gap with its margin, and, as far as they lie between that half gap and
-/// T*, each with the margin,
+/// value, the measured half gap with its margin, and, as far as they lie between the least and the
+/// largest of that half gap, T* and the value, each with the margin,
 ///   - the interval so far, of noise and of the causes that explain what the model misses,
 ///   - what a further part of the strokes would ask for, by Student's law of SlipForceOfParts().
 /// A loop that slides has carried its slip force: no less than the gap in the middle of the stroke,
@@ -61,6 +61,11 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
                                     std::span<const ParameterEstimate> plain,
                                     const Thresholds& thresholds, const FitResult& result);
+
+/// Returns the estimate of Tc, which includes that of the other law, Masing's or Dahl's own, where
+/// the record does not prefer the fitted one. It is not included if it is more than a quarter off
+/// the half gap of a loop that slides.
+ParameterEstimate CoverOtherLaw(const Thresholds& thresholds, const FitResult& result);
 
 /// Returns the estimates with their repeat_error: the standard error where the model is adequate,
 /// else of ErrorsBetweenCycles().

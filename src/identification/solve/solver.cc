@@ -34,9 +34,9 @@ class CompressedCost final : public ceres::CostFunction {
                                                         cost, {});
     rows = compressed.residual();
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::Map<RowMajor>(jacobians[0], rows.size(), static_cast<Eigen::Index>(count)) =
-        compressed.jacobian();
-    return true;
+    Eigen::Map<RowMajor> jacobian(jacobians[0], rows.size(), static_cast<Eigen::Index>(count));
+    jacobian = compressed.jacobian();
+    return rows.allFinite() && jacobian.allFinite();  // Ceres would print what is not
   }
 
  private:
