@@ -8,54 +8,46 @@
 #include <string_view>
 #include <utility>
 
-#include "io/html.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/report/units.h"
-#include "report/page_parts.h"
 #include "report/statements.h"
+#include "report/template.h"
 
 namespace mindahl::campaign {
 
 using identification::ParameterEstimate;
-using report::Cell;
 using report::CssClass;
-using report::Heading;
-using report::Number;
-using report::Paragraph;
+using report::FigureData;
+using report::Json;
+using report::JudgementOf;
 using report::Quantity;
 using report::QuantityWithError;
-using report::SentenceList;
 using report::Shown;
-using report::Table;
-using report::Words;
+using report::VerdictData;
 
 namespace {
 
-constexpr const char* kNone = "–";
+const std::string kNone = "–";
 constexpr std::array<std::string_view, 3> kParameters = {"sigma", "alpha", "slip_force"};
 
-std::string Header(const std::string& title) {
-  return fmt::format("<header><h1>{}</h1></header>\n<main>\n", io::HtmlText(title));
-}
-
-/// No number of what is not known.
-Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string_view name) {
+/// Returns no number of what is not known.
+std::string ParameterText(const std::vector<ParameterEstimate>& parameters, std::string_view name) {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-  if (found == parameters.end()) return Number(kNone);
+  if (found == parameters.end()) return kNone;
   const ParameterEstimate& estimate = *found;
   switch (report::WhatIsShown(estimate)) {
     case Shown::kValue:
-      return Number(QuantityWithError(estimate.value, estimate.standard_error, estimate.unit));
+      return QuantityWithError(estimate.value, estimate.standard_error, estimate.unit);
     case Shown::kHeld:
-      return Number(Quantity(estimate.value, estimate.unit) + ", held");
+      return Quantity(estimate.value, estimate.unit) + ", held";
     case Shown::kLowerLimit:
-      if (estimate.lower95) return Number("> " + Quantity(*estimate.lower95, estimate.unit));
+      if (estimate.lower95) return "> " + Quantity(*estimate.lower95, estimate.unit);
       break;
     case Shown::kNothing:
       break;
   }
-  return Number(kNone);
+  return kNone;
 }
 
 /// A parameter of every file that identifies it, with its interval, over the file's place.
@@ -105,58 +97,48 @@ std::string Address(std::string_view name) {
 }  // namespace
 
 std::string ToPage(const TestSummary& test, const report::Provenance& provenance) {
-  const std::string title = fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles);
-  std::string body = Header(title);
   const bool is_failed = std::ranges::any_of(test.flags, [&](const FlagCount& flag) {
     return flag.name == "not_converged" && flag.cycles == test.fits;
   });
-  if (is_failed) {
-    body += report::VerdictBlock("bad", "failed", "no fit of a cycle converged");
-  } else if (test.changes.empty()) {
-    body += report::VerdictBlock("good", "steady", std::string(kNothingChanged));
-  } else {
-    body += report::VerdictBlock("poor", "changed", "these changes are beyond chance");
-    body += SentenceList(test.changes);
-  }
-  body += Heading("Over the test");
-  body +=
-      Paragraph(fmt::format("{} cycles of {} samples, {} fits; {} dissipated in all{}; {} samples "
-                            "at the ends belong to no whole cycle.",
-                            test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"),
-                            InWords(test.energy_counts), test.unused_samples));
-  if (test.shared_alpha) body += Paragraph(SharedAlphaInWords(*test.shared_alpha) + ".");
-  Table courses("ends of the segments of each time history", {"quantity", "at first", "at last"});
+  Json ends = Json::array();
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;
     if (stretches.empty()) continue;
-    courses.Row(evolution.name, {Number(Quantity(stretches.front().at_start, evolution.unit)),
-                                 Number(Quantity(stretches.back().at_end, evolution.unit))});
+    ends.push_back({{"name", evolution.name},
+                    {"first", Quantity(stretches.front().at_start, evolution.unit)},
+                    {"last", Quantity(stretches.back().at_end, evolution.unit)}});
   }
-  body += courses.Html();
-
-  const std::vector<io::PlotPanel> panels = EvolutionPanels(test.evolutions);
-  if (!panels.empty()) {
-    body += Heading("Evolution") + "<div class=\"figures\">\n";
-    for (std::size_t k = 0; k < panels.size(); ++k) {
-      body += io::HtmlFigure(
-          panels[k],
-          {.id = fmt::format("evolution-{}", k + 1),
-           .title = panels[k].y_label,
-           .description = "Dashed lines are changes beyond chance, each at its first cycle."});
-    }
-    body += "</div>\n";
+  Json evolutions = Json::array();
+  for (io::PlotPanel& panel : EvolutionPanels(test.evolutions)) {
+    const std::string id = fmt::format("evolution-{}", evolutions.size() + 1);
+    std::string quantity = panel.y_label;
+    evolutions.push_back({{"id", id},
+                          {"quantity", std::move(quantity)},
+                          {"figure", FigureData(std::move(panel), id)}});
   }
-
-  body += Heading("What to mind");
-  Table flags("cycles with a flag", {"flag", "cycles", "what it says"});
+  Json flags = Json::array();
   for (const FlagCount& flag : test.flags) {
-    flags.Row(flag.name, {Number(std::to_string(flag.cycles)), Words(flag.meaning)});
+    flags.push_back({{"name", flag.name}, {"cycles", flag.cycles}, {"meaning", flag.meaning}});
   }
-  body += flags.empty() ? Paragraph("No cycle has a flag.") : flags.Html();
-  body +=
-      Paragraph("Errors assume that the model is adequate: check some cycles with mindahl fit.");
-  body += report::ReproduceSection(provenance) + "</main>\n";
-  return io::HtmlPage(title, body);
+  return report::RenderPage(
+      "track",
+      {{"title", fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles)},
+       {"verdict", is_failed ? VerdictData("bad", "failed", "no fit of a cycle converged")
+                   : test.changes.empty()
+                       ? VerdictData("good", "steady", kNothingChanged)
+                       : VerdictData("poor", "changed", "these changes are beyond chance")},
+       {"changes", is_failed ? Json() : Json(test.changes)},
+       {"cycles", test.cycles},
+       {"samples", test.samples},
+       {"fits", test.fits},
+       {"dissipated", Quantity(test.dissipated, "J")},
+       {"energy_counts", InWords(test.energy_counts)},
+       {"unused_samples", test.unused_samples},
+       {"shared_alpha", test.shared_alpha ? SharedAlphaInWords(*test.shared_alpha) : ""},
+       {"ends", std::move(ends)},
+       {"evolutions", std::move(evolutions)},
+       {"flags", std::move(flags)},
+       {"provenance", report::ProvenanceData(provenance)}});
 }
 
 std::string BatchIndexPage(std::span<const FileResult> files,
@@ -164,67 +146,52 @@ std::string BatchIndexPage(std::span<const FileResult> files,
                            const report::Provenance& provenance) {
   const auto done =
       std::ranges::count_if(files, [](const FileResult& file) { return file.fault.empty(); });
-  const std::string title = fmt::format("{} of {} files fitted", done, files.size());
-  std::string body = Header(title) + Heading("Files");
-  body +=
-      "<div class=\"table\"><table><caption>one fit a file; only identified quantities have a "
-      "number</caption>\n"
-      "<thead><tr>";
-  for (const char* column :
-       {"", "file", "verdict", "sigma", "alpha", "slip_force", "why not done"}) {
-    body += fmt::format("<th scope=\"col\">{}</th>", *column == '\0' ? "number" : column);
-  }
-  body += "</tr></thead>\n<tbody>\n";
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const FileResult& file = files[k];
-    const std::string name = io::HtmlText(file.file);
-    body += fmt::format(
-        "<tr><td class=\"number\">{}</td><th scope=\"row\">{}</th>", k + 1,
-        file.page.empty() ? name : fmt::format("<a href=\"{}\">{}</a>", Address(file.page), name));
-    body += fmt::format("<td class=\"{}\">{}</td>",
-                        file.verdict.empty() ? "" : CssClass(report::JudgementOf(file.verdict)),
-                        io::HtmlText(file.verdict.empty() ? kNone : file.verdict));
+  Json file_rows = Json::array();
+  for (const FileResult& file : files) {
+    Json row = {{"number", file_rows.size() + 1},
+                {"file", file.file},
+                {"address", Address(file.page)},
+                {"verdict", file.verdict},
+                {"class", file.verdict.empty() ? "" : CssClass(JudgementOf(file.verdict))},
+                {"fault", file.fault}};
     for (const std::string_view parameter : kParameters) {
-      body += fmt::format("<td class=\"number\">{}</td>",
-                          io::HtmlText(ParameterCell(file.parameters, parameter).text));
+      row[parameter] = ParameterText(file.parameters, parameter);
     }
-    body += fmt::format("<td class=\"words\">{}</td></tr>\n", io::HtmlText(file.fault));
+    file_rows.push_back(std::move(row));
   }
-  body += "</tbody></table></div>\n";
-
-  Table scatter("over the fitted files in which the quantity is known",
-                {"quantity", "files", "mean", "its error", "scatter between files", "by noise",
-                 "common to all", ""});
+  Json repeats = Json::array();
   for (const RepeatedQuantity& quantity : repeated) {
-    const Repeats& repeats = quantity.repeats;
-    const report::ScaledUnit unit = report::UnitFor(quantity.unit, repeats.mean);
-    const auto cell = [&](double value) {
-      return Number(
-          fmt::format("{:.3g}{}{}", value / unit.factor, unit.name.empty() ? "" : " ", unit.name));
+    const Repeats& found = quantity.repeats;
+    const report::ScaledUnit unit = report::UnitFor(quantity.unit, found.mean);
+    const auto text = [&](std::optional<double> value) {
+      if (!value) return kNone;
+      return fmt::format("{:.3g}{}{}", *value / unit.factor, unit.name.empty() ? "" : " ",
+                         unit.name);
     };
-    scatter.Row(
-        quantity.name,
-        {Number(std::to_string(repeats.count)), Number(Quantity(repeats.mean, quantity.unit)),
-         cell(repeats.mean_error()), cell(repeats.standard_deviation),
-         repeats.stated_error ? cell(*repeats.stated_error) : Number(kNone),
-         repeats.common_error ? cell(*repeats.common_error) : Number(kNone),
-         Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
+    repeats.push_back({{"name", quantity.name},
+                       {"count", found.count},
+                       {"mean", Quantity(found.mean, quantity.unit)},
+                       {"mean_error", text(found.mean_error())},
+                       {"scatter", text(found.standard_deviation)},
+                       {"stated_error", text(found.stated_error)},
+                       {"common_error", text(found.common_error)},
+                       {"conclusion", found.InWords()},
+                       {"class", found.exceed_errors() ? "poor" : "good"}});
   }
-  if (!scatter.empty()) body += Heading("If these are repeats") + scatter.Html();
-  std::string figures;
+  Json quantities = Json::array();
   for (const std::string_view parameter : kParameters) {
+    const std::string id = fmt::format("files-{}", parameter);
     if (const auto panel = QuantityPanel(files, parameter)) {
-      figures += io::HtmlFigure(*panel, {.id = fmt::format("files-{}", parameter),
-                                         .title = std::string(parameter),
-                                         .description = "One point for each file that identifies "
-                                                        "it, by its number in the table."});
+      quantities.push_back(
+          {{"id", id}, {"quantity", parameter}, {"figure", FigureData(panel, id)}});
     }
   }
-  if (!figures.empty()) {
-    body += Heading("From file to file") + "<div class=\"figures\">\n" + figures + "</div>\n";
-  }
-  body += report::ReproduceSection(provenance) + "</main>\n";
-  return io::HtmlPage(title, body);
+  return report::RenderPage("batch",
+                            {{"title", fmt::format("{} of {} files fitted", done, files.size())},
+                             {"files", std::move(file_rows)},
+                             {"repeats", std::move(repeats)},
+                             {"quantities", std::move(quantities)},
+                             {"provenance", report::ProvenanceData(provenance)}});
 }
 
 }  // namespace mindahl::campaign

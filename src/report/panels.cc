@@ -174,61 +174,6 @@ PlotSeries Reversals(const Report& report, const PanelUnits& units) {
   return reversals;
 }
 
-/// σ or Tc against the load: of the whole series a line, of each file alone an interval.
-struct LoadPanel {
-  std::string label;
-  double scale;  // of what is drawn over SI
-  ParameterEstimate identification::RecordAlone::*alone;
-  bool is_stiffness;
-};
-
-PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
-  const identification::FitResult& fit = report.fit;
-  PlotPanel panel{
-      .x_label = "normal load N [N]", .y_label = quantity.label, .series = {}, .height = 1.2};
-  double least = report.load_series->contacts.front().normal_load;
-  double greatest = least;
-  PlotSeries alone;
-  alone.label = "each file alone, " + ConfidenceWords(report.fit);
-  alone.style = PlotStyle::kIntervals;
-  for (const ContactUnderLoad& contact : report.load_series->contacts) {
-    least = std::min(least, contact.normal_load);
-    greatest = std::max(greatest, contact.normal_load);
-    if (!contact.alone) continue;
-    const ParameterEstimate& estimate = (*contact.alone).*quantity.alone;
-    // A loop far from slip leaves Tc open, up to more than a double holds.
-    if (!estimate.is_known() || !estimate.lower95 || !estimate.upper95) continue;
-    if (!std::isfinite(*estimate.lower95) || !std::isfinite(*estimate.upper95)) continue;
-    alone.x.push_back(contact.normal_load);
-    alone.y.push_back(quantity.scale * estimate.value);
-    alone.lower.push_back(quantity.scale * *estimate.lower95);
-    alone.upper.push_back(quantity.scale * *estimate.upper95);
-  }
-  const auto is_known = [&fit](std::string_view name) {
-    const ParameterEstimate* const estimate = fit.Find(name);
-    return estimate != nullptr && estimate->is_known();
-  };
-  const bool has_line = quantity.is_stiffness ? is_known("sigma") && is_known("load_exponent")
-                                              : is_known("slip_force");
-  if (has_line) {
-    constexpr int kSteps = 60;
-    PlotSeries line;
-    line.label = quantity.is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
-                                       : std::string("Tc = μN, the series");
-    for (int i = 0; i <= kSteps; ++i) {
-      const double load = least + (greatest - least) * i / kSteps;
-      const double ratio = load / *fit.normal_load;
-      line.x.push_back(load);
-      const models::BranchLaw law = models::AtLoad(fit.law, ratio, fit.load_exponent);
-      line.y.push_back(quantity.scale *
-                       (quantity.is_stiffness ? law.tangential_stiffness : law.slip_force));
-    }
-    panel.series.push_back(std::move(line));
-  }
-  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
-  return panel;
-}
-
 /// Returns the samples per cycle, where the record determines it.
 std::size_t SamplesOfCycle(const RecordFit& fit) {
   if (fit.reversals.size() < 2) return 0;
@@ -525,18 +470,60 @@ std::optional<PlotPanel> RegionPanel(const Report& report, std::string_view firs
                    .series = {std::move(boundary), std::move(best), std::move(mindlin)}};
 }
 
-std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units) {
-  std::vector<PlotPanel> panels;
-  if (!report.load_series) return panels;
-  panels.push_back(
-      PanelOverLoad(report, {fmt::format("σ [{}/{}]", report.units.force, units.displacement.name),
-                             1 / Per(units.displacement), &identification::RecordAlone::stiffness,
-                             /*is_stiffness=*/true}));
-  panels.push_back(
-      PanelOverLoad(report, {fmt::format("Tc [{}]", report.units.force), 1.0,
-                             &identification::RecordAlone::slip_force, /*is_stiffness=*/false}));
-  std::erase_if(panels, [](const PlotPanel& panel) { return panel.series.empty(); });
-  return panels;
+std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units,
+                                   OverLoad quantity) {
+  if (!report.load_series) return std::nullopt;
+  const bool is_stiffness = quantity == OverLoad::kStiffness;
+  const double scale = is_stiffness ? 1 / Per(units.displacement) : 1.0;
+  const identification::FitResult& fit = report.fit;
+  PlotPanel panel{.x_label = "normal load N [N]",
+                  .y_label = is_stiffness ? fmt::format("σ [{}/{}]", report.units.force,
+                                                        units.displacement.name)
+                                          : fmt::format("Tc [{}]", report.units.force),
+                  .series = {},
+                  .height = 1.2};
+  double least = report.load_series->contacts.front().normal_load;
+  double greatest = least;
+  PlotSeries alone;
+  alone.label = "each file alone, " + ConfidenceWords(report.fit);
+  alone.style = PlotStyle::kIntervals;
+  for (const ContactUnderLoad& contact : report.load_series->contacts) {
+    least = std::min(least, contact.normal_load);
+    greatest = std::max(greatest, contact.normal_load);
+    if (!contact.alone) continue;
+    const ParameterEstimate& estimate =
+        is_stiffness ? contact.alone->stiffness : contact.alone->slip_force;
+    // A loop far from slip leaves Tc open, up to more than a double holds.
+    if (!estimate.is_known() || !estimate.lower95 || !estimate.upper95) continue;
+    if (!std::isfinite(*estimate.lower95) || !std::isfinite(*estimate.upper95)) continue;
+    alone.x.push_back(contact.normal_load);
+    alone.y.push_back(scale * estimate.value);
+    alone.lower.push_back(scale * *estimate.lower95);
+    alone.upper.push_back(scale * *estimate.upper95);
+  }
+  const auto is_known = [&fit](std::string_view name) {
+    const ParameterEstimate* const estimate = fit.Find(name);
+    return estimate != nullptr && estimate->is_known();
+  };
+  const bool has_line =
+      is_stiffness ? is_known("sigma") && is_known("load_exponent") : is_known("slip_force");
+  if (has_line) {
+    constexpr int kSteps = 60;
+    PlotSeries line;
+    line.label = is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
+                              : std::string("Tc = μN, the series");
+    for (int i = 0; i <= kSteps; ++i) {
+      const double load = least + (greatest - least) * i / kSteps;
+      const double ratio = load / *fit.normal_load;
+      line.x.push_back(load);
+      const models::BranchLaw law = models::AtLoad(fit.law, ratio, fit.load_exponent);
+      line.y.push_back(scale * (is_stiffness ? law.tangential_stiffness : law.slip_force));
+    }
+    panel.series.push_back(std::move(line));
+  }
+  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
+  if (panel.series.empty()) return std::nullopt;
+  return panel;
 }
 
 std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
@@ -595,12 +582,14 @@ io::Plot ToPlot(const Report& report) {
   const PanelUnits units = PlainUnits(report);
   plot.panels = {LoopPanel(report, units, LoopColours::kOneARecord),
                  ResidualAlongStroke(report, units, LoopColours::kOneARecord)};
-  std::vector<io::PlotPanel> over_load = LoadPanels(report, units);
-  if (!over_load.empty()) {
+  std::optional<io::PlotPanel> stiffness = LoadPanel(report, units, OverLoad::kStiffness);
+  std::optional<io::PlotPanel> slip_force = LoadPanel(report, units, OverLoad::kSlipForce);
+  if (stiffness && slip_force) stiffness->x_label.clear();
+  for (std::optional<io::PlotPanel>* const panel : {&stiffness, &slip_force}) {
     constexpr int kTaller = 200;  // [px] a panel
-    plot.height += kTaller * static_cast<int>(over_load.size());
-    if (over_load.size() > 1) over_load.front().x_label.clear();
-    for (io::PlotPanel& panel : over_load) plot.panels.push_back(std::move(panel));
+    if (!*panel) continue;
+    plot.height += kTaller;
+    plot.panels.push_back(std::move(**panel));
   }
   return plot;
 }
