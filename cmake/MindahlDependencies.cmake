@@ -10,6 +10,11 @@ find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 # CLI11 is header-only and Debian ships its package config.
 find_package(CLI11 2.1 REQUIRED)
 
+# Mustache is a header without a package config.
+find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
+add_library(kainjow::mustache INTERFACE IMPORTED)
+target_include_directories(kainjow::mustache INTERFACE ${MUSTACHE_INCLUDE_DIR})
+
 # libcsv has neither a package config nor a .pc file.
 find_path(LIBCSV_INCLUDE_DIR csv.h REQUIRED)
 find_library(LIBCSV_LIBRARY csv REQUIRED)

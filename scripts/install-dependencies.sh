@@ -14,7 +14,8 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
+  libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev
+  libcsv-dev libboost-dev libssl-dev
   librsvg2-bin jq python3
 )
 node_packages=()

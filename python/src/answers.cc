@@ -176,15 +176,15 @@ BatchEntry FitOne(const NamedRecord& record, const request::FitRequest& request,
 
 BatchEntry FaultyEntry(const std::string& name, const std::string& fault) {
   BatchEntry entry;
-  entry.result.file = name;
-  entry.result.fault = fault;
+  entry.file = name;
+  entry.fault = fault;
   return entry;
 }
 
 /// Returns what another process needs of an entry: name, fault, done, notes, JSON and digest.
 py::tuple StateOf(const BatchEntry& entry) {
-  return py::make_tuple(entry.result.file, entry.result.fault, entry.done, entry.notes,
-                        request::FitJson(entry), entry.sha256);
+  return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, request::FitJson(entry),
+                        entry.sha256);
 }
 
 BatchEntry EntryOf(const py::tuple& state) {
@@ -312,8 +312,8 @@ void AddAnswers(py::module_& module) {
   py::class_<BatchEntry>(module, "BatchEntry")
       .def_readonly("done", &BatchEntry::done)
       .def_readonly("notes", &BatchEntry::notes)
-      .def_property_readonly("name", [](const BatchEntry& entry) { return entry.result.file; })
-      .def_property_readonly("fault", [](const BatchEntry& entry) { return entry.result.fault; })
+      .def_readonly("name", &BatchEntry::file)
+      .def_readonly("fault", &BatchEntry::fault)
       .def(py::pickle(&StateOf, &EntryOf));
   module.def("check_request",
              [](const request::FitRequest& request) { request::MakeFitOptions(request); });

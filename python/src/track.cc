@@ -77,7 +77,7 @@ struct DescribedTest {
   [[nodiscard]] std::tuple<std::string, std::string, std::vector<std::string>> Describe() const {
     const py::gil_scoped_release others_may_run;
     const std::vector<campaign::CourseDescription> described = test.courses.Describe();
-    return {ToJson(test, described), ToText(test, described), SummaryOf(test, described).changes};
+    return {ToJson(test, described), ToText(test, described), Changes(test, described)};
   }
 };
 

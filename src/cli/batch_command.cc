@@ -122,8 +122,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   const Messages messages{console.err, "batch"};
   for (const BatchEntry& fit : fits) {
     for (const std::string& note : fit.notes) messages.Note(note);
-    if (fit.result.fault.empty()) continue;
-    messages.Warn(fmt::format("{}: {}", fit.result.file, fit.result.fault));
+    if (fit.fault.empty()) continue;
+    messages.Warn(fmt::format("{}: {}", fit.file, fit.fault));
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {

@@ -27,7 +27,6 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
@@ -38,7 +37,6 @@
 #include "mindahl/io/record_stream.h"
 #include "mindahl/request/fit_request.h"
 #include "mindahl/request/track.h"
-#include "report/statements.h"
 
 namespace mindahl::cli {
 namespace {
@@ -352,19 +350,11 @@ void TrackRun::Go() {
 }
 
 void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
-  if (options_.plot_path.empty() && options_.report_path.empty()) return;
-  const campaign::TestSummary test = SummaryOf(this->test(), described);
-  if (!options_.plot_path.empty()) {
-    const std::string_view changes =
-        test.changes.empty() ? campaign::kNothingChanged : "dashed where it changed beyond chance";
-    io::WritePlot(campaign::EvolutionPlot(test.evolutions, report::NameOf(test.files),
-                                          fmt::format("{} cycles: {}", test.cycles, changes)),
-                  options_.plot_path);
-  }
+  if (!options_.plot_path.empty()) io::WritePlot(ToPlot(test(), described), options_.plot_path);
   if (!options_.report_path.empty()) {
     io::WriteFileAtomically(
         options_.report_path,
-        campaign::ToPage(test, ProvenanceOf(command_, console_, options_.track.fit.files)));
+        ToPage(test(), described, ProvenanceOf(command_, console_, options_.track.fit.files)));
   }
 }
 

@@ -515,4 +515,21 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
   return Drawing(panel, frame, width, most_points).Text();
 }
 
+PageDrawing DrawForPage(const PlotPanel& panel, std::string_view name) {
+  RequireDrawable(panel, fmt::format("figure '{}'", name));
+  constexpr int kWidth = 560;
+  constexpr std::size_t kMostPoints = 6000;
+  const double axes_height = std::round(kWidth / 2.0 * panel.height);
+  PageDrawing drawing{.width = kWidth,
+                      .height = static_cast<int>(kAboveAxes + axes_height + kBelowAxes),
+                      .elements = DrawPanel(panel, kWidth, axes_height, kMostPoints)};
+  const std::vector<SeriesLook> looks = LooksOf(panel);
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    const PlotSeries& series = panel.series[k];
+    if (series.label.empty()) continue;
+    drawing.legend.push_back({LegendSymbol(series.style, looks[k]), series.label});
+  }
+  return drawing;
+}
+
 }  // namespace mindahl::io

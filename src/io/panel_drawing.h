@@ -54,4 +54,25 @@ inline constexpr double kBelowAxes = 52;
 std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
                       std::size_t most_points);
 
+/// Holds a panel as a page of HTML shows it: the elements of an inline SVG, and its legend as text
+/// with the symbols in 26 x 12 px. Nothing is loaded and no script is run; colours are classes of
+/// the page's style, which follows the scheme of the reader, light or dark, and is light in print.
+struct PageDrawing {
+  struct Entry {
+    std::string symbol;
+    std::string label;
+  };
+  int width = 0;   ///< of the SVG's coordinates [px], where it is not scaled to the page
+  int height = 0;  ///< [px]
+  std::string elements;
+  std::vector<Entry> legend;  ///< of the series that have a label
+};
+
+/// Draws a panel for a page. At most 6000 points are drawn, evenly over the series, of which each
+/// is thinned as WritePlot() thins: no peak is lost, and a page has a size.
+/// @param panel  as WritePlot() takes it; its height is over half the width
+/// @param name   for messages
+/// @throws InvalidArgument as WritePlot()
+PageDrawing DrawForPage(const PlotPanel& panel, std::string_view name);
+
 }  // namespace mindahl::io

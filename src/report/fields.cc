@@ -243,7 +243,7 @@ std::vector<FieldDescription> DescribeFields() {
 }
 
 std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix) {
-  const std::vector<FieldDescription> descriptions = DescribeFields();
+  static const std::vector<FieldDescription> descriptions = DescribeFields();
   std::vector<DescribedValue> described;
   const std::string_view subject = prefix.substr(0, prefix.find('.'));
   for (const Field<Report>& row : AllFields().rows) {

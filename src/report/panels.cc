@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -84,21 +85,22 @@ struct Group {
   std::size_t end = 0;
 };
 
-/// Returns the cycles of a record that is alone, as many in a row as make eight groups at most;
-/// otherwise its records. A cycle begins at every second reversal.
-std::vector<Group> GroupsOf(const Report& report, const std::string& what) {
+/// Returns, by cycle, the cycles of a record that is alone, as many in a row as make eight groups
+/// at most; otherwise the records. A cycle begins at every second reversal.
+std::vector<Group> GroupsOf(const Report& report, const std::string& what, LoopColours colours) {
   std::vector<Group> groups;
   const std::size_t records = report.records.size();
-  if (records > 1) {
+  const bool by_cycle = colours == LoopColours::kByCycle;
+  if (records > 1 || !by_cycle) {
     for (std::size_t r = 0; r < records; ++r) {
+      Group& group = groups.emplace_back();
+      group.shade.reset();
+      group.record = r;
+      group.end = report.records[r].record.size();
       // A legend of many files would be longer than the page.
-      const bool is_named = records <= kMostGroups || r == 0 || r + 1 == records;
-      groups.push_back(
-          {.label = is_named ? fmt::format("{} {}", what, report.files[r]) : std::string(),
-           .shade = static_cast<double>(r) / static_cast<double>(records - 1),
-           .record = r,
-           .begin = 0,
-           .end = report.records[r].record.size()});
+      const bool is_named = !by_cycle || records <= kMostGroups || r == 0 || r + 1 == records;
+      if (is_named) group.label = records > 1 ? fmt::format("{} {}", what, report.files[r]) : what;
+      if (by_cycle) group.shade = static_cast<double>(r) / static_cast<double>(records - 1);
     }
     return groups;
   }
@@ -162,70 +164,23 @@ PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& uni
   return series;
 }
 
-PlotSeries Reversals(const Report& report, const PanelUnits& units) {
-  PlotSeries reversals{"reversals", {}, {}, PlotStyle::kMarkers};
-  for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
-    const loop::Record& record = report.records[r].record;
-    for (const std::size_t sample : report.fit.records[r].reversals) {
-      reversals.x.push_back(Per(units.displacement) * record.displacement[sample]);
-      reversals.y.push_back(Per(units.force) * record.force[sample]);
+/// Draws the residuals of the samples that have a place.
+/// @param place  of a sample of a record on the axis, empty where it is not shown
+PlotPanel Residuals(
+    const Report& report, const PanelUnits& units, std::string x_label, LoopColours colours,
+    const std::function<std::optional<double>(std::size_t record, std::size_t sample)>& place) {
+  PlotPanel panel{.x_label = std::move(x_label), .y_label = ResidualLabel(units), .series = {}};
+  for (const Group& group : GroupsOf(report, "", colours)) {
+    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
+    shown.shade = group.shade;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const std::optional<double> x = place(group.record, i);
+      if (!x) continue;
+      shown.x.push_back(*x);
+      shown.y.push_back(Per(units.residual) * report.fit.records[group.record].residual[i]);
     }
+    if (!shown.x.empty()) panel.series.push_back(std::move(shown));
   }
-  return reversals;
-}
-
-/// σ or Tc against the load: of the whole series a line, of each file alone an interval.
-struct LoadPanel {
-  std::string label;
-  double scale;  // of what is drawn over SI
-  ParameterEstimate identification::RecordAlone::*alone;
-  bool is_stiffness;
-};
-
-PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
-  const identification::FitResult& fit = report.fit;
-  PlotPanel panel{
-      .x_label = "normal load N [N]", .y_label = quantity.label, .series = {}, .height = 1.2};
-  double least = report.load_series->contacts.front().normal_load;
-  double greatest = least;
-  PlotSeries alone;
-  alone.label = "each file alone, " + ConfidenceWords(report.fit);
-  alone.style = PlotStyle::kIntervals;
-  for (const ContactUnderLoad& contact : report.load_series->contacts) {
-    least = std::min(least, contact.normal_load);
-    greatest = std::max(greatest, contact.normal_load);
-    if (!contact.alone) continue;
-    const ParameterEstimate& estimate = (*contact.alone).*quantity.alone;
-    // A loop far from slip leaves Tc open, up to more than a double holds.
-    if (!estimate.is_known() || !estimate.lower95 || !estimate.upper95) continue;
-    if (!std::isfinite(*estimate.lower95) || !std::isfinite(*estimate.upper95)) continue;
-    alone.x.push_back(contact.normal_load);
-    alone.y.push_back(quantity.scale * estimate.value);
-    alone.lower.push_back(quantity.scale * *estimate.lower95);
-    alone.upper.push_back(quantity.scale * *estimate.upper95);
-  }
-  const auto is_known = [&fit](std::string_view name) {
-    const ParameterEstimate* const estimate = fit.Find(name);
-    return estimate != nullptr && estimate->is_known();
-  };
-  const bool has_line = quantity.is_stiffness ? is_known("sigma") && is_known("load_exponent")
-                                              : is_known("slip_force");
-  if (has_line) {
-    constexpr int kSteps = 60;
-    PlotSeries line;
-    line.label = quantity.is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
-                                       : std::string("Tc = μN, the series");
-    for (int i = 0; i <= kSteps; ++i) {
-      const double load = least + (greatest - least) * i / kSteps;
-      const double ratio = load / *fit.normal_load;
-      line.x.push_back(load);
-      const models::BranchLaw law = models::AtLoad(fit.law, ratio, fit.load_exponent);
-      line.y.push_back(quantity.scale *
-                       (quantity.is_stiffness ? law.tangential_stiffness : law.slip_force));
-    }
-    panel.series.push_back(std::move(line));
-  }
-  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
   return panel;
 }
 
@@ -269,100 +224,60 @@ PanelUnits PrefixedUnits(const Report& report) {
 }
 
 PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours colours) {
-  PlotPanel panel{.x_label = "",
+  const bool by_cycle = colours == LoopColours::kByCycle;
+  PlotPanel panel{.x_label = by_cycle ? DisplacementLabel(report, units) : "",
                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.name),
                   .series = {},
-                  .height = 2.5};
+                  .height = by_cycle ? 1.3 : 2.5};
   const double per_displacement = Per(units.displacement);
   const double per_force = Per(units.force);
-  if (colours == LoopColours::kByCycle) {
-    panel.x_label = DisplacementLabel(report, units);
-    panel.height = 1.3;
-    for (const Group& group : GroupsOf(report, "measured")) {
-      const loop::Record& record = report.records[group.record].record;
-      panel.series.push_back(
-          Range(group, record.displacement, per_displacement, record.force, per_force));
-    }
-    // A page spreads its points over all series: a line of more would lose the corners of its
-    // loops.
-    constexpr std::size_t kPoints = 6000;
-    const std::size_t most = kPoints / (panel.series.size() + report.records.size() + 1);
-    for (std::size_t r = 0; r < report.records.size(); ++r) {
-      PlotSeries line = FittedLine(report, r, units, most);
-      if (r > 0) line.label.clear();
-      panel.series.push_back(std::move(line));
-    }
-  } else {
-    const auto scaled = [](std::vector<double> values, double per) {
-      for (double& value : values) value *= per;
-      return values;
-    };
-    for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
-      const loop::Record& record = report.records[r].record;
-      const std::string suffix =
-          report.files.size() > 1 ? fmt::format(" {}", report.files[r]) : std::string();
-      const std::vector<double> x = scaled(record.displacement, per_displacement);
-      panel.series.push_back(
-          {"measured" + suffix, x, scaled(record.force, per_force), PlotStyle::kPoints});
-      panel.series.push_back(
-          {"fitted" + suffix, scaled(FittedDisplacement(report, r), per_displacement),
-           scaled(report.fit.records[r].fitted_force, per_force), PlotStyle::kLine});
+  const std::string_view measured = "measured";
+  for (const Group& group : GroupsOf(report, std::string(measured), colours)) {
+    const loop::Record& record = report.records[group.record].record;
+    panel.series.push_back(
+        Range(group, record.displacement, per_displacement, record.force, per_force));
+    if (by_cycle) continue;
+    panel.series.push_back(FittedLine(report, group.record, units, record.size()));
+    panel.series.back().label += group.label.substr(measured.size());
+  }
+  // A page spreads its points over all series: a line of more would lose the corners of its loops.
+  constexpr std::size_t kPoints = 6000;
+  const std::size_t most = kPoints / (panel.series.size() + report.records.size() + 1);
+  for (std::size_t r = 0; r < report.records.size() && by_cycle; ++r) {
+    panel.series.push_back(FittedLine(report, r, units, most));
+    if (r > 0) panel.series.back().label.clear();
+  }
+  PlotSeries reversals{"reversals", {}, {}, PlotStyle::kMarkers};
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const loop::Record& record = report.records[r].record;
+    for (const std::size_t sample : report.fit.records[r].reversals) {
+      reversals.x.push_back(per_displacement * record.displacement[sample]);
+      reversals.y.push_back(per_force * record.force[sample]);
     }
   }
-  PlotSeries reversals = Reversals(report, units);
   if (!reversals.x.empty()) panel.series.push_back(std::move(reversals));
   return panel;
 }
 
 PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units, LoopColours colours) {
-  PlotPanel panel{
-      .x_label = DisplacementLabel(report, units), .y_label = ResidualLabel(units), .series = {}};
-  std::vector<Group> groups;
-  if (colours == LoopColours::kByCycle) {
-    groups = GroupsOf(report, "");
-  } else {
-    for (std::size_t r = 0; r < report.records.size(); ++r) {
-      groups.push_back({.label = "",
-                        .shade = std::nullopt,
-                        .record = r,
-                        .begin = 0,
-                        .end = report.records[r].record.size()});
-    }
-  }
-  for (const Group& group : groups) {
-    const RecordFit& fit = report.fit.records[group.record];
-    const loop::Record& record = report.records[group.record].record;
-    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
-    shown.shade = group.shade;
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      // Samples outside the load window would squeeze the rest together.
-      if (!IsUnderLoad(report, record, i)) continue;
-      shown.x.push_back(Per(units.displacement) * record.displacement[i]);
-      shown.y.push_back(Per(units.residual) * fit.residual[i]);
-    }
-    if (!shown.x.empty()) panel.series.push_back(std::move(shown));
-  }
-  return panel;
+  return Residuals(report, units, DisplacementLabel(report, units), colours,
+                   [&](std::size_t r, std::size_t i) -> std::optional<double> {
+                     const loop::Record& record = report.records[r].record;
+                     // Samples outside the load window would squeeze the rest together.
+                     if (!IsUnderLoad(report, record, i)) return std::nullopt;
+                     return Per(units.displacement) * record.displacement[i];
+                   });
 }
 
 PlotPanel ResidualInTime(const Report& report, const PanelUnits& units) {
   const bool is_timed = std::ranges::none_of(
       report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
-  PlotPanel panel{
-      .x_label = is_timed ? "time [s]" : "sample", .y_label = ResidualLabel(units), .series = {}};
-  for (const Group& group : GroupsOf(report, "")) {
-    const RecordFit& fit = report.fit.records[group.record];
-    const loop::Record& record = report.records[group.record].record;
-    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
-    shown.shade = group.shade;
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      if (!Counts(fit, i)) continue;
-      shown.x.push_back(is_timed ? record.time[i] : static_cast<double>(i + 1));
-      shown.y.push_back(Per(units.residual) * fit.residual[i]);
-    }
-    if (!shown.x.empty()) panel.series.push_back(std::move(shown));
-  }
-  return panel;
+  return Residuals(report, units, is_timed ? "time [s]" : "sample", LoopColours::kByCycle,
+                   [&](std::size_t r, std::size_t i) -> std::optional<double> {
+                     if (!Counts(report.fit.records[r], i)) return std::nullopt;
+                     return is_timed ? report.records[r].record.time[i]
+                                     : static_cast<double>(i + 1);
+                   });
 }
 
 PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
@@ -525,18 +440,60 @@ std::optional<PlotPanel> RegionPanel(const Report& report, std::string_view firs
                    .series = {std::move(boundary), std::move(best), std::move(mindlin)}};
 }
 
-std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units) {
-  std::vector<PlotPanel> panels;
-  if (!report.load_series) return panels;
-  panels.push_back(
-      PanelOverLoad(report, {fmt::format("σ [{}/{}]", report.units.force, units.displacement.name),
-                             1 / Per(units.displacement), &identification::RecordAlone::stiffness,
-                             /*is_stiffness=*/true}));
-  panels.push_back(
-      PanelOverLoad(report, {fmt::format("Tc [{}]", report.units.force), 1.0,
-                             &identification::RecordAlone::slip_force, /*is_stiffness=*/false}));
-  std::erase_if(panels, [](const PlotPanel& panel) { return panel.series.empty(); });
-  return panels;
+std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units,
+                                   OverLoad quantity) {
+  if (!report.load_series) return std::nullopt;
+  const bool is_stiffness = quantity == OverLoad::kStiffness;
+  const double scale = is_stiffness ? 1 / Per(units.displacement) : 1.0;
+  const identification::FitResult& fit = report.fit;
+  PlotPanel panel{.x_label = "normal load N [N]",
+                  .y_label = is_stiffness ? fmt::format("σ [{}/{}]", report.units.force,
+                                                        units.displacement.name)
+                                          : fmt::format("Tc [{}]", report.units.force),
+                  .series = {},
+                  .height = 1.2};
+  double least = report.load_series->contacts.front().normal_load;
+  double greatest = least;
+  PlotSeries alone;
+  alone.label = "each file alone, " + ConfidenceWords(report.fit);
+  alone.style = PlotStyle::kIntervals;
+  for (const ContactUnderLoad& contact : report.load_series->contacts) {
+    least = std::min(least, contact.normal_load);
+    greatest = std::max(greatest, contact.normal_load);
+    if (!contact.alone) continue;
+    const ParameterEstimate& estimate =
+        is_stiffness ? contact.alone->stiffness : contact.alone->slip_force;
+    // A loop far from slip leaves Tc open, up to more than a double holds.
+    if (!estimate.is_known() || !estimate.lower95 || !estimate.upper95) continue;
+    if (!std::isfinite(*estimate.lower95) || !std::isfinite(*estimate.upper95)) continue;
+    alone.x.push_back(contact.normal_load);
+    alone.y.push_back(scale * estimate.value);
+    alone.lower.push_back(scale * *estimate.lower95);
+    alone.upper.push_back(scale * *estimate.upper95);
+  }
+  const auto is_known = [&fit](std::string_view name) {
+    const ParameterEstimate* const estimate = fit.Find(name);
+    return estimate != nullptr && estimate->is_known();
+  };
+  const bool has_line =
+      is_stiffness ? is_known("sigma") && is_known("load_exponent") : is_known("slip_force");
+  if (has_line) {
+    constexpr int kSteps = 60;
+    PlotSeries line;
+    line.label = is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
+                              : std::string("Tc = μN, the series");
+    for (int i = 0; i <= kSteps; ++i) {
+      const double load = least + (greatest - least) * i / kSteps;
+      const double ratio = load / *fit.normal_load;
+      line.x.push_back(load);
+      const models::BranchLaw law = models::AtLoad(fit.law, ratio, fit.load_exponent);
+      line.y.push_back(scale * (is_stiffness ? law.tangential_stiffness : law.slip_force));
+    }
+    panel.series.push_back(std::move(line));
+  }
+  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
+  if (panel.series.empty()) return std::nullopt;
+  return panel;
 }
 
 std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
@@ -595,12 +552,14 @@ io::Plot ToPlot(const Report& report) {
   const PanelUnits units = PlainUnits(report);
   plot.panels = {LoopPanel(report, units, LoopColours::kOneARecord),
                  ResidualAlongStroke(report, units, LoopColours::kOneARecord)};
-  std::vector<io::PlotPanel> over_load = LoadPanels(report, units);
-  if (!over_load.empty()) {
+  std::optional<io::PlotPanel> stiffness = LoadPanel(report, units, OverLoad::kStiffness);
+  std::optional<io::PlotPanel> slip_force = LoadPanel(report, units, OverLoad::kSlipForce);
+  if (stiffness && slip_force) stiffness->x_label.clear();
+  for (std::optional<io::PlotPanel>* const panel : {&stiffness, &slip_force}) {
     constexpr int kTaller = 200;  // [px] a panel
-    plot.height += kTaller * static_cast<int>(over_load.size());
-    if (over_load.size() > 1) over_load.front().x_label.clear();
-    for (io::PlotPanel& panel : over_load) plot.panels.push_back(std::move(panel));
+    if (!*panel) continue;
+    plot.height += kTaller;
+    plot.panels.push_back(std::move(**panel));
   }
   return plot;
 }

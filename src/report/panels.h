@@ -55,9 +55,13 @@ std::optional<io::PlotPanel> RegionPanel(const Report& report, std::string_view 
 /// under a model that is inadequate.
 std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);
 
-/// Returns σ and Tc against the load: of the whole series a line where it determines them, of each
-/// file alone an interval. Empty where the records have one load, or determine nothing.
-std::vector<io::PlotPanel> LoadPanels(const Report& report, const PanelUnits& units);
+/// Quantities of a load series.
+enum class OverLoad { kStiffness, kSlipForce };
+
+/// Draws σ or Tc against the load: of the whole series a line where it determines it, of each file
+/// alone an interval. Empty where the records have one load, or determine nothing.
+std::optional<io::PlotPanel> LoadPanel(const Report& report, const PanelUnits& units,
+                                       OverLoad quantity);
 
 /// The force of first loading without a law, with its band. Empty where it was not asked for.
 std::optional<io::PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units);

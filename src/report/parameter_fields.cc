@@ -83,6 +83,12 @@ struct ReportedParameter {
   const ParameterEstimate& estimate;
 };
 
+/// Makes a getter of the estimate.
+template <typename Get>
+auto Of(Get get) {
+  return [get](const ReportedParameter& item) { return get(item.estimate); };
+}
+
 std::string WhyNoError(const ReportedParameter& item) {
   if (item.report.failed()) return WhyFailed(item.report);
   switch (item.estimate.status) {
@@ -120,37 +126,30 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
 const std::vector<Field<ReportedParameter>>& ParameterFields() {
   using Item = ReportedParameter;
   static const std::vector<Field<Item>> fields = {
-      {"value", "of the parameter", "estimate",
-       [](const Item& item) { return item.estimate.value; },
+      {"value", "of the parameter", "estimate", Of(At(&ParameterEstimate::value)),
        [](const Item& item) { return WhyFailed(item.report); }},
-      {"unit", "", "unit of value, error and interval",
-       [](const Item& item) { return item.estimate.unit; }},
+      {"unit", "", "unit of value, error and interval", Of(At(&ParameterEstimate::unit))},
       {"standard_error", "of the parameter", "standard error",
-       [](const Item& item) { return item.estimate.standard_error; }, WhyNoError},
+       Of(At(&ParameterEstimate::standard_error)), WhyNoError},
       {"repeat_error", "of the parameter",
        "standard deviation that repeats of the test would have: standard_error of an adequate "
        "model, else from leaving out parts of the record's cycles",
-       [](const Item& item) { return item.estimate.repeat_error; },
+       Of(At(&ParameterEstimate::repeat_error)),
        [](const Item& item) {
          return item.estimate.repeat_error || item.estimate.standard_error
                     ? std::string("fewer than three cycles")
                     : WhyNoError(item);
        }},
       {"ci95[0]", "of the parameter", "lower end of the interval",
-       [](const Item& item) { return item.estimate.lower95; }, WhyIntervalOpen},
+       Of(At(&ParameterEstimate::lower95)), WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the interval",
-       [](const Item& item) { return item.estimate.upper95; }, WhyIntervalOpen},
+       Of(At(&ParameterEstimate::upper95)), WhyIntervalOpen},
       {"ci95_parts", "", "contributions whose union is ci95",
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"prior.value", "of the parameter", "centre of its prior; absent without one",
-       [](const Item& item) {
-         return IfAny(&ParameterEstimate::prior, &identification::Prior::value)(item.estimate);
-       }},
+       Of(IfAny(&ParameterEstimate::prior, &identification::Prior::value))},
       {"prior.standard_uncertainty", "of the parameter", "standard uncertainty of the prior",
-       [](const Item& item) {
-         return IfAny(&ParameterEstimate::prior,
-                      &identification::Prior::standard_uncertainty)(item.estimate);
-       }},
+       Of(IfAny(&ParameterEstimate::prior, &identification::Prior::standard_uncertainty))},
       {"without_priors.value", "of the parameter",
        "estimate of a fit without any prior; absent without priors",
        [](const Item& item) {
@@ -170,10 +169,10 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        },
        "held, or not determined without the priors"},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
-       [](const Item& item) { return Name(item.estimate.status); }},
+       Of(At(&ParameterEstimate::status))},
       {"identifiability", "",
        "identifiable, effective, extrapolated, bounded_below or not_identifiable",
-       [](const Item& item) { return Name(item.estimate.identifiability); }},
+       Of(At(&ParameterEstimate::identifiability))},
   };
   return fields;
 }

@@ -277,24 +277,22 @@ std::string MemoryStatement(const Report& report) {
   const auto p = [](double value) {
     return value < 1e-6 ? std::string("p < 1e-6") : fmt::format("p = {:.2g}", value);
   };
+  const std::string masing = fmt::format("Masing's ({})", p(memory.p_value));
+  const std::string dahl = fmt::format("Dahl's ({})", p(memory.dahl_p_value));
   std::string text;
   using enum identification::MemoryVerdict;
   switch (memory.verdict) {
     case kMasing:
-      text +=
-          fmt::format("Masing's ({}), not Dahl's ({})", p(memory.p_value), p(memory.dahl_p_value));
+      text = masing + ", not " + dahl;
       break;
     case kDahl:
-      text +=
-          fmt::format("Dahl's ({}), not Masing's ({})", p(memory.dahl_p_value), p(memory.p_value));
+      text = dahl + ", not " + masing;
       break;
     case kNeither:
-      text += fmt::format("neither Masing's ({}) nor Dahl's ({})", p(memory.p_value),
-                          p(memory.dahl_p_value));
+      text = "neither " + masing + " nor " + dahl;
       break;
     case kUndecided:
-      text += fmt::format("Masing's ({}) or Dahl's ({}), undecided", p(memory.p_value),
-                          p(memory.dahl_p_value));
+      text = masing + " or " + dahl + ", undecided";
       break;
   }
   std::vector<std::string> compared;

@@ -40,14 +40,12 @@ std::string ResidualsCsv(const Report& report) {
   std::vector<io::CsvColumn> columns;
   if (report.records.size() > 1) columns.push_back({"file", file});
   if (timed) columns.push_back({"time [s]", time});
-  const auto named = [](std::string_view name, std::string_view unit) {
-    return fmt::format("{} [{}]", name, unit);
-  };
-  columns.push_back({named("displacement", report.units.displacement), displacement});
-  columns.push_back({named("force", report.units.force), force});
+  columns.push_back({WithUnit("displacement", report.units.displacement), displacement});
+  columns.push_back({WithUnit("force", report.units.force), force});
   columns.push_back(
-      {named(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response), fitted});
-  columns.push_back({named("residual", report.units.response), residual});
+      {WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response),
+       fitted});
+  columns.push_back({WithUnit("residual", report.units.response), residual});
   return io::CsvText(columns);
 }
 
@@ -100,14 +98,11 @@ std::string BackboneCsv(const BackboneEstimate& backbone, const Units& units) {
   const auto lower = column([](const BackbonePoint& at) { return at.force.lower95; });
   const auto upper = column([](const BackbonePoint& at) { return at.force.upper95; });
   const auto law = column([](const BackbonePoint& at) { return at.law; });
-  const auto named = [](std::string_view name, std::string_view unit) {
-    return fmt::format("{} [{}]", name, unit);
-  };
-  return io::CsvText({{named("displacement", units.displacement), displacement},
-                      {named("force", units.force), force},
-                      {named("lower95", units.force), lower},
-                      {named("upper95", units.force), upper},
-                      {named("law", units.force), law}});
+  return io::CsvText({{WithUnit("displacement", units.displacement), displacement},
+                      {WithUnit("force", units.force), force},
+                      {WithUnit("lower95", units.force), lower},
+                      {WithUnit("upper95", units.force), upper},
+                      {WithUnit("law", units.force), law}});
 }
 
 std::string BackboneText(const BackboneEstimate& backbone, const identification::FitResult& fit,

@@ -66,12 +66,8 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude) {
   const double size = std::abs(magnitude);
   if (unit == "-") return {1.0, ""};
   if (!(size > 0) || !std::isfinite(size)) return {1.0, std::string(unit)};
-  if (unit == "N/m") {
-    const Prefix& suiting = Suiting(kStiffnesses, size);
-    return {suiting.factor, std::string(suiting.name)};
-  }
-  if (unit == "m/N") {
-    const Prefix& suiting = Suiting(kCompliances, size);
+  if (unit == "N/m" || unit == "m/N") {
+    const Prefix& suiting = Suiting(unit == "N/m" ? kStiffnesses : kCompliances, size);
     return {suiting.factor, std::string(suiting.name)};
   }
   if (std::ranges::find(kPrefixed, unit) == kPrefixed.end()) return {1.0, std::string(unit)};

@@ -20,11 +20,15 @@
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/csv_table.h"
+#include "mindahl/report/units.h"
 #include "report/fields.h"
 #include "report/statements.h"
+#include "report/template.h"
 #include "request/json.h"
 
 namespace mindahl::request {
+
+using identification::ParameterEstimate;
 
 struct FitDocument {
   Json json;
@@ -181,25 +185,93 @@ std::vector<FoundRepeats> AllRepeats(std::span<const BatchEntry> entries) {
   return all;
 }
 
+// --- the index of pages
+
+const std::string kNone = "–";
+constexpr std::array<std::string_view, 3> kParameters = {"sigma", "alpha", "slip_force"};
+
+/// Returns no number of what is not known.
+std::string ParameterText(const BatchEntry& entry, std::string_view name) {
+  const auto found = std::ranges::find(entry.parameters, name, &ParameterEstimate::name);
+  if (found == entry.parameters.end()) return kNone;
+  const ParameterEstimate& estimate = *found;
+  switch (report::WhatIsShown(estimate)) {
+    case report::Shown::kValue:
+      return report::QuantityWithError(estimate.value, estimate.standard_error, estimate.unit);
+    case report::Shown::kHeld:
+      return report::Quantity(estimate.value, estimate.unit) + ", held";
+    case report::Shown::kLowerLimit:
+      if (estimate.lower95) return "> " + report::Quantity(*estimate.lower95, estimate.unit);
+      break;
+    case report::Shown::kNothing:
+      break;
+  }
+  return kNone;
+}
+
+/// Draws a parameter of every file that identifies it, with its interval, over the file's place.
+std::optional<io::PlotPanel> QuantityPanel(std::span<const BatchEntry> entries,
+                                           std::string_view name) {
+  io::PlotSeries series{"interval", {}, {}, io::PlotStyle::kIntervals};
+  series.shade = 0.3;
+  std::string_view unit;
+  double largest = 0.0;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto& parameters = entries[k].parameters;
+    const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
+    if (found == parameters.end()) continue;
+    const ParameterEstimate& estimate = *found;
+    if (report::WhatIsShown(estimate) != report::Shown::kValue) continue;
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    series.x.push_back(static_cast<double>(k + 1));
+    series.y.push_back(estimate.value);
+    series.lower.push_back(*estimate.lower95);
+    series.upper.push_back(*estimate.upper95);
+    unit = estimate.unit;
+    largest = std::max(largest, std::abs(estimate.value));
+  }
+  if (series.x.size() < 2) return std::nullopt;
+  const report::ScaledUnit prefixed = report::UnitFor(unit, largest);
+  for (auto* values : {&series.y, &series.lower, &series.upper}) {
+    for (double& value : *values) value /= prefixed.factor;
+  }
+  return io::PlotPanel{.x_label = "file",
+                       .y_label = report::WithUnit(name, prefixed.name),
+                       .series = {std::move(series)}};
+}
+
+/// Returns an address within a page: whatever is no letter, digit, '-', '_' or '.' in hexadecimal.
+std::string Address(std::string_view name) {
+  std::string address;
+  for (const char character : name) {
+    const auto byte = static_cast<unsigned char>(character);
+    const bool is_plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
+                          (byte >= '0' && byte <= '9') || character == '-' || character == '_' ||
+                          character == '.';
+    address += is_plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
+  }
+  return address;
+}
+
 }  // namespace
 
 BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
                      const ReadSource& read, const WritePage& write_page) {
   BatchEntry entry;
-  entry.result.file = name;
+  entry.file = name;
   FitRequest own = request;
   own.files = {name};
   const Tell note = [&](std::string_view text) { entry.notes.emplace_back(text); };
-  std::string& fault = entry.result.fault;
+  std::string& fault = entry.fault;
   try {
     if (std::filesystem::is_regular_file(name)) entry.sha256 = io::Sha256OfFile(name).value_or("");
     Validate(own);
     const report::Report report = FitRecords(own, read(own, note), note);
     entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
     entry.done = Established(report.fit, strictness);
-    entry.result.verdict = report::VerdictWord(report);
-    entry.result.parameters = report.fit.parameters;
-    if (write_page) entry.result.page = write_page(report);
+    entry.verdict = report::VerdictWord(report);
+    entry.parameters = report.fit.parameters;
+    if (write_page) entry.page = write_page(report);
     if (!entry.done) {
       fault = report.fit.converged ? "not established: the model is not adequate or a free "
                                      "parameter not identifiable"
@@ -257,13 +329,13 @@ std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries) {
     column.name = name;
     for (const BatchEntry& entry : entries) column.cells.push_back(cell_of(entry));
   };
-  add("file", [](const BatchEntry& entry) { return BatchCell(entry.result.file); });
+  add("file", [](const BatchEntry& entry) { return BatchCell(entry.file); });
   add("done", [](const BatchEntry& entry) { return BatchCell(entry.done ? "yes" : "no"); });
   for (const ColumnRow& row : kBatchColumns) {
     add(row.name, [&](const BatchEntry& entry) { return CellOf(ValueAt(entry, row.pointer)); });
   }
   add("warnings", [](const BatchEntry& entry) { return BatchCell(WarningsOf(entry)); });
-  add("fault", [](const BatchEntry& entry) { return BatchCell(entry.result.fault); });
+  add("fault", [](const BatchEntry& entry) { return BatchCell(entry.fault); });
   add("version", [](const BatchEntry&) { return BatchCell(std::string(Version())); });
   add("sha256", [](const BatchEntry& entry) { return BatchCell(entry.sha256); });
   return table;
@@ -312,8 +384,8 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
   json["output"] = output.empty() ? Json() : Json(output);
   json["files"] = Json::array();
   for (const BatchEntry& entry : entries) {
-    const std::string& fault = entry.result.fault;
-    json["files"].push_back({{"file", entry.result.file},
+    const std::string& fault = entry.fault;
+    json["files"].push_back({{"file", entry.file},
                              {"done", entry.done},
                              {"fault", fault.empty() ? Json() : Json(fault)},
                              {"fit", entry.fit ? entry.fit->json : Json()}});
@@ -333,14 +405,54 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
 }
 
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
-  std::vector<campaign::FileResult> results;
-  for (const BatchEntry& entry : entries) results.push_back(entry.result);
-  std::vector<campaign::RepeatedQuantity> repeated;
-  for (const auto& [quantity, found] : AllRepeats(entries)) {
-    repeated.push_back(
-        {.name = std::string(quantity.name), .unit = std::string(quantity.unit), .repeats = found});
+  const auto done =
+      std::ranges::count_if(entries, [](const BatchEntry& entry) { return entry.fault.empty(); });
+  Json files = Json::array();
+  for (const BatchEntry& entry : entries) {
+    Json row = {{"number", files.size() + 1},
+                {"file", entry.file},
+                {"address", Address(entry.page)},
+                {"verdict", entry.verdict},
+                {"class",
+                 entry.verdict.empty() ? "" : report::CssClass(report::JudgementOf(entry.verdict))},
+                {"fault", entry.fault}};
+    for (const std::string_view parameter : kParameters) {
+      row[parameter] = ParameterText(entry, parameter);
+    }
+    files.push_back(std::move(row));
   }
-  return campaign::BatchIndexPage(results, repeated, provenance);
+  Json repeats = Json::array();
+  for (const auto& [quantity, found] : AllRepeats(entries)) {
+    const report::ScaledUnit unit = report::UnitFor(quantity.unit, found.mean);
+    const auto text = [&](std::optional<double> value) {
+      if (!value) return kNone;
+      return fmt::format("{:.3g}{}{}", *value / unit.factor, unit.name.empty() ? "" : " ",
+                         unit.name);
+    };
+    repeats.push_back({{"name", quantity.name},
+                       {"count", found.count},
+                       {"mean", report::Quantity(found.mean, quantity.unit)},
+                       {"mean_error", text(found.mean_error())},
+                       {"scatter", text(found.standard_deviation)},
+                       {"stated_error", text(found.stated_error)},
+                       {"common_error", text(found.common_error)},
+                       {"conclusion", found.InWords()},
+                       {"class", found.exceed_errors() ? "poor" : "good"}});
+  }
+  Json quantities = Json::array();
+  for (const std::string_view parameter : kParameters) {
+    const std::string id = fmt::format("files-{}", parameter);
+    if (const auto panel = QuantityPanel(entries, parameter)) {
+      quantities.push_back(
+          {{"id", id}, {"quantity", parameter}, {"figure", report::FigureData(panel, id)}});
+    }
+  }
+  return report::RenderPage("batch",
+                            {{"title", fmt::format("{} of {} files fitted", done, entries.size())},
+                             {"files", std::move(files)},
+                             {"repeats", std::move(repeats)},
+                             {"quantities", std::move(quantities)},
+                             {"provenance", report::ProvenanceData(provenance)}});
 }
 
 std::string FitJson(const BatchEntry& entry) { return entry.fit ? Dump(entry.fit->json) : ""; }

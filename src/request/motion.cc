@@ -209,6 +209,14 @@ bool IsJoint(const SimulationRequest& options) {
          options.method == "exact";
 }
 
+/// Refuses an option that needs the closed form of a law.
+[[noreturn]] void RefuseLaw(const SimulationRequest& options, std::string_view option) {
+  throw InputError(
+      fmt::format("{} cannot be used with --model {} --method {}: use --model mindlin, "
+                  "mindlin-dahl, jenkins or dahl and --method exact",
+                  option, options.model, options.method));
+}
+
 /// Returns the load at which sigma and the slip force are those given.
 double ReferenceLoad(const SimulationRequest& options) {
   const std::optional<double> load = options.law.contact.known.normal_load;
@@ -243,10 +251,7 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulationRequest& options) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
   if (model == nullptr || model->memory != models::Memory::kReturnPoint ||
       options.method != "exact") {
-    throw InputError(
-        fmt::format("--normal-load-column cannot be used with --model {} --method {}: use --model "
-                    "mindlin, mindlin-dahl, jenkins or dahl and --method exact",
-                    options.model, options.method));
+    RefuseLaw(options, "--normal-load-column");
   }
   const double load = ReferenceLoad(options);
   const models::BranchLaw law =
@@ -261,10 +266,7 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulationRequest& options) {
 ImposedMotion FollowForce(const SimulationRequest& options, std::vector<double>& force) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
   if (model == nullptr || model->scaled_by_peak || options.method != "exact") {
-    throw InputError(
-        fmt::format("--force-path cannot be used with --model {} --method {}: use --model mindlin, "
-                    "mindlin-dahl, jenkins or dahl and --method exact",
-                    options.model, options.method));
+    RefuseLaw(options, "--force-path");
   }
   const models::BranchLaw law = ResolveLaw(options.law, options.model, model->shape_exponent);
   ImposedForce imposed = ReadImposedForce(options.drive, law);
@@ -287,26 +289,13 @@ void FollowAsymmetry(const SimulationRequest& options, const models::BranchLaw& 
   models::EvaluateForce(model, law, path, displacement, force);
 }
 
-/// The force of a contact behind a gap.
-void FollowBehindGap(const SimulationRequest& options, const models::BranchLaw& law,
-                     std::span<const double> displacement, std::span<double> force) {
-  models::ContactBehindGap contact({*models::FindFrictionModel(options.model), law},
-                                   options.backlash);
-  std::ranges::transform(displacement, force.begin(), [&](double x) { return contact.Move(x); });
-}
-
 /// Requires what an asymmetry and a gap need: the closed form of a law, under one load.
 void RequireExactLaw(const SimulationRequest& options, std::string_view option, bool needs_memory) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
   const bool is_joint = needs_memory && IsJoint(options);
   const bool serves = model != nullptr && !model->scaled_by_peak &&
                       (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
-  if (!serves || options.method != "exact") {
-    throw InputError(
-        fmt::format("{} cannot be used with --model {} --method {}: use --model mindlin, "
-                    "mindlin-dahl, jenkins or dahl and --method exact",
-                    option, options.model, options.method));
-  }
+  if (!serves || options.method != "exact") RefuseLaw(options, option);
   if (!options.drive.force_path.empty() || (!options.drive.load_column.empty() && !is_joint)) {
     throw InputError(
         fmt::format("{} cannot be used with {}: leave one of the two out", option,
@@ -362,7 +351,10 @@ Simulation Simulate(const SimulationRequest& options) {
     if (options.asymmetry != 0) {
       FollowAsymmetry(options, law, motion.displacement, force);
     } else if (options.backlash != 0) {
-      FollowBehindGap(options, law, motion.displacement, force);
+      models::ContactBehindGap contact({*models::FindFrictionModel(options.model), law},
+                                       options.backlash);
+      std::ranges::transform(motion.displacement, force.begin(),
+                             [&](double x) { return contact.Move(x); });
     } else {
       Prepare(approximation, law)(motion.drive(), force);
     }

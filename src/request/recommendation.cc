@@ -191,10 +191,8 @@ std::vector<std::string> CriterionNames() {
 }
 
 Criterion FindCriterion(const std::string& name) {
-  std::vector<std::string_view> names;
-  names.reserve(kCriteria.size());
-  for (const CriterionRow& row : kCriteria) names.push_back(row.name);
-  RequireOneOf("--criterion", name, names);
+  const std::vector<std::string> names = CriterionNames();
+  RequireOneOf("--criterion", name, std::vector<std::string_view>(names.begin(), names.end()));
   return std::ranges::find(kCriteria, name, &CriterionRow::name)->criterion;
 }
 

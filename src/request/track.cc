@@ -14,6 +14,8 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/report/units.h"
+#include "report/statements.h"
+#include "report/template.h"
 #include "request/json.h"
 
 namespace mindahl::request {
@@ -112,31 +114,73 @@ bool TrackedTest::established() const {
   return failed == flags.end() || failed->second != fits;
 }
 
-campaign::TestSummary SummaryOf(const TrackedTest& test,
-                                const std::vector<CourseDescription>& described) {
+std::vector<std::string> Changes(const TrackedTest& test,
+                                 const std::vector<CourseDescription>& described) {
   const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
-  campaign::TestSummary summary{.files = test.files,
-                                .cycles = test.cycles,
-                                .samples = test.samples,
-                                .fits = test.fits,
-                                .unused_samples = test.unused_samples,
-                                .dissipated = test.energy.total(),
-                                .energy_counts = test.energy.counts(),
-                                .shared_alpha = test.shared_alpha,
-                                .evolutions = EvolutionsOf(test, described)};
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(std::string(flag.name));
-    if (found == test.flags.end()) continue;
-    summary.flags.push_back(
-        {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
-  }
+  std::vector<std::string> changes;
   for (std::size_t k = 0; k < tracked.size(); ++k) {
     const std::string name = report::WithUnit(tracked[k].name, UnitOf(test, tracked[k].unit));
     for (const std::string& line : campaign::ChangeStatements(described[k])) {
-      summary.changes.push_back(fmt::format("{}: {}", name, line));
+      changes.push_back(fmt::format("{}: {}", name, line));
     }
   }
-  return summary;
+  return changes;
+}
+
+std::string ToPage(const TrackedTest& test, const std::vector<CourseDescription>& described,
+                   const report::Provenance& provenance) {
+  const std::vector<campaign::Evolution> evolutions = EvolutionsOf(test, described);
+  const std::vector<std::string> changes = Changes(test, described);
+  Json ends = Json::array();
+  for (const campaign::Evolution& evolution : evolutions) {
+    const auto& stretches = evolution.description.stretches;
+    if (stretches.empty()) continue;
+    ends.push_back({{"name", evolution.name},
+                    {"first", report::Quantity(stretches.front().at_start, evolution.unit)},
+                    {"last", report::Quantity(stretches.back().at_end, evolution.unit)}});
+  }
+  Json figures = Json::array();
+  for (io::PlotPanel& panel : campaign::EvolutionPanels(evolutions)) {
+    const std::string id = fmt::format("evolution-{}", figures.size() + 1);
+    std::string quantity = panel.y_label;
+    figures.push_back({{"id", id},
+                       {"quantity", std::move(quantity)},
+                       {"figure", report::FigureData(std::move(panel), id)}});
+  }
+  Json flags = Json::array();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(std::string(flag.name));
+    if (found == test.flags.end()) continue;
+    flags.push_back({{"name", flag.name}, {"cycles", found->second}, {"meaning", flag.meaning}});
+  }
+  const bool is_failed = !test.established();
+  return report::RenderPage(
+      "track",
+      {{"title", fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles)},
+       {"verdict", is_failed ? report::VerdictData("bad", "failed", "no fit of a cycle converged")
+                   : changes.empty()
+                       ? report::VerdictData("good", "steady", campaign::kNothingChanged)
+                       : report::VerdictData("poor", "changed", "these changes are beyond chance")},
+       {"changes", is_failed ? Json() : Json(changes)},
+       {"cycles", test.cycles},
+       {"samples", test.samples},
+       {"fits", test.fits},
+       {"dissipated", report::Quantity(test.energy.total(), "J")},
+       {"energy_counts", campaign::InWords(test.energy.counts())},
+       {"unused_samples", test.unused_samples},
+       {"shared_alpha", test.shared_alpha ? campaign::SharedAlphaInWords(*test.shared_alpha) : ""},
+       {"ends", std::move(ends)},
+       {"evolutions", std::move(figures)},
+       {"flags", std::move(flags)},
+       {"provenance", report::ProvenanceData(provenance)}});
+}
+
+io::Plot ToPlot(const TrackedTest& test, const std::vector<CourseDescription>& described) {
+  const std::string_view changes = Changes(test, described).empty()
+                                       ? campaign::kNothingChanged
+                                       : "dashed where it changed beyond chance";
+  return campaign::EvolutionPlot(EvolutionsOf(test, described), report::NameOf(test.files),
+                                 fmt::format("{} cycles: {}", test.cycles, changes));
 }
 
 std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>& described) {

@@ -3,6 +3,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/friction_model.h"
 #include "report/made_report.h"
+#include "report/template.h"
 #include "support/histories.h"
 #include "support/page_text.h"
 #include "support/prelude.h"
@@ -58,9 +59,8 @@ TEST(Page, SaysItsSectionsInTheOrderInWhichTheyAreRead) {
   for (const char* heading :
        {"class=\"verdict good\"", "<h2>Parameters</h2>", "<h2>Warnings and what to do</h2>",
         "<h2>What the record says without a model</h2>", "<h2>Residuals</h2>",
-        "<h2>Loop of the model</h2>", "<h2>The contact</h2>",
-        "<h3>Is it Mindlin&#39;s contact?</h3>", "<h2>The record</h2>",
-        "<h2>How to reproduce this page</h2>"}) {
+        "<h2>Loop of the model</h2>", "<h2>The contact</h2>", "<h3>Is it Mindlin's contact?</h3>",
+        "<h2>The record</h2>", "<h2>How to reproduce this page</h2>"}) {
     const std::size_t at = page.find(heading);
     ASSERT_NE(at, std::string::npos) << heading;
     EXPECT_GT(at, last) << heading;
@@ -68,14 +68,59 @@ TEST(Page, SaysItsSectionsInTheOrderInWhichTheyAreRead) {
   }
 }
 
+TEST(Page, ForbidsWhatItDoesNotNeed) {
+  const std::string page = ToPage(MakeReport(MadeInput()));
+  EXPECT_THAT(page, HasSubstr("content=\"default-src 'none'; style-src 'unsafe-inline'; img-src "
+                              "data:\""));
+  for (const char* what : {"<script", "http://", "https://", "{{", "}}}"}) {
+    EXPECT_THAT(page, Not(HasSubstr(what)));
+  }
+}
+
+TEST(Template, EscapesTextAndKeepsOptionsWhole) {
+  const std::string page = RenderPage("verdict", {{"title", "<a> & --lag"},
+                                                  {"class", "bad"},
+                                                  {"word", "<b>"},
+                                                  {"sentence", "use --lag & 'x_y.csv'"}});
+  EXPECT_THAT(page, HasSubstr("<title>&lt;a&gt; &amp; --lag</title>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"verdict bad\"><strong>&lt;b&gt;</strong>: use <span "
+                              "class=\"option\">--lag</span> &amp; &#39;x_y.csv&#39;</p>"));
+}
+
+TEST(Template, ShowsOfAListThatIsEmptyNothing) {
+  const Json one = {{"id", "f"}, {"width", 2}, {"height", 1}, {"elements", "<g/>"}};
+  for (const bool is_empty : {false, true}) {
+    Json data = one;
+    data["title"] = "";
+    data["legend"] = is_empty ? Json::array() : Json{{{"symbol", "<g/>"}, {"label", "a < b"}}};
+    const std::string page = RenderPage("drawing", data);
+    EXPECT_THAT(page, HasSubstr("viewBox=\"0 0 2 1\""));
+    EXPECT_EQ(page.find("<ul") == std::string::npos, is_empty);
+    EXPECT_EQ(page.find("<g/></svg>a &lt; b</li>") == std::string::npos, is_empty);
+  }
+}
+
+TEST(Template, NamesAMemberThatTheDataDoNotHave) {
+  try {
+    RenderPage("verdict", {{"title", "a"}, {"class", "bad"}, {"word", "failed"}});
+    FAIL() << "a template without its data was shown";
+  } catch (const std::logic_error& error) {
+    EXPECT_STREQ(error.what(), "the data of the page 'verdict' have no 'sentence'");
+  }
+  EXPECT_THROW(RenderPage("no_such_page", {{"title", "a"}}), std::logic_error);
+}
+
 TEST(Page, DrawsEveryFigureOfAFit) {
   const std::string page = PageOf(JudgedInput(AdequacyVerdict::kAdequate));
-  for (const char* id : {"loop", "residual-stroke", "residual-time", "residual-distribution",
-                         "residual-autocorrelation"}) {
+  for (const std::string id : {"loop", "residual-stroke", "residual-time", "residual-distribution",
+                               "residual-autocorrelation"}) {
     const std::string figure = FigureOf(page, id);
     EXPECT_THAT(figure, ::testing::ContainsRegex("class=\"(line|dots|bars) [hs][0-7]\" d=\"M[0-9]"))
         << id;
-    EXPECT_THAT(figure, HasSubstr("<desc ")) << id;
+    for (const std::string part : {"-title", "-text"}) {  // by which it is read aloud
+      EXPECT_THAT(figure, HasSubstr(" id=\"" + (id + part) + "\">"));
+    }
+    EXPECT_THAT(figure, HasSubstr("labelledby=\"" + id + "-title " + id + "-text\""));
   }
 }
 

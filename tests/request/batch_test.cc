@@ -25,7 +25,7 @@ TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
       FitSource({}, "loop", Strictness::kNone, read,
                 [](const report::Report&) -> std::string { throw InputError("the disk is full"); });
   EXPECT_FALSE(entry.done);
-  EXPECT_EQ(entry.result.fault, "the disk is full");
+  EXPECT_EQ(entry.fault, "the disk is full");
 }
 
 /// A fit of which only Tc and the half gap are known.
@@ -51,7 +51,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
   json["warnings"] = nlohmann::json::array();
   BatchEntry entry;
   entry.done = made.done;
-  entry.result.file = file;
+  entry.file = file;
   SetFitJson(entry, json.dump());
   return entry;
 }
@@ -112,8 +112,8 @@ TEST(Repeats, ScatterByTheErrorOfRepeatsAndNotByThatOfTheModel) {
 TEST(BatchTable, HasTheNumbersOfEachFitInItsRow) {
   std::vector<BatchEntry> entries = EntriesOf({{40, 3, 6, "identifiable", 41}, {48, 1, 2}});
   entries.emplace_back();
-  entries.back().result.file = "c";
-  entries.back().result.fault = "no loop";
+  entries.back().file = "c";
+  entries.back().fault = "no loop";
   const auto column = [&](std::string_view name) {
     const std::vector<BatchColumn> table = TableOf(entries);
     return std::ranges::find(table, name, &BatchColumn::name)->cells;
@@ -131,6 +131,40 @@ TEST(BatchTable, HasTheNumbersOfEachFitInItsRow) {
   const std::string csv = TableCsv(entries);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
   EXPECT_FALSE(AllDone(entries));
+}
+
+TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
+  identification::ParameterEstimate sigma;
+  sigma.name = "sigma";
+  sigma.unit = "N/m";
+  sigma.value = 4e7;
+  sigma.standard_error = 4e5;
+  sigma.lower95 = 3.92e7;
+  sigma.upper95 = 4.08e7;
+  sigma.status = identification::ParameterStatus::kFree;
+  sigma.identifiability = identification::Identifiability::kIdentifiable;
+  identification::ParameterEstimate open = sigma;
+  open.value = 7.777e7;
+  open.identifiability = identification::Identifiability::kNotIdentifiable;
+  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}, {}});
+  entries[0].file = "a <b>.csv";
+  entries[0].page = "a <b>.html";
+  entries[0].verdict = "adequate";
+  entries[0].parameters = {sigma};
+  entries[1].page = "c--d.html";
+  entries[1].verdict = "doubtful";
+  entries[1].parameters = {open};
+  entries[2].fault = "d.csv:2:1: no number";
+  entries[2].done = false;
+  const std::string page = IndexPage(entries);
+  EXPECT_THAT(page, HasSubstr("<h1>2 of 3 files fitted</h1>"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"a%20%3Cb%3E.html\">a &lt;b&gt;.csv</a>"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"c--d.html\">"));
+  EXPECT_THAT(page, HasSubstr("40.00 ± 0.40 N/µm"));
+  EXPECT_THAT(page, Not(HasSubstr("77.77")));
+  EXPECT_THAT(page, HasSubstr("d.csv:2:1: no number"));
+  EXPECT_THAT(page, HasSubstr("more than the errors"));
+  EXPECT_THAT(page, Not(HasSubstr("figure id")));  // of one file there is nothing to compare
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/page_text.h"
 #include "support/prelude.h"
 
 namespace mindahl::request::track_test {
@@ -105,6 +106,64 @@ TEST(SeparateTests, AddUp) {
       tests.ToText(),
       StartsWith("2 tests, 3 fits in table.csv\n10 J dissipated in all\n1 cycle has a flag\n"
                  "1 of the tests failed:\n  b.csv:7: no number\n"));
+}
+
+/// A test whose σ falls by a tenth after its 60th cycle, each of which loses 2.5 mJ.
+TrackedTest Stepping() {
+  TrackedTest test;
+  test.files = {"<script>.csv"};
+  for (test.cycles = 1; test.cycles <= 100; ++test.cycles) {
+    const double ripple = test.cycles % 2 == 0 ? 1e5 : -1e5;
+    campaign::CycleFit fit = Losing(0.0025);
+    fit.number = test.cycles;
+    fit.sigma = {(test.cycles <= 60 ? 5e7 : 4.5e7) + ripple, 2e5};
+    if (test.cycles <= 7) fit.flags = {"alpha_open"};
+    test.energy.Add(fit);
+    test.Add(fit);
+  }
+  test.cycles = test.fits;
+  return test;
+}
+
+std::string PageOf(const TrackedTest& test) {
+  return testing::Unbroken(ToPage(test, test.courses.Describe()));
+}
+
+TEST(TestPage, SaysWhatChangedAndEscapesItsFiles) {
+  const std::string page = PageOf(Stepping());
+  EXPECT_THAT(page, HasSubstr("<h1>&lt;script&gt;.csv: 100 cycles</h1>"));
+  EXPECT_THAT(page, HasSubstr("<li>sigma [N/m]: at cycle 61 ("));
+  EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-1\">"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">alpha_open</th><td class=\"number\">7</td>"));
+  EXPECT_THAT(page, HasSubstr("250 mJ dissipated in all;"));
+  EXPECT_THAT(page, Not(HasSubstr("shared")));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+}
+
+TEST(TestPage, ReportsSharedAlphaAndSourceOfEnergies) {
+  TrackedTest test =
+      Lossy({Losing(1.0, {"not_closed"}), Losing(3.0), Losing(9.0, {"not_closed"})}, 1);
+  test.files = {"a.csv"};
+  campaign::PooledValue alpha;
+  alpha.Add(0.3, 0.01);
+  alpha.Add(0.4, 0.01);
+  test.shared_alpha = alpha;
+  const std::string page = PageOf(test);
+  EXPECT_THAT(page, HasSubstr("shared alpha 0.35 ± 0.05, from 2 cycles"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("counting 1 unclosed cycles by the median of those before them and 1 as zero"));
+}
+
+TEST(TestPage, OfFitsThatAllFailedSaysSo) {
+  TrackedTest test;
+  test.files = {"a.csv"};
+  campaign::CycleFit failed;
+  failed.flags = {"not_converged"};
+  test.Add(failed);
+  const std::string page = PageOf(test);
+  EXPECT_THAT(page, HasSubstr("<strong>failed</strong>: no fit of a cycle converged"));
+  EXPECT_THAT(page, Not(HasSubstr("<figure")));
 }
 
 }  // namespace

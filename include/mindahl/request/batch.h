@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "mindahl/campaign/pages.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 
@@ -21,11 +21,15 @@ struct FitDocument;  // the JSON of a fit
 
 /// Holds the fit of one source of a batch, or the fault for which it has none.
 struct BatchEntry {
+  std::string file;
+  std::string fault;                       ///< why it is not done; "" where it is
   bool done = false;                       ///< fitted, and Established()
   std::shared_ptr<const FitDocument> fit;  ///< empty where there is none
   std::vector<std::string> notes;          ///< assumptions of the run, one sentence each
   std::string sha256;                      ///< SHA-256 of the file; "" if it is none
-  campaign::FileResult result;             ///< its name, its fault, what the index shows of it
+  std::string page;     ///< address of its page, relative to the index; "" where there is none
+  std::string verdict;  ///< one word for the fit's adequacy; "" where there is none
+  std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
 };
 
 /// Reads the records of one source, with notes on what was assumed.
@@ -73,8 +77,10 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
 /// @param output  path of the table; not said where it is empty
 std::string ToText(std::span<const BatchEntry> entries, const std::string& output);
 
-/// Returns the index of the entries' pages.
-std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance);
+/// Returns the index of the entries' pages: each with its verdict and parameters, those alone that
+/// it identifies, what failed and why, and the scatter between files against their stated errors.
+std::string IndexPage(std::span<const BatchEntry> entries,
+                      const report::Provenance& provenance = {});
 
 /// Returns the JSON of an entry's fit as `mindahl fit --json` writes it; "" where there is none.
 std::string FitJson(const BatchEntry& entry);

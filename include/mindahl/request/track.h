@@ -14,11 +14,12 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
+#include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/io/record_stream.h"
+#include "mindahl/report/page.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
@@ -140,9 +141,18 @@ std::string ToJson(const TrackedTest& test,
 std::string ToText(const TrackedTest& test,
                    const std::vector<campaign::CourseDescription>& described);
 
-/// Returns what the page and the figure of the test show, likewise.
-campaign::TestSummary SummaryOf(const TrackedTest& test,
-                                const std::vector<campaign::CourseDescription>& described);
+/// Returns the changes of all quantities, one sentence each.
+std::vector<std::string> Changes(const TrackedTest& test,
+                                 const std::vector<campaign::CourseDescription>& described);
+
+/// Returns the page of the test, as report::ToPage() makes one of a fit.
+std::string ToPage(const TrackedTest& test,
+                   const std::vector<campaign::CourseDescription>& described,
+                   const report::Provenance& provenance = {});
+
+/// Returns the time histories, one below the other.
+/// @throws InvalidArgument where none has two cycles
+io::Plot ToPlot(const TrackedTest& test, const std::vector<campaign::CourseDescription>& described);
 
 /// Collects the answers for several separate tests in one table.
 class SeparateTests {

@@ -1,0 +1,77 @@
+#include "mindahl/campaign/evolution.h"
+
+#include "support/prelude.h"
+
+namespace mindahl::campaign::evolution_test {
+namespace {
+
+/// Falls by a tenth after its 60th cycle.
+Evolution Step(bool has_errors) {
+  Evolution evolution{.name = "sigma", .unit = "N/m", .has_errors = has_errors};
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
+    const double ripple = cycle % 2 == 0 ? 1e5 : -1e5;
+    evolution.course.Add(cycle, (cycle <= 60 ? 5e7 : 4.5e7) + ripple, 1 / (2e5 * 2e5));
+  }
+  evolution.description = FindChanges(evolution.course);
+  return evolution;
+}
+
+TEST(Evolution, DrawsTimeHistoryBandAndChange) {
+  const std::vector<Evolution> evolutions = {Step(/*has_errors=*/true)};
+  const std::vector<io::PlotPanel> panels = EvolutionPanels(evolutions);
+  ASSERT_THAT(panels, SizeIs(1));
+  EXPECT_EQ(panels[0].y_label, "sigma [N/µm]");
+  const io::PlotSeries& course = panels[0].series[0];
+  ASSERT_THAT(course.x, SizeIs(100));
+  constexpr double kQuantile95 = 1.959963984540054;
+  constexpr double kRounding = 1e-9;
+  EXPECT_NEAR(course.upper[9] - course.y[9], kQuantile95 * 0.2, kRounding);
+  EXPECT_NEAR(course.y[9], 50.1, kRounding);
+  ASSERT_THAT(panels[0].marks, SizeIs(1));
+  EXPECT_EQ(panels[0].marks[0].x, 61);
+  EXPECT_THAT(panels[0].marks[0].label, HasSubstr("step"));
+}
+
+TEST(Evolution, WithoutErrorsHasTheLeastAndGreatestOfItsCyclesForABand) {
+  Evolution evolution{.name = "half_gap", .unit = "N"};
+  // Two bins' worth more than there are bins: each then stands for two cycles.
+  for (std::size_t cycle = 1; cycle <= 2 * Course::kMostBins; ++cycle) {
+    evolution.course.Add(cycle, cycle % 2 == 0 ? 11.0 : 10.0);
+  }
+  evolution.description = FindChanges(evolution.course);
+  const std::vector<Evolution> evolutions = {evolution};
+  const io::PlotSeries course = EvolutionPanels(evolutions)[0].series[0];
+  ASSERT_THAT(course.x, SizeIs(Course::kMostBins));
+  for (std::size_t k = 0; k < course.x.size(); ++k) {
+    EXPECT_EQ(course.lower[k], 10.0);
+    EXPECT_EQ(course.upper[k], 11.0);
+  }
+}
+
+TEST(Evolution, HasTheBandOfOneCycleWhereAPointStandsForTwo) {
+  constexpr double kError = 2e5;
+  Evolution evolution{.name = "sigma", .unit = "N/m", .has_errors = true};
+  for (std::size_t cycle = 1; cycle <= 2 * Course::kMostBins; ++cycle) {
+    evolution.course.Add(cycle, 5e7, 1 / (kError * kError));
+  }
+  const std::vector<Evolution> evolutions = {evolution};
+  const io::PlotSeries course = EvolutionPanels(evolutions)[0].series[0];
+  ASSERT_THAT(course.x, SizeIs(Course::kMostBins));
+  constexpr double kQuantile95 = 1.959963984540054;
+  constexpr double kRounding = 1e-9;
+  for (std::size_t k = 0; k < course.x.size(); ++k) {  // [N/µm]
+    EXPECT_NEAR(course.upper[k] - course.y[k], kQuantile95 * 1e-6 * kError, kRounding);
+    EXPECT_NEAR(course.y[k] - course.lower[k], kQuantile95 * 1e-6 * kError, kRounding);
+  }
+}
+
+TEST(Evolution, OfOneCycleIsNoPicture) {
+  Evolution evolution{.name = "sigma", .unit = "N/m"};
+  evolution.course.Add(1, 5e7);
+  const std::vector<Evolution> evolutions = {evolution};
+  EXPECT_THAT(EvolutionPanels(evolutions), SizeIs(0));
+  EXPECT_THROW(EvolutionPlot(evolutions, "", ""), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::campaign::evolution_test
