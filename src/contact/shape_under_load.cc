@@ -245,20 +245,6 @@ ShapeUnderLoad FlatPunch(const Question& question) {
 
 }  // namespace
 
-double LoadExponentOf(ContactShape shape) {
-  switch (shape) {
-    case ContactShape::kSphere:
-      return 1.0 / 3.0;
-    case ContactShape::kCone:
-      return 0.5;
-    case ContactShape::kFlatPunch:
-      return 0.0;
-    case ContactShape::kRough:
-      break;
-  }
-  return 1.0;
-}
-
 ShapeUnderLoad IdentifyShape(ContactShape shape, const UncertainValue& stiffness,
                              const KnownContact& known) {
   RequireFitted("tangential stiffness", "N/m", stiffness);

@@ -18,9 +18,6 @@ enum class ContactShape {
   kRough,      ///< p = 1: nominally flat surfaces that touch at their summits
 };
 
-/// Returns p [-] of a ∝ N^p.
-double LoadExponentOf(ContactShape shape);
-
 /// Holds the quantities that follow from a shape; empty where they do not.
 struct ShapeUnderLoad {
   std::optional<PropagatedValue> contact_radius;     ///< a [m] at the load; not of rough surfaces
