@@ -145,7 +145,6 @@ class TrackRun {
 
  private:
   void Track();
-  void ReadFiles();
   [[nodiscard]] bool EndsTheTestAlone() const;
   [[nodiscard]] std::string After() const;
   void Begin(campaign::TrackOptions& made);

@@ -118,7 +118,14 @@ std::vector<double> RateOf(std::span<const double> time, std::span<const double>
 }
 
 void RequireForces(const AddedForces& forces) {
+  RequireFinite("--viscous [N s/m]", forces.viscous);
   RequirePositive("--speed-exponent [-]", forces.speed_exponent);
+  RequireFinite("--inertia [kg]", forces.inertia);
+  RequireFinite("--plateau-slope [N/m]", forces.plateau_slope);
+  RequireFinite("--plateau-curvature [N/m²]", forces.plateau_curvature);
+  RequireFinite("--ripple-amplitude [N]", forces.ripple_amplitude);
+  RequireFinite("--ripple-phase-up [rad]", forces.ripple_phase_up);
+  RequireFinite("--ripple-phase-down [rad]", forces.ripple_phase_down);
   if (forces.ripple) RequirePositive("--ripple [m]", *forces.ripple);
   if (!forces.ripple && forces.ripple_amplitude != 0) {
     throw InputError("--ripple-amplitude needs a period: add --ripple PERIOD");
@@ -136,7 +143,7 @@ void RequireForces(const AddedForces& forces) {
 /// differences, as a fit takes them; positions count from the middle of the motion, in its half
 /// range where they have no unit.
 /// @throws InvalidArgument for a speed exponent or a period that is not > 0, an amplitude without a
-///   period, or a slip force that would not be positive over the motion
+///   period, a slip force that would not be positive over the motion, or a force that is not finite
 void AddForces(const AddedForces& forces, std::span<const double> time,
                std::span<const double> displacement, std::span<double> force) {
   RequireForces(forces);
@@ -169,6 +176,9 @@ void AddForces(const AddedForces& forces, std::span<const double> time,
       const double phase = direction > 0 ? forces.ripple_phase_up : forces.ripple_phase_down;
       force[i] += forces.ripple_amplitude *
                   std::cos(2 * std::numbers::pi * from_middle / *forces.ripple + phase);
+    }
+    if (!std::isfinite(force[i])) {
+      ThrowInvalid(fmt::format("force [N] of row {}", i + 1), force[i], "must be finite");
     }
   }
 }

@@ -170,6 +170,25 @@ TEST(Covariate, NotRequestedIsNamedAsCauseAndNotApplied) {
   EXPECT_EQ(FitOne(record, options).adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
+TEST(Covariate, FollowingTheContactIsAdvisedWithAKnownFactorBesideAnOutlierOfNoWeight) {
+  Record record = Loop();
+  std::vector<double> column = Wandering(record.size(), 0.0, 1.0);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    column[i] += record.force[i] / kLaw.slip_force;
+    record.force[i] += kPerBar * column[i];
+  }
+  record.covariates = {{.name = "p", .unit = "bar", .values = std::move(column)}};
+  Generator generator(12);
+  record = WithForceNoise(record, 0.01 * kLaw.slip_force, generator);
+  record.force[100] += kLaw.slip_force / 2;  // 10 of the standard deviations that p leaves
+  FitOptions options;
+  options.preparation.leave_out_glitches = false;
+  for (const Loss loss : {Loss::kNone, Loss::kTukey}) {
+    options.loss = loss;
+    EXPECT_EQ(FirstCause(FitOne(record, options)).option, "--covariate p=C");
+  }
+}
+
 TEST(Covariate, HasANameThatNeedsNoQuoting) {
   EXPECT_EQ(NameOfCovariate("6"), "covariate_6");
   EXPECT_EQ(NameOfCovariate("p"), "covariate_p");

@@ -295,6 +295,19 @@ TEST_F(LoggerFile, JoinsPiecesWhoseClockBeginsAnew) {
               HasSubstr("one of a and d has a time"));
 }
 
+TEST_F(LoggerFile, JoinedPiecesKeepTheCovariatesThatAllHave) {
+  const auto piece = [&](const std::string& text) {
+    return ReadRecord(directory_.Write("a", text));
+  };
+  const RecordFile joined =
+      Joined({piece("x [m],F [N],b,c\n0,1,5,7\n1,2,6,8\n"), piece("x [m],F [N],c\n2,3,9\n3,4,0\n")},
+             {"a", "b"});
+  ASSERT_EQ(joined.record.covariates.size(), 1u);
+  EXPECT_EQ(joined.record.covariates.front().name, "c");
+  EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(7, 8, 9, 0));
+  EXPECT_EQ(joined.covariates.size(), 1u);
+}
+
 // --- A logger's own file ------------------------------------------------------------------------
 
 TEST(MeasuredLogger, IsReadAsItIs) {

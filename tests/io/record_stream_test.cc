@@ -167,6 +167,36 @@ TEST_F(RecordStreamTest, FindsABrokenRowFarBeyondTheFirstPiece) {
       fmt::format(":{}:3: the row has 2 cells of 3: complete it or remove it", kManyRows + 2));
 }
 
+TEST_F(RecordStreamTest, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotAllow) {
+  constexpr std::size_t kRows = 20'000;  // 300 kB, more than the columns are judged by
+  struct Case {
+    const char* header;
+    const char* row;  // with the displacement in it
+    const char* broken;
+    const char* fault;
+  };
+  for (const Case& at :
+       {Case{"time,x,F", "12:00:00.5,{0},1", "noon,1,2", ":1: 'noon' is not a time of day"},
+        Case{"x;F", "{0};0,500000000000", "1;1.5", ":2: '1.5' has the decimal mark '.'"},
+        Case{"x [um],F [kN]", "{0},0.500000000000", "1,1e307",
+             ":2: force = 1e+307 kN is too large"}}) {
+    std::string text = fmt::format("{}\n", at.header);
+    for (std::size_t i = 0; i < kRows; ++i) {
+      text += fmt::format(fmt::runtime(at.row), i % 7) + '\n';
+    }
+    const std::filesystem::path path =
+        Write(text + at.broken + '\n' + fmt::format(fmt::runtime(at.row), 3));
+    RecordStream stream(path, {}, BrokenRows::kSkip);
+    Samples samples;
+    std::size_t rows = 0;
+    while (stream.Next(samples)) rows += samples.size();
+    EXPECT_EQ(rows, kRows + 1) << at.header;
+    EXPECT_EQ(stream.broken_rows(), 1u);
+    EXPECT_THAT(stream.first_broken_row(),
+                ::testing::HasSubstr(fmt::format("{}:{}{}", path.string(), kRows + 2, at.fault)));
+  }
+}
+
 TEST_F(RecordStreamTest, GivesTheSamplesBeforeARowThatItRefuses) {
   const std::filesystem::path path = Write("x,F\n0,.5\n1.5,1\n1,oops\n-2,1E5\n3,4\n");
   RecordStream stream(path, {}, BrokenRows::kRefuse);

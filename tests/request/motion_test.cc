@@ -75,6 +75,41 @@ std::string RefusalOf(const std::string& rows) {
   return "";
 }
 
+TEST(Simulate, RefusesAddedForcesThatAreNotFinite) {
+  const auto refusal_of = [](const AddedForces& forces) -> std::string {
+    SimulationRequest request;
+    request.forces = forces;
+    request.law.sigma = kLaw.tangential_stiffness;
+    request.law.slip_force = kLaw.slip_force;
+    request.drive.amplitude = 2e-6;
+    try {
+      Simulate(request);
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::vector<std::pair<std::string, double AddedForces::*>> factors = {
+      {"--viscous", &AddedForces::viscous},
+      {"--inertia", &AddedForces::inertia},
+      {"--plateau-slope", &AddedForces::plateau_slope},
+      {"--plateau-curvature", &AddedForces::plateau_curvature},
+      {"--ripple-amplitude", &AddedForces::ripple_amplitude},
+      {"--ripple-phase-up", &AddedForces::ripple_phase_up},
+      {"--ripple-phase-down", &AddedForces::ripple_phase_down}};
+  for (const auto& [option, factor] : factors) {
+    for (const double value : {std::nan(""), HUGE_VAL}) {
+      AddedForces forces{.ripple = 1e-6};
+      forces.*factor = value;
+      EXPECT_THAT(refusal_of(forces), ::testing::StartsWith(option + " ["));
+    }
+  }
+  // 2π·2 µm over the least double is beyond the largest: no cosine.
+  EXPECT_THAT(refusal_of({.ripple = 5e-324, .ripple_amplitude = 1.0}),
+              ::testing::StartsWith("force [N] of row "));
+  EXPECT_EQ(refusal_of({.ripple = 1e-6, .ripple_amplitude = 1.0}), "");
+}
+
 TEST(ReadImposedForce, IsWithinTheSlipForceOfEitherSign) {
   EXPECT_EQ(RefusalOf("0\n39.9\n-39.9\n"), "");
   EXPECT_THAT(RefusalOf("0\n39\n40\n"), HasSubstr("force.csv:4: a force of 40 N"));

@@ -90,9 +90,7 @@ inline constexpr auto kFindings = [] {
 /// The code of a finding: one of kFindings, which the compiler sees to.
 class FindingCode {
  public:
-  consteval FindingCode(const char* code) : row_(Find(code)) {
-    if (row_ == nullptr) throw "kFindings has no row for this code";
-  }
+  consteval FindingCode(const char* code) : row_(&Find(code)) {}
   constexpr explicit FindingCode(const FindingRow& row) : row_(&row) {}
 
   [[nodiscard]] constexpr const FindingRow& row() const { return *row_; }
@@ -102,11 +100,11 @@ class FindingCode {
   }
 
  private:
-  static constexpr const FindingRow* Find(std::string_view code) {
+  static constexpr const FindingRow& Find(std::string_view code) {
     for (const FindingRow& row : kFindings) {
-      if (row.code == code) return &row;
+      if (row.code == code) return row;
     }
-    return nullptr;
+    throw "kFindings has no row for this code";
   }
 
   const FindingRow* row_;

@@ -150,7 +150,8 @@ bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
   std::size_t begin = 0;
   for (const ScaledRecord& record : problem.data->records) {
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] == 0) continue;
+      // An outlier under a robust loss counts, and has no weight.
+      if (!(record.root_weight[i] > 0)) continue;
       const double missed =
           solution.residual.empty() ? 0.0 : solution.residual[begin + i] / record.root_weight[i];
       column.push_back(record.covariates[covariate][i]);
