@@ -65,7 +65,7 @@ struct PageDrawing {
   int width = 0;   ///< of the SVG's coordinates [px], where it is not scaled to the page
   int height = 0;  ///< [px]
   std::string elements;
-  std::vector<Entry> legend;  ///< of the series that have a label
+  std::vector<Entry> legend = {};  ///< of the series that have a label
 };
 
 /// Draws a panel for a page. At most 6000 points are drawn, evenly over the series, of which each
