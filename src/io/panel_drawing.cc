@@ -522,7 +522,8 @@ PageDrawing DrawForPage(const PlotPanel& panel, std::string_view name) {
   const double axes_height = std::round(kWidth / 2.0 * panel.height);
   PageDrawing drawing{.width = kWidth,
                       .height = static_cast<int>(kAboveAxes + axes_height + kBelowAxes),
-                      .elements = DrawPanel(panel, kWidth, axes_height, kMostPoints)};
+                      .elements = DrawPanel(panel, kWidth, axes_height, kMostPoints),
+                      .legend = {}};
   const std::vector<SeriesLook> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const PlotSeries& series = panel.series[k];

@@ -486,7 +486,7 @@ TEST_F(TrackCommand, DrawsNoBandAroundFixedParameters) {
                 .status,
             0);
   const std::string page = ContentOf(Path("held.html"));
-  const std::string figure = page.substr(page.find("<h3>alpha"));
+  const std::string figure = page.substr(page.find("-title\">alpha"));
   const std::string alpha = figure.substr(0, figure.find("</figure>"));
   EXPECT_EQ(alpha.find("95 % of one"), std::string::npos);
   EXPECT_NE(page.find("95 % of one"), std::string::npos);
