@@ -32,6 +32,13 @@ std::string Percent(double error) {
   return std::abs(error) < kRounding ? "0 %" : fmt::format("{:.3g} %", 100 * error);
 }
 
+/// Writes the errors of a loop; an energy has none where the contact loses nothing.
+std::string ErrorsInWords(const LoopError& error) {
+  return fmt::format(
+      "force {} of T*, energy {}", Percent(error.force),
+      std::isfinite(error.energy) ? Percent(error.energy) : "lost where the contact loses none");
+}
+
 }  // namespace
 
 ConvertedContact MakeConversion(const ConversionRequest& request) {
@@ -106,13 +113,10 @@ std::string ToText(const ConvertedContact& converted) {
                           elements->slip_force[j]);
     }
   }
-  text +=
-      fmt::format("\nerror at the amplitude: force {} of T*, energy {}\n",
-                  Percent(conversion.at_amplitude.force), Percent(conversion.at_amplitude.energy));
+  text += fmt::format("\nerror at the amplitude: {}\n", ErrorsInWords(conversion.at_amplitude));
   if (options.range) {
-    text += fmt::format("largest from {:.4g} to {:.4g} m: force {} of T*, energy {}\n",
-                        options.range->lower, options.range->upper,
-                        Percent(conversion.largest.force), Percent(conversion.largest.energy));
+    text += fmt::format("largest from {:.4g} to {:.4g} m: {}\n", options.range->lower,
+                        options.range->upper, ErrorsInWords(conversion.largest));
   }
   if (!conversion.within) {
     return text + fmt::format("not within {} at the amplitude\n", Percent(options.tolerance));

@@ -71,8 +71,8 @@ void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
     fit.terms.push_back(name);
     return;
   }
-  (term.positive ? RequirePositive : RequireFinite)(fmt::format("{} [{}]", term.option, term.unit),
-                                                    *asked.value);
+  (term.must_be_positive() ? RequirePositive : RequireFinite)(
+      fmt::format("{} [{}]", term.option, term.unit), *asked.value);
   if (asked.standard_uncertainty && !fit.fixed.contains(name)) {
     fit.terms.push_back(name);
     fit.priors[name] = {*asked.value, *asked.standard_uncertainty};

@@ -51,6 +51,7 @@ const std::vector<Rule> kRules = {
      And(kNoNumber, {"-1", "0", ""})},
     {"fit", {"--time-window", "--load-window", "--cycles", "--samples"}, kRange},
     {"fit", {"--fix", "--start"}, kAssignment},
+    {"fit", {"--speed-exponent", "--ripple"}, {"nan", "text", "1:", "-1", "0", "1e999", ""}},
     {"fit", {"--viscous", "--lag"}, {"nan", "text", "1:", "1,5", "1e999", ""}},
     {"simulate",
      {"--sigma", "--slip-force", "--lambda", "--cycles", "--frequency", "--tolerance",

@@ -350,6 +350,29 @@ TEST(AddedForces, WhatShapesAColumnNeedsIt) {
   }
 }
 
+TEST(AddedForces, ExponentsMustBePositiveAndAPeriodNotBeyondRounding) {
+  const std::vector<std::pair<std::vector<std::string>, double>> refused = {
+      {{"speed_exponent", "viscous"}, 0.0},
+      {{"speed_exponent", "viscous"}, -1e308},
+      {{"slip_speed_exponent", "slip_speed"}, -0.5},
+      {{"drag_exponent", "drag_fraction"}, -1.0},
+      {{"ripple_period", "ripple_cosine_up"}, 1e-320},
+      {{"ripple_period", "ripple_cosine_up"}, 1.9e-9 * kReach}};
+  const Record record = Loop();
+  for (const auto& [terms, value] : refused) {
+    FitOptions options;
+    options.terms = terms;
+    options.fixed[terms.front()] = value;
+    try {
+      FitOne(record, options);
+      ADD_FAILURE() << terms.front() << " = " << value << " is accepted";
+    } catch (const InvalidArgument& error) {
+      EXPECT_THAT(error.what(), ::testing::StartsWith(terms.front() + " ["));
+      EXPECT_THAT(error.what(), HasSubstr("must be "));
+    }
+  }
+}
+
 TEST(AddedForces, FactorOfTheSpeedNeedsItsExponentAndTheExponentItsFactor) {
   for (const char* alone :
        {"slip_speed", "slip_speed_exponent", "drag_fraction", "drag_exponent"}) {

@@ -1,5 +1,6 @@
 #include "mindahl/request/conversion.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace mindahl::request::conversion_test {
@@ -22,6 +23,16 @@ TEST(MakeConversion, RangesToWhereItIsAskedAndElseEndsAtTheAmplitude) {
   ASSERT_TRUE(below);
   EXPECT_EQ(below->lower, 2e-7);
   EXPECT_EQ(below->upper, 1e-6);
+}
+
+TEST(MakeConversion, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
+  ConversionRequest request;
+  request.law = {.tangential_stiffness = 4e7, .shape_exponent = 0.0, .slip_force = 40.0};
+  request.to = "lugre";
+  request.options.amplitude = 5e-7;  // half of what Jenkins' element slips at
+  const std::string text = ToText(MakeConversion(request));
+  EXPECT_THAT(text, ::testing::HasSubstr("energy lost where the contact loses none\n"));
+  EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("inf")));
 }
 
 }  // namespace

@@ -90,6 +90,9 @@ struct Term {
   std::string_view option = {};          ///< command-line option that adds it; empty: none
   std::string_view argument = {};        ///< its argument; empty: a flag
   std::string_view help = {};
+
+  /// True if a value of zero or below is outside its domain, as of an exponent of the speed.
+  [[nodiscard]] constexpr bool must_be_positive() const { return positive || lowest > 0; }
 };
 
 /// Returns all parameters of a fit of `response`, in the order in which they are reported: the

@@ -100,8 +100,15 @@ namespace {
 /// A value from the user must be one that the model takes.
 void RequireInDomain(const Parameter& parameter, std::string_view name, double value) {
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
-  if (parameter.term->positive) {
+  if (parameter.term->must_be_positive()) {
     RequirePositive(quantity, value);
+    // Rounding errors would decide the phase of a shorter one.
+    const double shortest = 2e-9 * parameter.scale;
+    if (parameter.term->name == "ripple_period" && value < shortest) {
+      ThrowInvalid(
+          quantity, value,
+          fmt::format("must be at least {:.3g} m, 1e-9 of the displacement's range", shortest));
+    }
   } else if (parameter.term->name == "alpha" ||
              ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap) {
     RequireNonNegative(quantity, value);
@@ -486,8 +493,7 @@ void Parameters::ApplyOptions(const FitOptions& options, double prior_noise) {
     Parameter& parameter = Find(name);
     const bool positive = parameter.term->positive;
     RequireInDomain(parameter, name, interval.upper);
-    RequireInDomain(parameter, name,
-                    positive && interval.lower == 0.0 ? interval.upper : interval.lower);
+    RequireInDomain(parameter, name, interval.lower == 0.0 ? interval.upper : interval.lower);
     if (!(interval.lower < interval.upper)) {
       throw InvalidArgument(fmt::format("bounds {}:{} of {} are invalid: the first must be smaller",
                                         interval.lower, interval.upper, name));
