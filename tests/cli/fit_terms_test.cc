@@ -115,13 +115,27 @@ TEST_F(FitTerms, RigidRigIsNoParameter) {
 }
 
 TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
-  const json fit = Fit(InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7));
+  const std::vector<Sample> loop = InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7);
+  const json fit = Fit(loop, {"--terms", "none"});
   const json& mapping = fit["mapping"];
   // Of an exponent that is not identifiable nothing is tested.
   EXPECT_TRUE(mapping["likelihood_ratio_p_value"].is_null());
   // k shows in the curvature alone: a few per cent at a noise of 0.25 % of Tc.
   EXPECT_NEAR(mapping["tenable_with_rig_stiffness"].get<double>() / 8e7, 1, 0.15);
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
+  // No rig has a negative stiffness, and no contact a negative mass.
+  for (const json& cause : fit["adequacy"]["causes"]) {
+    EXPECT_FALSE(cause["code"] == "inertia" && cause["size"] < 0) << cause;
+  }
+
+  // By default the rig is found.
+  const json with_rig = Fit(loop);
+  EXPECT_THAT(with_rig["terms"]["added"], ElementsAre("rig_stiffness"));
+  for (const auto& [name, truth] : std::map<std::string, double>{
+           {"sigma", 4e7}, {"alpha", 1.0 / 3}, {"slip_force", 40.0}, {"rig_stiffness", 8e7}}) {
+    const json& interval = with_rig["parameters"][name]["ci95"];
+    EXPECT_TRUE(interval[0] <= truth && truth <= interval[1]) << name << interval;
+  }
 }
 
 TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheLikelihoodRatio) {

@@ -162,6 +162,15 @@ bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
   return FollowsContact(column, fitted_force);
 }
 
+/// True if no mass, gap or rig is such: it is negative. That of a rig that is fitted may be too
+/// stiff.
+bool IsUnphysical(const Problem& problem, const DepartureFit& fit) {
+  constexpr std::array<std::string_view, 3> kPositive = {"rig_in_series", "inertia", "backlash"};
+  const bool is_positive =
+      std::ranges::find(kPositive, Departures()[fit.departure].code) != kPositive.end();
+  return is_positive && fit.size < 0 && !problem.parameters.has_rig();
+}
+
 /// Returns the option to type: with the name of a covariate, quoted where it has blanks; of a
 /// column that follows the contact's force with a factor that has to be known.
 std::string OptionOf(const Problem& problem, const Solution& solution, const FitOptions& options,
@@ -171,10 +180,6 @@ std::string OptionOf(const Problem& problem, const Solution& solution, const Fit
     // In a fit of the displacement a drift is the displacement's.
     const bool is_of_force = departure.term == "force_drift";
     if (problem.data->is_forced() && is_of_force) return "";
-    // No mass and no gap is negative, nor a spring unless too much of one was taken off.
-    constexpr std::array<std::string_view, 3> kPositive = {"rig_in_series", "inertia", "backlash"};
-    const bool is_positive = std::ranges::find(kPositive, departure.code) != kPositive.end();
-    if (is_positive && fit.size < 0 && !problem.parameters.has_rig()) return "";
     return AcceptedOptions(problem, options, departure.option);
   }
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
@@ -354,6 +359,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
   adequacy.tried = test.fits.size();
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {
+    if (IsUnphysical(problem, fit)) continue;
     const Departure& departure = Departures()[fit.departure];
     Cause& cause = adequacy.causes.emplace_back(
         Cause{.code = departure.code,
