@@ -130,6 +130,20 @@ TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
   EXPECT_EQ(Count(Svg(plot), ">8</text>"), 0u);
 }
 
+TEST(Plot, LeavesRoomForBothHalvesOfTheOuterBars) {
+  const std::string svg = Svg(OnePanel({"", {1, 2, 3}, {1, 2, 1}, PlotStyle::kBars}));
+  const auto path_of = [&svg](const std::string& name) {
+    const std::size_t begin = svg.find(" d=\"", svg.find("class=\"" + name)) + 4;
+    return svg.substr(begin, svg.find('"', begin) - begin);
+  };
+  const std::string axis = path_of("axis");  // "M<left> <top>V<bottom>H<right>"
+  const double left = std::stod(axis.substr(1));
+  const double right = std::stod(axis.substr(axis.find('H') + 1));
+  const std::string bars = path_of("bars");
+  EXPECT_GT(std::stod(bars.substr(1)), left);
+  EXPECT_LT(std::stod(bars.substr(bars.rfind('H') + 1)), right);
+}
+
 TEST(Plot, LabelsLogarithmicAxesWithPowersOfTen) {
   Plot plot = OnePanel({"", {1e-6, 1e-3}, {2e-19, 5e-11}});
   plot.panels.front().log_x = true;

@@ -27,6 +27,16 @@ TEST(Json, HasTheNumbersOfTheFit) {
   EXPECT_EQ(fit["loop"]["amplitude"], testing::kMadeAmplitude);
 }
 
+TEST(InitialState, OfRecordsThatDifferIsMixedAndInTheTextThatOfEach) {
+  const loop::Record record = testing::MadeRecord(1e-6);
+  report::ReportInput input = testing::MadeInput({record, record}, 1e-6);
+  input.fit.initial_state = input.fit.records[0].initial_state = models::InitialState::kSteady;
+  input.fit.records[1].initial_state = models::InitialState::kVirgin;
+  const report::Report report = MakeReport(std::move(input));
+  EXPECT_EQ(json::parse(ToJson(report))["initial_state"], "mixed");
+  EXPECT_THAT(ToText(report), HasSubstr("steady, virgin initial state"));
+}
+
 TEST(Json, OfAnOpenIntervalNamesItsEnd) {
   report::ReportInput input = MadeInput();
   input.fit.parameters[2].upper95.reset();
