@@ -110,7 +110,8 @@ TEST(Discrepancy, ContainsTheGapOfAFurtherCycleAtTheMeanLoad) {
   const FitResult fit = FitUnderTwoLoads(record);
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const LoopFacts& facts = fit.records[0].facts;
-  ASSERT_TRUE(slip_force.includes_discrepancy && facts.half_gap_standard_deviation);
+  ASSERT_TRUE(slip_force.includes_discrepancy && slip_force.lower95 &&
+              facts.half_gap_standard_deviation);
   ASSERT_EQ(&fit.WidestRecord(), &fit.records[0]);
   const auto cycles = static_cast<double>(facts.steady_cycles);
   const double margin = StudentQuantile(cycles - 1, 0.95) * *facts.half_gap_standard_deviation *
