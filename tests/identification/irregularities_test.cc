@@ -119,6 +119,24 @@ TEST(StickSlip, IsNoneWhereTheForceRisesAsItDrops) {
   EXPECT_EQ(Find(Fitted(record), "stick_slip"), nullptr);
 }
 
+TEST(Ripple, HasItsPeriodBetweenThoseThatAreTriedFirst) {
+  // Strokes of 100 to and fro: frequencies are tried 0.005 apart, then a tenth of that.
+  constexpr double kFrequency = 0.0422;
+  std::vector<FittedSample> samples;
+  for (int stroke = 0; stroke < 4; ++stroke) {
+    for (int i = 0; i <= 100; ++i) {
+      const double x = stroke % 2 == 0 ? i : 100 - i;
+      samples.push_back({.displacement = x,
+                         .response = stroke % 2 == 0 ? 1.0 : -1.0,
+                         .residual = std::cos(2 * M_PI * kFrequency * x),
+                         .counts = true});
+    }
+  }
+  const auto fit = FindRipple(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(1 / fit->size, kFrequency, 0.0005);
+}
+
 TEST(HeavyTails, AreFoundWithTheirFractionAndTheRobustLoss) {
   constexpr std::size_t kReadings = 12;
   const Record record = WithStrayReadings(kReadings, 15 * kNoise, 3);
