@@ -303,7 +303,11 @@ void RequireNoColumns(const io::RecordColumns& columns) {
     }
     if (given.empty()) return;
     throw InputError(fmt::format("--{}{} {}: there is no record to read a column of: give --record",
-                                 option, choice.column.empty() ? "-unit" : "", given));
+                                 option,
+                                 choice.column.empty()     ? "-unit"
+                                 : option == "normal-load" ? "-column"
+                                                           : "",
+                                 given));
   };
   require(columns.displacement, "displacement");
   require(columns.force, "force");

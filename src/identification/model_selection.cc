@@ -291,17 +291,6 @@ void WeighCandidates(std::vector<ModelScore>& scores) {
   }
 }
 
-/// True if `other` predicts worse than `best` by a standard error of the difference or more.
-bool PredictsWorse(std::span<const double> other, std::span<const double> best,
-                   std::span<const Part> cycles, std::size_t folds, double rounding) {
-  if (other.empty() || best.empty()) return false;
-  std::vector<double> difference;
-  difference.reserve(cycles.size());
-  for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
-  const MeanOverParts mean = Mean(difference, cycles, folds);
-  return mean.mean > mean.standard_error + rounding * rounding;
-}
-
 void AddRemark(ModelScore& score, std::string_view remark) {
   if (!score.remark.empty()) score.remark += "; ";
   score.remark += remark;

@@ -148,6 +148,22 @@ MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, 
   return result;
 }
 
+double ChanceOfMean(const MeanOverParts& mean, std::size_t parts) {
+  const double t = mean.standard_error > 0 ? mean.mean / mean.standard_error : 0.0;
+  const double beyond = PValueOfF(t * t, static_cast<double>(parts - 1)) / 2;
+  return t > 0 ? beyond : 1 - beyond;
+}
+
+bool PredictsWorse(std::span<const double> other, std::span<const double> best,
+                   std::span<const Part> cycles, std::size_t folds, double rounding) {
+  if (other.empty() || best.empty()) return false;
+  std::vector<double> difference;
+  difference.reserve(cycles.size());
+  for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
+  const MeanOverParts mean = Mean(difference, cycles, folds);
+  return mean.mean > mean.standard_error + rounding * rounding;
+}
+
 namespace {
 
 /// Takes a column of unit norm for one that the others have where less of its square is its own.

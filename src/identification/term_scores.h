@@ -80,6 +80,14 @@ std::vector<double> PredictParts(std::span<const loop::RecordView> records, FitO
 /// variance of a mean over K folds, 1/K, the ratio of predicted to fitted samples, 1/(K − 1).
 MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, std::size_t folds);
 
+/// Returns the probability that a mean of zero is found as large or larger, by Student's t.
+double ChanceOfMean(const MeanOverParts& mean, std::size_t parts);
+
+/// True if `other` predicts the parts worse than `best` by more than a standard error of the
+/// difference and what is rounding.
+bool PredictsWorse(std::span<const double> other, std::span<const double> best,
+                   std::span<const Part> cycles, std::size_t folds, double rounding);
+
 /// Predicts, to first order, a fit with some more terms.
 struct TermScore {
   double rms = 0.0;                 // of the samples that count [N]

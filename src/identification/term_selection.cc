@@ -411,13 +411,7 @@ void Selection::Judge(const TermScore& base, const TermScore& trial,
   }
   const MeanOverParts gain = Mean(log_ratio, parts_, folds_);
   considered.gain = 1 - std::exp(-gain.mean);
-  if (trial.p_value) {
-    considered.p_value = *trial.p_value;
-    return;
-  }
-  const double t = gain.standard_error > 0 ? gain.mean / gain.standard_error : 0.0;
-  const double beyond = PValueOfF(t * t, static_cast<double>(parts_.size() - 1)) / 2;
-  considered.p_value = t > 0 ? beyond : 1 - beyond;
+  considered.p_value = trial.p_value ? *trial.p_value : ChanceOfMean(gain, parts_.size());
 }
 
 /// Weighs fits by the independent samples that the judged one has.

@@ -162,6 +162,11 @@ TEST_F(SeparateTests, HaveTheRowsOfEachTestTrackedAlone) {
     }
     if (single.status == kDone) continue;
     EXPECT_THAT(rows[row], ::testing::StartsWith(file + ","));
+    const std::size_t open = rows[row].find('"');  // the fault is quoted where it has a comma
+    const std::string quoted =
+        open == std::string::npos ? "" : rows[row].substr(open, rows[row].rfind('"') - open);
+    EXPECT_EQ(std::ranges::count(rows[row], ',') - std::ranges::count(quoted, ','),
+              std::ranges::count(rows[0], ','));
     EXPECT_THAT(rows[row++], HasSubstr(file == Path("absent") ? "cannot read" : "nothing"));
   }
   EXPECT_EQ(row, rows.size());

@@ -38,6 +38,15 @@ TEST(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
   EXPECT_THAT(outcome.out, HasSubstr("no amplitude reaches it with 3 cycles"));
 }
 
+TEST(PlanCommand, ReadsNoColumnWithoutARecord) {
+  for (const char* option : {"--displacement", "--force", "--time", "--normal-load-column"}) {
+    const Outcome outcome = RunPlan({"--force-noise", "0.4", option, "1"});
+    EXPECT_EQ(outcome.status, kBadInput) << option;
+    EXPECT_THAT(outcome.err,
+                HasSubstr(std::string(option) + " 1: there is no record to read a column of"));
+  }
+}
+
 TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
   const TemporaryDirectory directory;
   const std::string clean = directory.path() / "clean.csv";

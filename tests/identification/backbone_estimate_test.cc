@@ -157,6 +157,27 @@ TEST(BackboneEstimate, IsTheLawWhereThatMadeTheRecord) {
   }
 }
 
+TEST(BackboneEstimate, LeavesOutReadingsThatDoNotCount) {
+  // Of the readings on one side every other is off by 3 Tc, and the zero of the force is off too.
+  constexpr double kDiscretisation = 0.004;  // as above
+  const models::BranchLaw law{4e7, 1.0 / 3, 40.0};
+  const History displacement = Cycling(Wave::kSine, 1.2e-6, 3, 200);
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
+  FitOptions options;
+  std::vector<bool>& out = options.preparation.held_out.emplace_back(record.size());
+  for (double& force : record.force) force += 10;
+  for (std::size_t i = 0; i < record.size(); i += 2) {
+    if (record.displacement[i] < 0) continue;
+    out[i] = true;
+    record.force[i] += 3 * law.slip_force;
+  }
+  const auto [fit, backbone] = Estimate(record, options);
+  for (const BackbonePoint& point : backbone.points) {
+    EXPECT_NEAR(point.force.value, models::BackboneForce(law, point.displacement),
+                kDiscretisation * law.slip_force);
+  }
+}
+
 TEST(BackboneEstimate, IsConcaveAndRises) {
   Generator generator(13);
   const auto [fit, backbone] = Estimate(

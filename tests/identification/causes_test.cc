@@ -119,6 +119,37 @@ TEST(LagBeyondKnee, IsDeniedFromTheDurationOfTheStickOn) {
   }
 }
 
+TEST(TryLag, LooksForNoLongerOneInEitherDirection) {
+  // 7 samples of 80 a cycle, and no more than a twentieth of a cycle is looked for.
+  constexpr int kPerCycle = 80;
+  constexpr std::size_t kShift = 7;
+  const std::vector<double> displacement =
+      testing::Cycling(testing::Wave::kSine, kReach, 5.0, kPerCycle);
+  const std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, displacement);
+  for (const bool is_late : {true, false}) {
+    Record record;
+    for (std::size_t i = kShift; i + kShift < displacement.size(); ++i) {
+      record.displacement.push_back(displacement[i]);
+      record.force.push_back(force[is_late ? i - kShift : i + kShift]);
+    }
+    FitOptions options;
+    options.initial_state = InitialState::kSteady;
+    Stages stages(record, options, InitialState::kSteady);
+    Solution solution;
+    solution.theta = stages.ThetaOf(Fitted(record, options));
+    AdequacyTest test;
+    test.effective_samples = test.degrees_of_freedom = static_cast<double>(record.size());
+    test.noise = 1.0;
+    test.fits.push_back({.departure = 0});
+    TryLag(stages.problem, solution, SolverOptionsOf(options), stages.buffers, test);
+    EXPECT_GT(test.fits[0].explains, 0.0);
+    const double longest = 0.05 * stages.data.records[0].units.cycle;
+    const double share = test.fits[0].size / (is_late ? longest : -longest);
+    EXPECT_GT(share, 0.9);
+    EXPECT_LE(share, 1 + 1e-9);
+  }
+}
+
 // --- position
 
 TEST(FirstCause, OfASlipForceThatGrowsAlongTheStrokeIsThat) {

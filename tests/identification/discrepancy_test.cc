@@ -127,6 +127,35 @@ TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
   EXPECT_LE(*slip_force.lower95, *facts.half_gap - margin);
 }
 
+/// A record, and the same with three times the forces under three times the load: of the mean load,
+/// at which σ and Tc are given, the first has a half.
+FitResult FitUnderTwoLoads(const Record& record) {
+  Generator generator(1);
+  std::vector<Record> records(2, WithForceNoise(record, kNoise, generator));
+  for (double& force : records[1].force) force *= 3;
+  FitOptions options;
+  options.normal_loads = {50, 150};
+  options.fixed = {{"load_exponent", 1.0}};
+  return Fit(records, options, Depth::kFull);
+}
+
+TEST(Discrepancy, ContainsTheGapOfAFurtherCycleAtTheMeanLoad) {
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= (i / 300) % 2 == 0 ? 1.15 : 0.85;
+  }
+  const FitResult fit = FitUnderTwoLoads(record);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  const LoopFacts& facts = fit.records[0].facts;
+  ASSERT_TRUE(slip_force.includes_discrepancy && slip_force.lower95 &&
+              facts.half_gap_standard_deviation);
+  ASSERT_EQ(&fit.WidestRecord(), &fit.records[0]);
+  const auto cycles = static_cast<double>(facts.steady_cycles);
+  const double margin = StudentQuantile(cycles - 1, 0.95) * *facts.half_gap_standard_deviation *
+                        std::sqrt(1 + 1 / cycles);
+  EXPECT_LE(*slip_force.lower95, (*facts.half_gap - margin) / 0.5);
+}
+
 /// A record whose force grows towards the ends of the stroke, fitted as of a virgin contact.
 struct Bulging {
   Bulging() {
@@ -224,16 +253,30 @@ TEST(Discrepancy, LoopThatDoesNotSlideKeepsItsVerdictOnTheSlipForce) {
   EXPECT_GE(*slip_force.lower95, 0.99 * fit.PeakForce()) << "a force that was carried";
 }
 
-TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
-  // A force of the speed by a power rounds the knee, and the law's exponent grows until Tc is an
-  // asymptote.
+/// A force of the speed by a power rounds the knee, and the law's exponent grows until Tc is an
+/// asymptote.
+Record OfSpeed() {
   Record record = Loop();
   for (std::size_t i = 0; i < record.size(); ++i) {
     const double phase = 2 * std::acos(-1.0) * static_cast<double>(i) / 300;
     record.force[i] +=
         60.0 * std::copysign(std::pow(std::abs(std::cos(phase)), 0.5), std::cos(phase));
   }
-  const FitResult fit = FitNoisy(record);
+  return record;
+}
+
+TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlidesUnderHalfTheMeanLoad) {
+  const FitResult fit = FitUnderTwoLoads(OfSpeed());
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  ASSERT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  ASSERT_EQ(&fit.WidestRecord(), &fit.records[0]);
+  const double peak = fit.records[0].facts.peak_force / 0.5;
+  EXPECT_LE(slip_force.value, peak / 0.9);
+  EXPECT_GE(slip_force.value, 0.9 * *fit.records[0].facts.half_gap / 0.5);
+}
+
+TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
+  const FitResult fit = FitNoisy(OfSpeed());
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   ASSERT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   const double peak = fit.WidestRecord().facts.peak_force;

@@ -18,6 +18,24 @@ TEST(MeanOverParts, HasTheErrorOfWeightedPartsOfFoldsThatShareTheirSamples) {
   EXPECT_NEAR(mean.standard_error, std::sqrt(squares * 3 / 2 * 2.5), kRounding);
 }
 
+TEST(PredictsWorse, IsByMoreThanAStandardErrorOfTheDifference) {
+  // As above, 3.75 with an error of √(446/256·15/4) = 2.556; then 2.25 with the same error.
+  const std::vector<Part> parts = {{.samples = 1}, {.samples = 1}, {.samples = 2}};
+  const std::vector<double> best = {7, 5, 3};
+  EXPECT_TRUE(PredictsWorse(std::vector<double>{8, 7, 9}, best, parts, 3, 0.0));
+  EXPECT_FALSE(PredictsWorse(std::vector<double>{6.5, 5.5, 7.5}, best, parts, 3, 0.0));
+  EXPECT_FALSE(PredictsWorse(std::vector<double>{8, 7, 9}, best, parts, 3, 1.5)) << "rounding";
+  EXPECT_FALSE(PredictsWorse({}, best, parts, 3, 0.0)) << "nothing was predicted";
+}
+
+TEST(MeanOverParts, IsAboveZeroByChanceAsStudentsDistributionHasIt) {
+  // Of four degrees of freedom the upper 2.5 % begin at 2.7764451.
+  EXPECT_NEAR(ChanceOfMean({.mean = 2.7764451 * 3, .standard_error = 3}, 5), 0.025, 1e-8);
+  EXPECT_NEAR(ChanceOfMean({.mean = -2.7764451 * 3, .standard_error = 3}, 5), 0.975, 1e-8);
+  EXPECT_EQ(ChanceOfMean({.mean = 1, .standard_error = 0}, 5), 0.5)
+      << "parts that agree to the bit";
+}
+
 /// A record that turns at 10, 20, … 70, of which the samples from one on count.
 FitResult FitThatTurns() {
   FitResult fit;

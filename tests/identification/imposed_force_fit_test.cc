@@ -203,6 +203,22 @@ TEST(ImposedForceFit, LateForceIsNamedAsACause) {
   }));
 }
 
+TEST(ImposedForceFit, GapIsACauseOfItsWidth) {
+  // From the first turn on half of the gap is passed in either direction.
+  Record loop = ForcedLoop(LawOf(0.4));
+  const double gap = 0.03 * AmplitudeOf(loop);
+  for (std::size_t i = kSamplesPerCycle / 4 + 1; i < loop.size(); ++i) {
+    loop.displacement[i] += (loop.force[i] > loop.force[i - 1] ? 0.5 : -0.5) * gap;
+  }
+  Generator generator(5);
+  const FitResult fit = FitOne(WithDisplacementNoise(loop, 0.002, generator), OfDisplacement());
+  const auto& causes = fit.adequacy.causes;
+  const auto backlash = std::ranges::find(causes, "backlash", &Cause::code);
+  ASSERT_NE(backlash, causes.end());
+  // By first order in a gap of 3 % of the way.
+  EXPECT_NEAR(backlash->size / gap, 1.0, 0.1);
+}
+
 TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   Generator generator(8);
   const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3)), 0.003, generator);

@@ -83,6 +83,32 @@ TEST(StickSlip, IsFoundWithItsDrop) {
   EXPECT_EQ(fit.adequacy.causes.front().code, "stick_slip") << "the best";
 }
 
+TEST(StickSlip, ExplainsTheMeanAndTheSlopeOfEachTooth) {
+  // Teeth of eight samples about these residuals, along which the force grows, and readings off by
+  // a hundredth in a pattern without mean or slope: that is what is left.
+  constexpr std::array<double, 8> kMeans = {0.2, -0.1, 0.1, -0.2, 0.0, 0.2, -0.2, 0.0};
+  constexpr std::array<double, 8> kPattern = {1, -1, -1, 1, 1, -1, -1, 1};
+  constexpr double kSlope = -0.1;  // of model − measured, a sample
+  constexpr double kReadings = 0.01;
+  std::vector<FittedSample> samples;
+  double before = 0.0;
+  for (const double mean : kMeans) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double along = static_cast<double>(i) - 3.5;
+      samples.push_back({.displacement = static_cast<double>(samples.size()),
+                         .response = 1.0,
+                         .residual = mean + kSlope * along + kReadings * kPattern[i],
+                         .counts = true});
+      before += samples.back().residual * samples.back().residual;
+    }
+  }
+  const auto fit = FindStickSlip(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->explains, 1 - 64 * kReadings * kReadings / before, 1e-12);
+  // Of the changes of the means, −0.3, 0.2, −0.3, 0.2, 0.2, −0.4 and 0.2, beside eight slopes.
+  EXPECT_NEAR(fit->size, 0.2 - 8 * kSlope, 1e-12);
+}
+
 TEST(StickSlip, IsNoneWhereTheForceRisesAsItDrops) {
   // Square teeth: of their edges as many rise as drop.
   Record record = Noisy(2);
@@ -91,6 +117,24 @@ TEST(StickSlip, IsNoneWhereTheForceRisesAsItDrops) {
     if (slides && i / 8 % 2 == 0) record.force[i] += 0.1 * kLaw.slip_force;
   }
   EXPECT_EQ(Find(Fitted(record), "stick_slip"), nullptr);
+}
+
+TEST(Ripple, HasItsPeriodBetweenThoseThatAreTriedFirst) {
+  // Strokes of 100 to and fro: frequencies are tried 0.005 apart, then a tenth of that.
+  constexpr double kFrequency = 0.0422;
+  std::vector<FittedSample> samples;
+  for (int stroke = 0; stroke < 4; ++stroke) {
+    for (int i = 0; i <= 100; ++i) {
+      const double x = stroke % 2 == 0 ? i : 100 - i;
+      samples.push_back({.displacement = x,
+                         .response = stroke % 2 == 0 ? 1.0 : -1.0,
+                         .residual = std::cos(2 * M_PI * kFrequency * x),
+                         .counts = true});
+    }
+  }
+  const auto fit = FindRipple(samples);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(1 / fit->size, kFrequency, 0.0005);
 }
 
 TEST(HeavyTails, AreFoundWithTheirFractionAndTheRobustLoss) {

@@ -253,6 +253,13 @@ TEST(Profile, IsAskedForAtABoundAndNotForAHeldSlipForce) {
     EXPECT_TRUE(needed()) << p;
     best.side[p] = BoundSide::kInside;
   }
+  // However good the parabola is at its ends, it is not trusted where it is wide.
+  Thresholds narrow;
+  narrow.parabola_error = 1e-12;
+  narrow.parabola_departure = 0.999;
+  stages.options.thresholds = narrow;
+  EXPECT_TRUE(needed());
+  stages.options.thresholds = {};
   stages.problem.parameters.Fix(kSlipForce, best.theta[kSlipForce]);
   EXPECT_FALSE(needed());
 }

@@ -113,6 +113,23 @@ TEST(SimplerLaws, MisfitAndLikelihoodRatioFollowFromTheResiduals) {
   }
 }
 
+TEST(SimplerLaws, AreComparedByTheIndependentSamples) {
+  // Noise with a correlation of 0.8 from one sample to the next: a ninth of them are independent.
+  loop::Record record = Loop("mindlin", kMindlin, 1.2, 0.0);
+  Generator generator(5);
+  double state = testing::Normal(generator);
+  for (double& force : record.force) {
+    force += state;
+    state = 0.8 * state + 0.6 * testing::Normal(generator);
+  }
+  const SimplerLaws laws = CompareSimplerLaws(record);
+  ASSERT_LT(laws.effective_samples, 0.4 * static_cast<double>(laws.samples));
+  const LawScore& best = laws.scores[laws.best];
+  const LawScore& jenkins = Find(laws, "jenkins");
+  const double ratio = 2 * laws.effective_samples * std::log(jenkins.rms / best.rms);
+  EXPECT_NEAR(jenkins.likelihood_ratio / ratio, 1, 1e-9);
+}
+
 TEST(SimplerLaws, ChanceOfTwoParametersLessIsThatOfTwoDegreesOfFreedom) {
   // A tenth of gross slip: 2 ln Λ of the spring is a hundred or two, of which e^{−x/2} has a value.
   const SimplerLaws laws = CompareSimplerLaws(Loop("mindlin", kMindlin, 0.1, 0.08));

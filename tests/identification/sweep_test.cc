@@ -187,6 +187,23 @@ TEST(FitSweep, RefusesWhatIsNoSweep) {
                InvalidArgument);
 }
 
+TEST(FitSweep, ErrorsOfAKnownNoiseAreThoseOfAMean) {
+  // Far from slip every stiffness is σ, so σ is a mean of n readings with the noise s.
+  constexpr int kPoints = 20;
+  constexpr double kStiffnessNoise = 3e5;
+  const double error = kStiffnessNoise / std::sqrt(kPoints);
+  SweepOptions options{.over_force = true, .response_noise = kStiffnessNoise};
+  options.fixed = {{"alpha", 1.0 / 3}, {"slip_force", kSlipForce}};
+  const std::vector<double> forces = Forces(1e-6, 2e-6, kPoints);
+  const SweepFit fit = FitSweep(forces, Responses(options, 1.0 / 3, forces), options);
+  const ParameterEstimate& sigma = fit.parameter("sigma");
+  ASSERT_TRUE(sigma.standard_error && sigma.lower95 && sigma.upper95);
+  constexpr double kSearch = 1e-3;  // of an error, to which ends of intervals are found
+  EXPECT_NEAR(*sigma.standard_error, error, kSearch * error);
+  EXPECT_NEAR(*sigma.lower95, kSigma - 1.959964 * error, kSearch * error);
+  EXPECT_NEAR(*sigma.upper95, kSigma + 1.959964 * error, kSearch * error);
+}
+
 TEST(FitSweep, LeastTcOfForcesThatWereReachedIsALimitOfTheLaw) {
   // Up to 59.9 N of 60: a smaller alpha wants a Tc below what was carried, which holds it.
   const SweepOptions options{.over_force = true};

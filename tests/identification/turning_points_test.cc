@@ -192,6 +192,31 @@ TEST(TurningPoints, OfMoreThanTwoHundredReversalsAreFitted) {
   EXPECT_NEAR(fit.law.slip_force / kLaw.slip_force, 1.0, testing::kNoiseFree);
 }
 
+TEST(TurningPoints, PayForAParameterEach) {
+  // Noise alone gains some 2 ln Λ = 6 by six overshoots, and is to gain 12: the samples, of which
+  // no more are independent, bound what it has gained.
+  Thresholds anything;
+  anything.turning_point_chance = 0.9;
+  const auto displacement = Cycling(Wave::kTriangle, kReach, 3.0, 80);
+  const auto force = Respond(Model("mindlin-dahl"), kLaw, displacement);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Generator generator(seed);
+    Record record = MakeRecord(displacement, force);
+    for (double& value : record.force) value += 0.5 * Normal(generator);
+    FitOptions options;
+    options.initial_state = InitialState::kVirgin;
+    Stages stages(record, options);
+    const Solution best = stages.Solve();
+    ASSERT_EQ(stages.data.records[0].reversals.size(), 6U);
+    stages.options.thresholds = anything;
+    const auto turned =
+        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers);
+    if (!turned || !turned->records->data.turns_are_fitted) continue;
+    const auto samples = static_cast<double>(stages.data.counted);
+    EXPECT_GT(samples * std::log(best.sum_of_squares / turned->solution.sum_of_squares), 12.0);
+  }
+}
+
 TEST(TurningPoints, NeedTwoSamplesThatCountAParameter) {
   // Six reversals and five parameters: 22 samples that count at the least. The others still move.
   const auto displacement = Cycling(Wave::kSine, kReach, 3.0, 160);

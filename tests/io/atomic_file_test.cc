@@ -4,6 +4,7 @@
 #include <csignal>
 #include <thread>
 
+#include "core/platform.h"
 #include "mindahl/io/output_file.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
@@ -23,6 +24,17 @@ TEST(AtomicFile, WritesTextAndBytes) {
   WriteFileAtomically(directory.path() / "out", content);
   EXPECT_EQ(FileContent(directory.path() / "out"), content);
   EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
+  // A file or a link that another put where a temporary one is to be written stays as it is.
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("there", "as it was");
+  int file = -1;
+  EXPECT_EQ(OpenFile(path.string(), Opening::kNew, file), EEXIST);
+  EXPECT_EQ(FileContent(path), "as it was");
+  ASSERT_EQ(OpenFile((directory.path() / "new").string(), Opening::kNew, file), 0);
+  EXPECT_EQ(CloseFile(file), 0);
 }
 
 TEST(AtomicFile, WritesEmptyFile) {

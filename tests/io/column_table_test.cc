@@ -46,6 +46,8 @@ TEST(ColumnTable, TakesNoNumberForAThousand) {
 TEST(ColumnTable, RefusesColumnsOfTwoLengthsAndNone) {
   EXPECT_EQ(MessageOf({{"x", {0, 1}}, {"F", {0}}}),
             "frame: 'x' has 2 rows and 'F' 1: give as many of both");
+  EXPECT_EQ(MessageOf({{"x", {0, 1}}, {"F", {0, 1, 2}}}),
+            "frame: 'x' has 2 rows and 'F' 3: give as many of both");
   EXPECT_EQ(MessageOf({}), "frame: there is no column");
   EXPECT_EQ(MessageOf({{"x", {}}}), "frame: there is no row");
 }

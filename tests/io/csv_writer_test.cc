@@ -55,6 +55,11 @@ TEST(CsvWriter, WritesNoCellThatASpreadsheetTakesForAFormula) {
   EXPECT_EQ(CsvCell("a=b"), "a=b");
 }
 
+TEST(CsvWriter, QuotesBlanksAtTheEnds) {
+  EXPECT_EQ(CsvCell(" a"), "\" a\"");
+  EXPECT_EQ(CsvCell("a "), "\"a \"");
+}
+
 TEST(CsvWriter, QuotesFirstNameThatWouldBeginComment) {
   const Numbers one = {1};
   EXPECT_EQ(CsvText({{"#", one}}), "\"#\"\n1\n");

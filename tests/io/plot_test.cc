@@ -130,6 +130,34 @@ TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
   EXPECT_EQ(Count(Svg(plot), ">8</text>"), 0u);
 }
 
+/// Returns the path of the first element of a class.
+std::string PathOf(const std::string& svg, const std::string& name) {
+  const std::size_t begin = svg.find(" d=\"", svg.find("class=\"" + name)) + 4;
+  return svg.substr(begin, svg.find('"', begin) - begin);
+}
+
+TEST(Plot, HasNoTicBesideItsAxes) {
+  const std::string svg = Svg(OnePanel({"", {0.37, 1.81}, {-2.3, 4.7}}));
+  const std::string axis = PathOf(svg, "axis");  // "M<left> <top>V<bottom>H<right>"
+  const double left = std::stod(axis.substr(1));
+  const double bottom = std::stod(axis.substr(axis.find('V') + 1));
+  const std::string grid = PathOf(svg, "grid");  // "M<x> <top>V<bottom>" or "M<left> <y>H<right>"
+  for (std::size_t at = 0; at != std::string::npos; at = grid.find('M', at + 1)) {
+    EXPECT_GE(std::stod(grid.substr(at + 1)), left);
+    EXPECT_LE(std::stod(grid.substr(grid.find(' ', at) + 1)), bottom);
+  }
+}
+
+TEST(Plot, LeavesRoomForBothHalvesOfTheOuterBars) {
+  const std::string svg = Svg(OnePanel({"", {1, 2, 3}, {1, 2, 1}, PlotStyle::kBars}));
+  const std::string axis = PathOf(svg, "axis");
+  const double left = std::stod(axis.substr(1));
+  const double right = std::stod(axis.substr(axis.find('H') + 1));
+  const std::string bars = PathOf(svg, "bars");
+  EXPECT_GT(std::stod(bars.substr(1)), left);
+  EXPECT_LT(std::stod(bars.substr(bars.rfind('H') + 1)), right);
+}
+
 TEST(Plot, LabelsLogarithmicAxesWithPowersOfTen) {
   Plot plot = OnePanel({"", {1e-6, 1e-3}, {2e-19, 5e-11}});
   plot.panels.front().log_x = true;

@@ -125,6 +125,16 @@ TEST(Backlash, IsNoneWhoseWidthChangesFromStrokeToStroke) {
   EXPECT_FALSE(FactsOf(BehindAGap({}, 0.02)).backlash) << "less than 3 % of the amplitude";
 }
 
+TEST(Backlash, IsNoneWhereOneSideIsSofterThanTheOther) {
+  // From the zero of the force on four times as soft: softer than before it, and as soft as after.
+  const Parallelogram loop;
+  Record record = MakeRecord(loop);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.displacement[i] += 3 * std::max(record.force[i] - loop.offset, 0.0) / loop.stiffness;
+  }
+  EXPECT_FALSE(FactsOf(record).backlash);
+}
+
 TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
   const Parallelogram loop{.centre = -11.0, .offset = 7.0, .normal_load = 5.0};
   const LoopFacts facts = FactsOf(MakeRecord(loop));

@@ -83,6 +83,16 @@ TEST(Trim, LeavesADwellOfHalfAStrokeIn) {
   EXPECT_FALSE(FindTrim(WithRests(Cycled(5), kCycle / 4, 0)).parts.empty());
 }
 
+TEST(Trim, TakesAMoveOfAHundredthOfTheAmplitudeForRest) {
+  // Two dwells, each too short for a rest, so far from each other: one if within 1 % of X.
+  for (const double apart : {0.008, 0.015}) {
+    Record record = WithRests(Cycled(5), 19, 0);
+    record.displacement.insert(record.displacement.begin(), 20, -apart * kReach);
+    record.force.insert(record.force.begin(), 20, 0.0);
+    EXPECT_EQ(FindTrim(record).parts.empty(), apart > 0.01) << apart;
+  }
+}
+
 TEST(Trim, TakesNoiseAboutARestForRest) {
   Generator generator(3);
   Record record = WithRests(Cycled(4), 200, 0);

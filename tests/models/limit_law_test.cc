@@ -59,6 +59,9 @@ TEST(LimitLaw, RefusesWhatItCannotServe) {
                 HasSubstr("slip force [N]"));
   }
   const std::vector<double> far = {0, 1e308};
+  const std::vector<double> far_and_back = {1e308, 0};
+  EXPECT_THAT(MessageOf([&] { FindLimitLaw("spring")->evaluate_force(kLaw, far_and_back, force); }),
+              HasSubstr("exceeds the largest double"));
   EXPECT_THAT(MessageOf([&] { FindLimitLaw("spring")->evaluate_force(kLaw, far, force); }),
               HasSubstr("exceeds the largest double"));
   EXPECT_EQ(MessageOf([&] { FindLimitLaw("coulomb")->evaluate_force(kLaw, far, force); }), "");

@@ -1,8 +1,10 @@
 
 #include <map>
+#include <numeric>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "report/panels.h"
 #include "support/prelude.h"
 
 namespace mindahl::report::figure_test {
@@ -145,6 +147,171 @@ TEST(Figure, TitlesNameFileAndVerdictAndNoUnknownValue) {
 
 TEST(Figure, OfAFitThatFailedIsRefused) {
   EXPECT_THROW(ToPlot(report::MakeReport(testing::FailedInput())), InvalidArgument);
+}
+
+// --- what pages draw besides
+
+/// A sine of whole cycles whose residuals are given, with the reversals at its turning points.
+Report ReportOfCycles(std::size_t cycles, std::size_t per_cycle, std::vector<double> residual) {
+  Record record;
+  ReportInput input;
+  std::vector<std::size_t> reversals;
+  for (std::size_t i = 0; i < cycles * per_cycle; ++i) {
+    const double phase = 2 * M_PI * static_cast<double>(i) / static_cast<double>(per_cycle);
+    record.displacement.push_back(1e-6 * std::sin(phase));
+    record.force.push_back(10 * std::sin(phase - 0.3));
+    record.time.push_back(0.5 * static_cast<double>(i));
+    if (i % (per_cycle / 2) == per_cycle / 4) reversals.push_back(i);
+  }
+  input = MadeInput({record}, 1e-6);
+  input.fit.records[0].reversals = reversals;
+  input.fit.records[0].residual = std::move(residual);
+  input.fit.records[0].residual.resize(record.size());
+  return MakeReport(std::move(input));
+}
+
+const PlotSeries* Find(const PlotPanel& panel, std::string_view label) {
+  const auto series = std::ranges::find(panel.series, label, &PlotSeries::label);
+  return series == panel.series.end() ? nullptr : &*series;
+}
+
+TEST(PageFigure, DrawsTheLastWholeCycleOfALongFit) {
+  constexpr std::size_t kPerCycle = 3000;
+  const Report report = ReportOfCycles(4, kPerCycle, {});
+  const PlotPanel panel = LoopPanel(report, PlainUnits(report), LoopColours::kByCycle);
+  const PlotSeries* const fitted = Find(panel, "fitted, last cycle");
+  ASSERT_NE(fitted, nullptr);
+  // The last of eight turns is at 11 250, a cycle before it 8250.
+  ASSERT_THAT(fitted->y, SizeIs(kPerCycle + 1));
+  EXPECT_EQ(fitted->y.front(), report.fit.records[0].fitted_force[8250]);
+  EXPECT_EQ(fitted->y.back(), report.fit.records[0].fitted_force[11250]);
+  // A measured cycle begins at every second turn; samples before the first belong to the first.
+  const PlotSeries* const third = Find(panel, "measured, cycle 3");
+  ASSERT_NE(third, nullptr);
+  ASSERT_THAT(third->y, SizeIs(kPerCycle));
+  EXPECT_EQ(third->y.front(), report.records[0].record.force[750 + 2 * kPerCycle]);
+}
+
+TEST(PageFigure, NamesTheFitOfSeveralRecordsOnce) {
+  const Record record = MadeRecord(1e-6);
+  const Report report = MakeReport(MadeInput({record, record, record}, 1e-6));
+  const PlotPanel panel = LoopPanel(report, PlainUnits(report), LoopColours::kByCycle);
+  EXPECT_EQ(std::ranges::count(panel.series, "fitted", &PlotSeries::label), 1);
+  EXPECT_EQ(std::ranges::count(panel.series, PlotStyle::kLine, &PlotSeries::style), 3);
+}
+
+TEST(PageFigure, DrawsAFitOfTheDisplacementWhereTheLawHasTheContact) {
+  ReportInput input = MadeInput();
+  std::vector<double>& fitted = input.fit.records[0].fitted_displacement;
+  for (std::size_t i = 0; i < 9; ++i) fitted.push_back(1e-7 * static_cast<double>(i));
+  const Report report = MakeReport(std::move(input));
+  const PlotPanel panel = LoopPanel(report, PlainUnits(report), LoopColours::kOneARecord);
+  EXPECT_EQ(panel.series[1].x[7], 1e6 * (1e-7 * 7));
+  EXPECT_EQ(panel.series[0].x[7], 1e6 * report.records[0].record.displacement[7]);
+}
+
+TEST(PageFigure, HasResidualsThatCountOverTheTimeOrTheSample) {
+  ReportInput input = MadeInput();
+  input.fit.records[0].counts = {1, 1, 0, 1, 1, 1, 1, 1, 0};
+  const Report timed = MakeReport(input);
+  const PlotPanel panel = ResidualInTime(timed, PlainUnits(timed));
+  EXPECT_EQ(panel.x_label, "time [s]");
+  EXPECT_THAT(panel.series[0].x, ElementsAre(0, 0.25, 0.75, 1, 1.25, 1.5, 1.75));
+  EXPECT_THAT(panel.series[0].y, ElementsAre(0, 0.125, 0.375, 0.5, 0.625, 0.75, 0.875));
+  input.records[0].record.time.clear();
+  const Report untimed = MakeReport(std::move(input));
+  EXPECT_THAT(ResidualInTime(untimed, PlainUnits(untimed)).series[0].x,
+              ElementsAre(1, 2, 4, 5, 6, 7, 8));
+}
+
+TEST(PageFigure, CorrelatesResidualsOverALittleMoreThanACycle) {
+  constexpr std::size_t kSamples = 240;
+  std::vector<double> residual(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) residual[i] = i % 2 == 0 ? 3.0 : -3.0;
+  const auto panel = ResidualAutocorrelation(ReportOfCycles(3, 80, residual));
+  ASSERT_TRUE(panel);
+  // Lags up to a cycle and a quarter; of n alternating values n − k products are ±1.
+  ASSERT_THAT(panel->series[0].x, SizeIs(101));
+  EXPECT_EQ(panel->series[0].x[100], 100.0);
+  EXPECT_NEAR(panel->series[0].y[1], -239.0 / 240, 1e-14);
+  EXPECT_NEAR(panel->series[0].y[100], 140.0 / 240, 1e-14);
+  EXPECT_NEAR(panel->series[1].upper[1], 1.96 / std::sqrt(240.0), 1e-5);
+  EXPECT_EQ(panel->series[1].lower[1], -panel->series[1].upper[1]);
+  EXPECT_EQ(panel->series[1].x[1], 100.0);
+}
+
+TEST(PageFigure, CountsResidualsInBinsBesideTheNormalDistribution) {
+  // 0, 1 … 99 have the quartiles 24 and 74: 2·50/∛100 is more than a tenth of 99, so ten bins.
+  constexpr int kSamples = 100;
+  std::vector<double> residual(kSamples);
+  std::iota(residual.begin(), residual.end(), 0.0);
+  const Report report = ReportOfCycles(1, kSamples, residual);
+  const PlotPanel panel = ResidualDistribution(report, PlainUnits(report));
+  EXPECT_THAT(panel.series[0].y, ElementsAre(10, 10, 10, 10, 10, 10, 10, 10, 10, 10));
+  EXPECT_NEAR(panel.series[0].x[0], 9.9 / 2, 1e-12);
+  EXPECT_NEAR(panel.series[0].x[9], 99 - 9.9 / 2, 1e-12);
+  const double deviation = std::sqrt(kSamples * (kSamples + 1) / 12.0);
+  EXPECT_EQ(panel.series[1].x[60], 49.5);
+  EXPECT_NEAR(panel.series[1].y[60], kSamples * 9.9 / (deviation * std::sqrt(2 * M_PI)), 1e-9);
+  EXPECT_NEAR(panel.series[1].y[0] / panel.series[1].y[60],
+              std::exp(-std::pow(49.5 / deviation, 2) / 2), 1e-9);
+  // One of 1 + n readings may be as far as √n deviations away.
+  residual.push_back(1e6);
+  const Report stray = ReportOfCycles(1, kSamples + 1, residual);
+  const PlotPanel cut = ResidualDistribution(stray, PlainUnits(stray));
+  EXPECT_EQ(cut.series[0].label, "residuals, 1 more beyond the axis");
+  EXPECT_EQ(std::accumulate(cut.series[0].y.begin(), cut.series[0].y.end(), 0.0), kSamples);
+}
+
+TEST(PageFigure, CutsALikelihoodOffAtFourTimesItsCriticalValue) {
+  ReportInput input = MadeInput();
+  auto& profile = input.fit.slip_force_profile.emplace();
+  profile.critical = 2.0;
+  double slip_force = 30.0;
+  for (const double statistic : {40.0, 20.0, 5.0, 0.0, 2.5, 9.0, 30.0}) {
+    profile.points.push_back({.law = {kSigma, 1.0 / 3, slip_force}, .statistic = statistic});
+    slip_force += 5;
+  }
+  const auto panel = SlipForceLikelihood(MakeReport(std::move(input)));
+  ASSERT_TRUE(panel);
+  // On either side one point beyond 8 is kept, for the curve to leave the figure there.
+  EXPECT_THAT(panel->series[0].x, ElementsAre(35, 40, 45, 50, 55));
+  EXPECT_THAT(panel->series[0].y, ElementsAre(8, 5, 0, 2.5, 8));
+  EXPECT_THAT(panel->series[1].x, ElementsAre(35, 55));
+  EXPECT_THAT(panel->series[1].y, ElementsAre(2, 2));
+}
+
+TEST(PageFigure, ClosesTheRegionOfTheParametersThatAreAskedFor) {
+  ReportInput input = MadeInput();
+  input.fit.regions = {{.parameters = {"sigma", "alpha"}, .boundary = {{1e7, 0.1}}, .closed = true},
+                       {.parameters = {"slip_force", "alpha"},
+                        .boundary = {{38.0, 0.3}, {42.0, 0.3}, {40.0, 0.4}},
+                        .closed = false}};
+  const auto panel = RegionPanel(MakeReport(std::move(input)), "slip_force");
+  ASSERT_TRUE(panel);
+  EXPECT_EQ(panel->x_label, "slip force Tc [N]");
+  EXPECT_EQ(panel->series[0].label, "95 % region, open where it ends");
+  EXPECT_THAT(panel->series[0].x, ElementsAre(38, 42, 40, 38));
+  EXPECT_THAT(panel->series[0].y, ElementsAre(0.3, 0.3, 0.4, 0.3));
+  EXPECT_THAT(panel->series[1].x, ElementsAre(kSlipForce));
+  EXPECT_THAT(panel->series[1].y, ElementsAre(1.0 / 3));
+  EXPECT_THAT(panel->series[2].x, ElementsAre(38, 42));
+}
+
+TEST(PageFigure, DrawsABackboneWithItsBandBesideTheLaw) {
+  ReportInput input = MadeInput();
+  input.backbone.emplace();
+  input.backbone->points = {
+      {.displacement = 5e-7, .force = {.value = 8, .lower95 = 7, .upper95 = 10}, .law = 9},
+      {.displacement = 1e-6, .force = {.value = 12, .lower95 = 11, .upper95 = 15}, .law = 13}};
+  const Report report = MakeReport(std::move(input));
+  const auto panel = BackbonePanel(report, PlainUnits(report));
+  ASSERT_TRUE(panel);
+  EXPECT_EQ(panel->series[0].x[1], 1.0);
+  EXPECT_THAT(panel->series[0].y, ElementsAre(8, 12));
+  EXPECT_THAT(panel->series[0].lower, ElementsAre(7, 11));
+  EXPECT_THAT(panel->series[0].upper, ElementsAre(10, 15));
+  EXPECT_THAT(panel->series[1].y, ElementsAre(9, 13));
 }
 
 }  // namespace

@@ -27,6 +27,59 @@ TEST(Json, HasTheNumbersOfTheFit) {
   EXPECT_EQ(fit["loop"]["amplitude"], testing::kMadeAmplitude);
 }
 
+TEST(InitialState, OfRecordsThatDifferIsMixedAndInTheTextThatOfEach) {
+  const loop::Record record = testing::MadeRecord(1e-6);
+  report::ReportInput input = testing::MadeInput({record, record}, 1e-6);
+  input.fit.initial_state = input.fit.records[0].initial_state = models::InitialState::kSteady;
+  input.fit.records[1].initial_state = models::InitialState::kVirgin;
+  const report::Report report = MakeReport(std::move(input));
+  EXPECT_EQ(json::parse(ToJson(report))["initial_state"], "mixed");
+  EXPECT_THAT(ToText(report), HasSubstr("steady, virgin initial state"));
+}
+
+TEST(Json, NamesTheParameterForWhichThereIsNoCorrelation) {
+  report::ReportInput input = MadeInput();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  input.fit.correlation = {1, none, 0, none, none, none, 0, none, 1};  // alpha is at its bound
+  const json nulls = Parsed(std::move(input))["nulls"];
+  for (const char* path : {"correlation.sigma.alpha", "correlation.alpha.sigma"}) {
+    const json expected = {{"path", path}, {"why", "alpha is at a bound or undetermined"}};
+    EXPECT_THAT(nulls, ::testing::Contains(expected));
+  }
+}
+
+TEST(Json, HasEachPartThatIsTrimmed) {
+  report::ReportInput input = MadeInput();
+  input.trims = {{.samples = 9,
+                  .parts = {{.reason = loop::TrimReason::kRunningIn,
+                             .first = 1,
+                             .last = 5,
+                             .cycles = 2,
+                             .at_start = true,
+                             .has_first_loading = true}}}};
+  const json trimmed = Parsed(std::move(input))["input"]["trimmed"];
+  ASSERT_EQ(trimmed.size(), 1U);
+  EXPECT_EQ(trimmed[0], json({{"file", "loop_1.csv"},
+                              {"reason", "running_in"},
+                              {"first_line", 2},
+                              {"last_line", 5},
+                              {"samples", 4},
+                              {"cycles", 2},
+                              {"first_loading", true}}));
+}
+
+TEST(Json, HasTheTestsOfTheMapping) {
+  report::ReportInput input = MadeInput();
+  input.fit.parameters[1] = testing::MadeParameter("alpha", "-", 0.35, 0.01);
+  const report::Report report = MakeReport(std::move(input));
+  const json mapping = json::parse(ToJson(report))["mapping"];
+  ASSERT_TRUE(report.alpha.z && report.alpha.p_value && report.alpha.minus_third);
+  EXPECT_EQ(mapping["alpha_minus_third"], 0.35 - 1.0 / 3);
+  EXPECT_EQ(mapping["z"], *report.alpha.z);
+  EXPECT_GT(*report.alpha.z, 1.0) << "of an error of a hundredth or so";
+  EXPECT_EQ(mapping["p_value"], *report.alpha.p_value);
+}
+
 TEST(Json, OfAnOpenIntervalNamesItsEnd) {
   report::ReportInput input = MadeInput();
   input.fit.parameters[2].upper95.reset();

@@ -1,8 +1,11 @@
 #include "mindahl/report/load_series.h"
 
+#include <fmt/format.h>
+
 #include <boost/math/distributions/students_t.hpp>
 #include <nlohmann/json.hpp>
 
+#include "mindahl/contact/shape_under_load.h"
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/prelude.h"
@@ -12,6 +15,7 @@
 namespace mindahl::report::load_series_test {
 namespace {
 
+using contact::KnownContact;
 using identification::FitResult;
 using identification::ParameterEstimate;
 
@@ -94,6 +98,104 @@ TEST(LoadLawsByHand, PropagateTheErrorOfTheExponentToThatOfTheProfile) {
   EXPECT_NEAR(profile->value.value / (1 / common - 1), 1, kRounding);
   EXPECT_NEAR(profile->value.standard_error / (1 / (common * common * std::sqrt(both))), 1,
               kRounding);
+}
+
+const QuantityUnderLaw& Quantity(const LoadLaw& law, std::string_view key) {
+  return *std::ranges::find(law.quantities, key, &QuantityUnderLaw::key);
+}
+
+/// Half the logarithm of an interval's width.
+double HalfWidth(const identification::Interval& interval) {
+  return std::log(interval.upper / interval.lower) / 2;
+}
+
+constexpr double kNormalQuantile = 1.959963984540054;
+// An interval's ends are found to the last places of a logarithm.
+constexpr double kOfLogarithm = 1e-12;
+
+TEST(LoadLawsByHand, AddTheSquaresOfTheErrorsOfFitAndInputs) {
+  // a = σG*/8, whatever the law: the error of G* beside that of σ.
+  KnownContact known;
+  known.tangential_compliance = contact::UncertainValue{8e-11, 0.01 * 8e-11};
+  const LoadSeries series = *DescribeLoadSeries(SeriesOf({}).fit, known);
+  const LoadLaw& law = Law(series, "sphere");
+  const QuantityUnderLaw& radius = Quantity(law, "contact_radius");
+  ASSERT_TRUE(radius.interval95 && law.stiffness95);
+  const double expected = std::hypot(HalfWidth(*law.stiffness95), kNormalQuantile * 0.01);
+  EXPECT_NEAR(HalfWidth(*radius.interval95), expected, kOfLogarithm);
+}
+
+TEST(LoadLawsByHand, CompareAnEquivalentRadiusWithThatOfTheBodies) {
+  KnownContact known;
+  known.body_1 = {.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.1};
+  known.body_2 = {.youngs_modulus = 70e9, .poisson_ratio = 0.3, .radius = 0.4};
+  const LoadSeries series = *DescribeLoadSeries(SeriesOf({}).fit, known);
+  const QuantityUnderLaw& radius = Quantity(Law(series, "sphere"), "equivalent_radius");
+  ASSERT_TRUE(radius.predicted);
+  EXPECT_NEAR(*radius.predicted / 0.08, 1, kRounding);  // 1/(1/0.1 + 1/0.4)
+}
+
+TEST(LoadLawsByHand, MoveTheEndsOfAModulusByWhatElseIsKnownOfTheContact) {
+  // ln σ = (ln N + …)/3 …: an error of the load acts as one of ln σ a third as large.
+  constexpr double kErrorOfLoad = 0.05;
+  const FitResult fit = SeriesOf({}).fit;
+  KnownContact known;
+  known.normal_load = contact::UncertainValue{40.0, kErrorOfLoad * 40.0};
+  known.body_1 = {.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.15};
+  known.body_2 = {.youngs_modulus = std::nullopt,
+                  .poisson_ratio = 0.3,
+                  .radius = std::numeric_limits<double>::infinity()};
+  const LoadSeries series = *DescribeLoadSeries(fit, known);
+  const LoadLaw& law = Law(series, "sphere");
+  const QuantityUnderLaw& modulus = Quantity(law, "youngs_modulus");
+  ASSERT_TRUE(modulus.interval95 && law.stiffness95);
+  const double half_width =
+      std::hypot(HalfWidth(*law.stiffness95), kNormalQuantile * kErrorOfLoad / 3);
+  for (const double sign : {-1.0, 1.0}) {
+    const contact::UncertainValue stiffness{law.stiffness.value * std::exp(sign * half_width), 0.0};
+    const auto shape =
+        contact::IdentifyShape(contact::ContactShape::kSphere, stiffness, known).youngs_modulus;
+    ASSERT_TRUE(shape);
+    const double end = sign < 0 ? modulus.interval95->lower : modulus.interval95->upper;
+    EXPECT_NEAR(end / shape->value, 1, 1e-9);
+  }
+}
+
+/// The line of a load, without its unit's blanks.
+std::string LineOfLoad(const ReportInput& input, std::string_view load) {
+  const std::string text = ToText(MakeReport(input));
+  const std::size_t begin = text.find(fmt::format("\n  {} ", load)) + 1;
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+TEST(LoadSeriesText, HasNoNumberOfWhatIsNotKnown) {
+  ReportInput input = SeriesOf({});
+  const auto stiffness = HasSubstr("N/µm");
+  const auto slip_force = HasSubstr("20.00 ± 0.20 N");
+  EXPECT_THAT(LineOfLoad(input, "20 N"), AllOf(stiffness, slip_force));
+  input.fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
+  EXPECT_THAT(LineOfLoad(input, "20 N"), AllOf(stiffness, Not(slip_force)));
+  input.fit.parameters[2].identifiability = identification::Identifiability::kIdentifiable;
+  input.fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
+  EXPECT_THAT(LineOfLoad(input, "20 N"), AllOf(Not(stiffness), slip_force));
+}
+
+TEST(LoadSeriesJson, HasTheContactAtEachLoad) {
+  // σ ∝ N^p and Tc = μN, with the errors of ln σ and of p, which the mean load leaves apart.
+  const nlohmann::json fit = nlohmann::json::parse(ToJson(MakeReport(SeriesOf({}))));
+  for (std::size_t r = 0; r < 2; ++r) {
+    const nlohmann::json record = fit["load_series"]["records"][r];
+    const double ratio = r == 0 ? 0.5 : 1.5;
+    const double sigma = kSigma * std::pow(ratio, kExponent);
+    EXPECT_EQ(record["normal_load"], 40 * ratio);
+    EXPECT_NEAR(record["sigma"]["value"].get<double>() / sigma, 1, kRounding);
+    EXPECT_NEAR(record["sigma"]["standard_error"].get<double>() /
+                    (sigma * std::hypot(kErrorOfLogStiffness, kErrorOfExponent * std::log(ratio))),
+                1, kRounding);
+    EXPECT_NEAR(record["slip_force"]["value"].get<double>() / (kSlipForce * ratio), 1, kRounding);
+    EXPECT_NEAR(record["slip_force"]["standard_error"].get<double>() / (0.01 * kSlipForce * ratio),
+                1, kRounding);
+  }
 }
 
 TEST(LoadSeriesJson, HasBothEndsOfTheIntervalsOfARecordAlone) {

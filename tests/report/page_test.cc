@@ -171,6 +171,27 @@ TEST(Page, OfAnInadequateModelHasNoContactAndNoLikelihood) {
   EXPECT_EQ(FigureOf(page, "likelihood"), "");
 }
 
+TEST(Page, ComparesWithHertzOnlyAStiffnessThatIsKnown) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
+  input.known.normal_load = 50.0;
+  for (contact::KnownBody* body : {&input.known.body_1, &input.known.body_2}) {
+    *body = {.youngs_modulus = 2e11, .poisson_ratio = 0.3, .radius = 0.1};
+  }
+  const auto table = HasSubstr("what Hertz and Mindlin predict from materials, radii and load");
+  EXPECT_THAT(PageOf(input), table);
+  input.fit.parameters[0].identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_THAT(PageOf(std::move(input)), Not(table));
+}
+
+TEST(Page, HasTheColourOfItsVerdict) {
+  EXPECT_THAT(PageOf(MadeInput()), HasSubstr("class=\"verdict poor\"")) << "not judged";
+  EXPECT_THAT(PageOf(JudgedInput(AdequacyVerdict::kAdequate)), HasSubstr("class=\"verdict good\""));
+  EXPECT_THAT(PageOf(JudgedInput(AdequacyVerdict::kDoubtful)), HasSubstr("class=\"verdict poor\""));
+  EXPECT_THAT(PageOf(JudgedInput(AdequacyVerdict::kInadequate)),
+              HasSubstr("class=\"verdict bad\""));
+  EXPECT_THAT(PageOf(testing::FailedInput()), HasSubstr("class=\"verdict bad\""));
+}
+
 TEST(Page, DrawsARegionWhereBothParametersAreIdentified) {
   ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
   EXPECT_EQ(FigureOf(PageOf(input), "region-sigma"), "");

@@ -135,6 +135,17 @@ TEST(Text, SaysInOneLineWhatWouldTellMoreOfTheContact) {
                               "known: friction coefficient"));
 }
 
+TEST(Text, AsksForNoInputThatIsGiven) {
+  // With the load the friction coefficient lacks the slip force, which no input gives.
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  input.fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
+  const std::string text = ToText(MakeReport(std::move(input)));
+  const std::size_t at = text.find("more would be known:");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(text.find("friction coefficient", at), std::string::npos) << text;
+}
+
 TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
   const auto text_of = [](double times, bool gap_is_lower_end) {
     ReportInput input = MadeInput();

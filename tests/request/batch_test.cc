@@ -93,6 +93,11 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   EXPECT_FALSE(repeats.contains("sigma"));
 }
 
+TEST(Repeats, AreOnTheIndexPageInTheirUnits) {
+  const std::string page = IndexPage(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), {});
+  EXPECT_THAT(page, HasSubstr("40.5 N"));
+}
+
 TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
   const auto repeats = nlohmann::json::parse(
       ToJson(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), ""))["repeats"];

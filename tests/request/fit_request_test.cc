@@ -38,6 +38,19 @@ TEST(FitRequest, RefusesAValueThatIsHeldOutsideItsBound) {
   }
 }
 
+TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
+  for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    FitRequest request;
+    request.confidence = confidence;
+    try {
+      MakeFitOptions(request);
+      FAIL() << confidence;
+    } catch (const InvalidArgument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("--confidence [-]"));
+    }
+  }
+}
+
 TEST(FitRequest, ChoosesNoModelForEachCycle) {
   FitRequest request;
   request.model = kAutomatic;

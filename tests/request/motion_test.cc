@@ -117,5 +117,76 @@ TEST(ReadImposedForce, IsWithinTheSlipForceOfEitherSign) {
   EXPECT_THAT(RefusalOf("0\n-41\n39\n"), HasSubstr("force.csv:3: a force of -41 N"));
 }
 
+// --- forces in addition to the contact's, along −1, 1, 3, 2, 0 µm, a row a second
+
+// By central differences, one-sided at the ends [µm/s], and those of these [µm/s²].
+constexpr std::array<double, 5> kVelocity = {2, 2, 0.5, -1.5, -2};
+constexpr std::array<double, 5> kAcceleration = {0, -0.75, -1.75, -1.25, -0.5};
+// From the middle, 1 µm, to either end at 2 µm; of the time from −1 to 1.
+constexpr std::array<double, 5> kFromMiddle = {-2, 0, 2, 1, -1};  // [µm]
+constexpr std::array<double, 5> kPosition = {-1, 0, 1, 0.5, -0.5};
+constexpr std::array<double, 5> kTimeOfAll = {-1, -0.5, 0, 0.5, 1};
+constexpr double kMicro = 1e-6;
+
+std::vector<double> Simulated(const AddedForces& forces) {
+  const TemporaryDirectory directory;
+  SimulationRequest request;
+  request.law.sigma = kLaw.tangential_stiffness;
+  request.law.slip_force = kLaw.slip_force;
+  request.drive.path = directory.Write("path.csv", "x [um]\n-1\n1\n3\n2\n0\n").string();
+  request.forces = forces;
+  return Simulate(request).force;
+}
+
+/// Compares what the forces add to that of the contact alone [N].
+template <typename Added>
+void ExpectAdded(const AddedForces& forces, Added added) {
+  const std::vector<double> alone = Simulated({});
+  const std::vector<double> all = Simulated(forces);
+  ASSERT_EQ(all.size(), 5U);
+  constexpr double kRounding = 1e-12;  // of 40 N
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_NEAR(all[i] - alone[i], added(i, alone[i]), kRounding * kLaw.slip_force) << i;
+  }
+}
+
+TEST(AddedForces, FollowTheSpeedAndTheAcceleration) {
+  ExpectAdded({.viscous = 3e6, .ripple = {}},
+              [](std::size_t i, double) { return 3e6 * kMicro * kVelocity[i]; });
+  ExpectAdded({.viscous = 3e3, .speed_exponent = 0.5, .ripple = {}}, [](std::size_t i, double) {
+    return 3e3 * std::copysign(std::sqrt(kMicro * std::abs(kVelocity[i])), kVelocity[i]);
+  });
+  ExpectAdded({.inertia = 2e6, .ripple = {}},
+              [](std::size_t i, double) { return 2e6 * kMicro * kAcceleration[i]; });
+}
+
+TEST(AddedForces, ScaleTheContactsOverTheStrokeAndTheTime) {
+  ExpectAdded({.slip_slope = 0.2, .slip_curvature = 0.3, .slip_trend = 0.1, .ripple = {}},
+              [](std::size_t i, double alone) {
+                return alone * (0.2 * kPosition[i] + 0.3 * kPosition[i] * kPosition[i] +
+                                0.1 * kTimeOfAll[i]);
+              });
+}
+
+TEST(AddedForces, FollowThePositionFromTheMiddle) {
+  ExpectAdded(
+      {.plateau_slope = 4e6, .plateau_curvature = 1e12, .ripple = {}},
+      [](std::size_t i, double) { return 4 * kFromMiddle[i] + kFromMiddle[i] * kFromMiddle[i]; });
+  ExpectAdded(
+      {.ripple = 8e-6, .ripple_amplitude = 5, .ripple_phase_up = 0.1, .ripple_phase_down = 0.7},
+      [](std::size_t i, double) {
+        return 5 * std::cos(2 * M_PI * kFromMiddle[i] / 8 + (i < 3 ? 0.1 : 0.7));
+      });
+}
+
+TEST(AddedForces, KeepTheSlipForcePositive) {
+  EXPECT_NO_THROW(
+      Simulated({.slip_slope = -0.5, .slip_curvature = 0.3, .slip_trend = -0.19, .ripple = {}}));
+  EXPECT_THROW(
+      Simulated({.slip_slope = -0.5, .slip_curvature = 0.3, .slip_trend = -0.2, .ripple = {}}),
+      InputError);
+  EXPECT_THROW(Simulated({.ripple = {}, .ripple_amplitude = 1}), InputError);
+}
+
 }  // namespace
 }  // namespace mindahl::request::motion_test

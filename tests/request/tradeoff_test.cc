@@ -47,6 +47,20 @@ Tradeoff Study() {
   return study;
 }
 
+TEST(MakeTradeoff, SaysWhatIsDoubtfulOfTheContactBeforeItBegins) {
+  TradeoffRequest request;
+  request.law.contact.known = {
+      .normal_load = 10.0, .contact_radius = 1e-3, .tangential_compliance = 2e-11};
+  request.law.contact.friction_coefficient = 6.0;
+  std::vector<std::string> doubts;
+  struct Began {};
+  EXPECT_THROW(MakeTradeoff(
+                   request, [&](std::string_view doubt) { doubts.emplace_back(doubt); },
+                   [](std::string_view) { throw Began(); }),
+               Began);
+  EXPECT_THAT(doubts, ::testing::Contains(::testing::HasSubstr("mu = 6 is above 5")));
+}
+
 std::vector<std::string> LinesWith(const std::string& text, std::string_view words) {
   std::vector<std::string> lines;
   std::istringstream stream(text);

@@ -1,0 +1,30 @@
+#include "core/platform.h"
+
+#include <fstream>
+
+#include "support/prelude.h"
+
+namespace mindahl::platform_test {
+namespace {
+
+/// The most memory that the process has had [bytes], as the kernel counts it.
+std::uintmax_t PeakOfStatus() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::uintmax_t kibibytes = 0;
+    if (word == "VmHWM:" && status >> kibibytes) return 1024 * kibibytes;
+  }
+  return 0;
+}
+
+TEST(PeakMemory, IsThatOfTheProcess) {
+  const std::uintmax_t before = PeakOfStatus();
+  if (before == 0) GTEST_SKIP() << "no /proc/self/status";
+  // The kernel adds up what the processors count now and then: to a few pages of each.
+  constexpr double kPages = 0.1;
+  const auto peak = static_cast<double>(PeakMemory());
+  EXPECT_NEAR(peak / static_cast<double>(before), 1.0, kPages);
+}
+
+}  // namespace
+}  // namespace mindahl::platform_test
