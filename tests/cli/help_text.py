@@ -63,7 +63,7 @@ EXEMPT = {
 # Options of other programs in the documentation.
 OF_OTHERS = {
     "--preset", "--build", "--install", "--target", "--peers", "--prefix", "--cflags", "--libs",
-    "--static",
+    "--static", "--enable", "--std",
     "--component", "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--problems", "--repeats", "--rounds",
     "--shards", "--tests", "--write",

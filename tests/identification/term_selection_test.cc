@@ -298,6 +298,21 @@ TEST(TermSelection, ByDefaultTermsThatLeaveMoreThanNoiseDoNotReplaceAQuantitativ
   EXPECT_THAT(Select(record, {.only_for_use = true}).added, IsEmpty());
 }
 
+TEST(TermSelection, BoundOfTheUserIsKept) {
+  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  record = Noisy(record, 2);
+  const ParameterEstimate free = *Select(record).fit.Find("slip_force");
+  const double lowest = free.value + 0.5 * *free.standard_error;  // which noise does not exclude
+  FitOptions options;
+  options.bounds["slip_force"] = {lowest, 10 * kLaw.slip_force};
+  const TermSelection selection = SelectTerms(std::vector{record}, options, {});
+  EXPECT_THAT(selection.added, ElementsAre("viscous"));
+  EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_GE(selection.fit.Find("slip_force")->value, lowest);
+}
+
 TEST(TermSelection, MakesNoMoreFitsThanAreAllowed) {
   const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
   Record record = Clean();

@@ -25,9 +25,9 @@ struct TermSelectionOptions {
   double smallest_gain = 0.03;
   std::size_t most_terms = 7;  ///< largest number of added terms
   std::size_t most_fits = 15;  ///< in all, nearly all of them at Depth::kEstimate
-  /// If true, adds no term if the law is of no use with terms, none to a law that is of quantitative
-  /// use alone and knows Tc within a quarter, and to one that does not only terms with which it is
-  /// adequate.
+  /// If true, adds no term where the law is of no use with terms, none to a law that is of
+  /// quantitative use alone and knows Tc within a quarter, and to one that does not know it only
+  /// terms with which it is adequate.
   bool only_for_use = false;
   /// Names of groups that the options have: they are added one after the other, each from the
   /// solution without it, and are not judged. Nothing is selected then.
