@@ -20,10 +20,12 @@ std::uintmax_t PeakOfStatus() {
 TEST(PeakMemory, IsThatOfTheProcess) {
   const std::uintmax_t before = PeakOfStatus();
   if (before == 0) GTEST_SKIP() << "no /proc/self/status";
-  // The kernel adds up what the processors count now and then: to a few pages of each.
-  constexpr double kPages = 0.1;
-  const auto peak = static_cast<double>(PeakMemory());
-  EXPECT_NEAR(peak / static_cast<double>(before), 1.0, kPages);
+  // The kernel adds up what the processors count now and then: of a small process, which this is, a
+  // good part may be missing. Another unit is off by a factor of 1000 or more.
+  constexpr double kFactor = 2.0;
+  const double ratio = static_cast<double>(PeakMemory()) / static_cast<double>(before);
+  EXPECT_GT(ratio, 1 / kFactor);
+  EXPECT_LT(ratio, kFactor);
 }
 
 }  // namespace
