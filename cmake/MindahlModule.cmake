@@ -22,6 +22,9 @@ if(MINDAHL_SANITIZE)
       -fno-sanitize=null,alignment,object-size,vptr)
   endif()
   target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
+  # Else Eigen aligns memory by itself under the sanitizer, and frees so what Ceres, which is built
+  # without it, has allocated.
+  target_compile_definitions(mindahl_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 if(MINDAHL_FUZZ)
