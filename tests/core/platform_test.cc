@@ -20,12 +20,11 @@ std::uintmax_t PeakOfStatus() {
 TEST(PeakMemory, IsThatOfTheProcess) {
   const std::uintmax_t before = PeakOfStatus();
   if (before == 0) GTEST_SKIP() << "no /proc/self/status";
-  // The kernel adds up what the processors count now and then: of a small process, which this is, a
-  // good part may be missing. Another unit is off by a factor of 1000 or more.
-  constexpr double kFactor = 2.0;
+  // The kernel adds up what the processors count now and then, and counts the peak of the program
+  // that started this one, too. Another unit is off by a factor of 1000 or more.
   const double ratio = static_cast<double>(PeakMemory()) / static_cast<double>(before);
-  EXPECT_GT(ratio, 1 / kFactor);
-  EXPECT_LT(ratio, kFactor);
+  EXPECT_GT(ratio, 0.1);
+  EXPECT_LT(ratio, 100.0);
 }
 
 }  // namespace

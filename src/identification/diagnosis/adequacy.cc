@@ -162,8 +162,8 @@ bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
   return FollowsContact(column, fitted_force);
 }
 
-/// True if no mass, gap or rig is such: it is negative. That of a rig that is fitted may be too
-/// stiff.
+/// True if the fitted mass, gap or compliance of a rig is negative, which none is. Beside a rig
+/// that is part of the fit a negative compliance says that this rig is too soft.
 bool IsUnphysical(const Problem& problem, const DepartureFit& fit) {
   constexpr std::array<std::string_view, 3> kPositive = {"rig_in_series", "inertia", "backlash"};
   const bool is_positive =
