@@ -387,12 +387,13 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
   if (!(MisfitOf(result, thresholds) > thresholds.poor_misfit)) return std::nullopt;
-  const double correlation = 1 - result.residuals.durbin_watson / 2;
-  if (!(correlation > 0)) return std::nullopt;
+  // Of the correlation from one sample to the next, 1 − DW/2; 0 where nothing is forgotten.
+  const double forgotten = -std::log1p(-result.residuals.durbin_watson / 2);
+  if (!std::isfinite(forgotten)) return std::nullopt;
   const RecordFit& widest = result.WidestRecord();
-  const double samples_a_stroke = static_cast<double>(widest.residual.size()) /
-                                  static_cast<double>(widest.reversals.size() + 1);
-  const double strokes = -1 / std::log(correlation) / samples_a_stroke;
+  const auto samples = static_cast<double>(widest.residual.size());
+  const auto strokes_in_all = static_cast<double>(widest.reversals.size() + 1);
+  const double strokes = strokes_in_all / std::max(1.0, forgotten * samples);
   if (!(strokes > thresholds.noise_memory)) return std::nullopt;
   return Finding{.code = "slow_residuals", .numbers = {{"strokes", strokes}}};
 }
