@@ -155,9 +155,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
 /// Takes Tc off the parameters that a limit of the search or the choice of a law leaves open, where
 /// its interval covers what a loop that slides has carried: neither moves that.
 void KeepMeasuredSlipForce(const Thresholds& thresholds, FitResult& result) {
-  const bool is_measured = result.Find("slip_force")->includes_discrepancy &&
-                           SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds);
-  if (!is_measured) return;
+  if (!CoversMeasuredGap(thresholds, result)) return;
   for (Finding& finding : result.findings) {
     constexpr std::array<std::string_view, 3> kOfModel = {"search_limit", "law_undecided",
                                                           "other_law_fits_better"};

@@ -128,7 +128,7 @@ TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
     EXPECT_FALSE(cause["code"] == "inertia" && cause["size"] < 0) << cause;
   }
 
-  // By default the rig is found.
+  // The default terms include the rig and recover its stiffness.
   const json with_rig = Fit(loop);
   EXPECT_THAT(with_rig["terms"]["added"], ElementsAre("rig_stiffness"));
   for (const auto& [name, truth] : std::map<std::string, double>{

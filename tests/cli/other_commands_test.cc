@@ -69,7 +69,7 @@ TEST(Simulate, HasAnOptionForEachForceInAdditionToTheContacts) {
       std::pair{"--ripple-amplitude", &AddedForces::ripple_amplitude},
       std::pair{"--ripple-phase-up", &AddedForces::ripple_phase_up},
       std::pair{"--ripple-phase-down", &AddedForces::ripple_phase_down}};
-  // What the exponent and the phases change needs a damper and a ripple.
+  // The exponent needs a viscous force and the phases a ripple to have an effect.
   request::SimulationRequest base;
   base.law.sigma = 2;
   base.law.slip_force = 3;

@@ -3,8 +3,8 @@
 #include "support/prelude.h"
 #include "support/unit_scale.h"
 
-// What the commands write follows the units of what they are given: lengths four times, forces an
-// eighth and times twice as large. tests/request asks the same of the JSON of `fit`.
+// Checks that the output of the commands scales with the units of their input, with lengths four
+// times, forces an eighth and times twice as large. tests/request checks the JSON of `fit`.
 namespace mindahl::cli::units_test {
 namespace {
 

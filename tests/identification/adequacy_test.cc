@@ -1,6 +1,5 @@
 #include "mindahl/identification/adequacy.h"
 
-#include "identification/diagnosis/adequacy.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 
@@ -49,25 +48,6 @@ TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
   const FitResult fit = Fitted(MakeRecord(displacement, force));
   EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   EXPECT_NE(fit.FindFinding("slow_residuals"), nullptr);
-}
-
-TEST(Adequacy, ResidualsThatForgetNothingRememberAsLongAsTheRecord) {
-  constexpr std::size_t kSamplesAStroke = 50;
-  FitResult result;
-  result.law = {1.0, 1.0 / 3, 10.0};
-  RecordFit& record = result.records.emplace_back();
-  record.residual.resize(3 * kSamplesAStroke);
-  record.reversals.resize(2);
-  record.measures.peak_force = 10.0;
-  result.residuals.rms = 2.0;
-  const auto strokes = [&](double durbin_watson) {
-    result.residuals.durbin_watson = durbin_watson;
-    return FindSlowResiduals(result, Thresholds{})->Number("strokes");
-  };
-  EXPECT_EQ(strokes(0.0), 3.0);
-  EXPECT_EQ(strokes(1e-30), 3.0);
-  // A correlation of 1/e after two strokes.
-  EXPECT_NEAR(*strokes(2 - 2 * std::exp(-0.5 / kSamplesAStroke)), 2.0, 1e-9);
 }
 
 constexpr int kLoops = 200;

@@ -158,7 +158,7 @@ TEST(BackboneEstimate, IsTheLawWhereThatMadeTheRecord) {
 }
 
 TEST(BackboneEstimate, LeavesOutReadingsThatDoNotCount) {
-  // Of the readings on one side every other is off by 3 Tc, and the zero of the force is off too.
+  // Every other reading on one side is wrong by 3 Tc, and the force has an offset.
   constexpr double kDiscretisation = 0.004;  // as above
   const models::BranchLaw law{4e7, 1.0 / 3, 40.0};
   const History displacement = Cycling(Wave::kSine, 1.2e-6, 3, 200);

@@ -19,7 +19,8 @@ TEST(MeanOverParts, HasTheErrorOfWeightedPartsOfFoldsThatShareTheirSamples) {
 }
 
 TEST(PredictsWorse, IsByMoreThanAStandardErrorOfTheDifference) {
-  // As above, 3.75 with an error of √(446/256·15/4) = 2.556; then 2.25 with the same error.
+  // The mean difference is 3.75 with a standard error of √(446/256·15/4) = 2.556, as above, then
+  // 2.25 with the same error.
   const std::vector<Part> parts = {{.samples = 1}, {.samples = 1}, {.samples = 2}};
   const std::vector<double> best = {7, 5, 3};
   EXPECT_TRUE(PredictsWorse(std::vector<double>{8, 7, 9}, best, parts, 3, 0.0));
@@ -29,7 +30,7 @@ TEST(PredictsWorse, IsByMoreThanAStandardErrorOfTheDifference) {
 }
 
 TEST(MeanOverParts, IsAboveZeroByChanceAsStudentsDistributionHasIt) {
-  // Of four degrees of freedom the upper 2.5 % begin at 2.7764451.
+  // Student's t exceeds 2.7764451 with a probability of 2.5 % at four degrees of freedom.
   EXPECT_NEAR(ChanceOfMean({.mean = 2.7764451 * 3, .standard_error = 3}, 5), 0.025, 1e-8);
   EXPECT_NEAR(ChanceOfMean({.mean = -2.7764451 * 3, .standard_error = 3}, 5), 0.975, 1e-8);
   EXPECT_EQ(ChanceOfMean({.mean = 1, .standard_error = 0}, 5), 0.5)

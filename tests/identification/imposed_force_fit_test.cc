@@ -215,7 +215,7 @@ TEST(ImposedForceFit, GapIsACauseOfItsWidth) {
   const auto& causes = fit.adequacy.causes;
   const auto backlash = std::ranges::find(causes, "backlash", &Cause::code);
   ASSERT_NE(backlash, causes.end());
-  // By first order in a gap of 3 % of the way.
+  // The estimate is of first order in the gap, which is 3 % of the travel.
   EXPECT_NEAR(backlash->size / gap, 1.0, 0.1);
 }
 

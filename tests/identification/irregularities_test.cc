@@ -105,7 +105,8 @@ TEST(StickSlip, ExplainsTheMeanAndTheSlopeOfEachTooth) {
   const auto fit = FindStickSlip(samples);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->explains, 1 - 64 * kReadings * kReadings / before, 1e-12);
-  // Of the changes of the means, −0.3, 0.2, −0.3, 0.2, 0.2, −0.4 and 0.2, beside eight slopes.
+  // The size is the median of the changes of the means, −0.3, 0.2, −0.3, 0.2, 0.2, −0.4 and 0.2,
+  // less eight slopes.
   EXPECT_NEAR(fit->size, 0.2 - 8 * kSlope, 1e-12);
 }
 

@@ -601,9 +601,10 @@ AdequacyTest TestWith(std::vector<DepartureFit> fits, double p_value = 1.0) {
   return test;
 }
 
-/// Whether residuals of a fifth of the force that remember for so many strokes are told.
-bool IsSlow(const Thresholds& thresholds, double strokes) {
-  constexpr std::size_t kSamplesAStroke = 50;
+constexpr std::size_t kSamplesAStroke = 50;
+
+/// Two strokes whose residuals are a fifth of the force.
+FitResult TwoStrokes(double durbin_watson) {
   FitResult result;
   result.law = {1.0, 1.0 / 3, 10.0};
   RecordFit& record = result.records.emplace_back();
@@ -611,9 +612,14 @@ bool IsSlow(const Thresholds& thresholds, double strokes) {
   record.reversals.resize(1);
   record.measures.peak_force = 10.0;
   result.residuals.rms = 2.0;
-  result.residuals.durbin_watson =
-      2 - 2 * std::exp(-1 / (strokes * static_cast<double>(kSamplesAStroke)));
-  return FindSlowResiduals(result, thresholds).has_value();
+  result.residuals.durbin_watson = durbin_watson;
+  return result;
+}
+
+/// True if residuals whose correlation decays to 1/e over so many strokes are reported.
+bool IsSlow(const Thresholds& thresholds, double strokes) {
+  const double decay = std::exp(-1 / (strokes * static_cast<double>(kSamplesAStroke)));
+  return FindSlowResiduals(TwoStrokes(2 - 2 * decay), thresholds).has_value();
 }
 
 /// Whether residuals of such a chance are doubted.
@@ -955,6 +961,16 @@ TEST(ThresholdTable, HasACaseForEachRowAndNoOther) {
   for (const ThresholdRow& row : ThresholdTable()) {
     EXPECT_TRUE(Cases().contains(row.name)) << row.name << " may be moved unnoticed";
   }
+}
+
+TEST(SlowResiduals, ThatForgetNothingRememberAsLongAsTheRecord) {
+  const auto strokes = [](double durbin_watson) {
+    return FindSlowResiduals(TwoStrokes(durbin_watson), Thresholds{})->Number("strokes");
+  };
+  EXPECT_EQ(strokes(0.0), 2.0);
+  EXPECT_EQ(strokes(1e-30), 2.0);
+  // A correlation of 1/e after one and a half strokes.
+  EXPECT_NEAR(*strokes(2 - 2 * std::exp(-1 / 1.5 / kSamplesAStroke)), 1.5, 1e-9);
 }
 
 class Threshold : public ::testing::TestWithParam<ThresholdRow> {};

@@ -119,7 +119,8 @@ TEST(ReadImposedForce, IsWithinTheSlipForceOfEitherSign) {
 
 // --- forces in addition to the contact's, along −1, 1, 3, 2, 0 µm, a row a second
 
-// By central differences, one-sided at the ends [µm/s], and those of these [µm/s²].
+// The velocity [µm/s] is a central difference, one-sided at the ends; the acceleration [µm/s²] is
+// that of the velocity.
 constexpr std::array<double, 5> kVelocity = {2, 2, 0.5, -1.5, -2};
 constexpr std::array<double, 5> kAcceleration = {0, -0.75, -1.75, -1.25, -0.5};
 // From the middle, 1 µm, to either end at 2 µm; of the time from −1 to 1.

@@ -162,15 +162,6 @@ bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
   return FollowsContact(column, fitted_force);
 }
 
-/// True if the fitted mass, gap or compliance of a rig is negative, which none is. Beside a rig
-/// that is part of the fit a negative compliance says that this rig is too soft.
-bool IsUnphysical(const Problem& problem, const DepartureFit& fit) {
-  constexpr std::array<std::string_view, 3> kPositive = {"rig_in_series", "inertia", "backlash"};
-  const bool is_positive =
-      std::ranges::find(kPositive, Departures()[fit.departure].code) != kPositive.end();
-  return is_positive && fit.size < 0 && !problem.parameters.has_rig();
-}
-
 /// Returns the option to type: with the name of a covariate, quoted where it has blanks; of a
 /// column that follows the contact's force with a factor that has to be known.
 std::string OptionOf(const Problem& problem, const Solution& solution, const FitOptions& options,
@@ -359,8 +350,8 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
   adequacy.tried = test.fits.size();
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {
-    if (IsUnphysical(problem, fit)) continue;
     const Departure& departure = Departures()[fit.departure];
+    if (departure.is_positive && fit.size < 0 && !problem.parameters.has_rig()) continue;
     Cause& cause = adequacy.causes.emplace_back(
         Cause{.code = departure.code,
               .delta_aicc = fit.delta_aicc,
@@ -387,7 +378,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
   if (!(MisfitOf(result, thresholds) > thresholds.poor_misfit)) return std::nullopt;
-  // Of the correlation from one sample to the next, 1 − DW/2; 0 where nothing is forgotten.
+  // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double forgotten = -std::log1p(-result.residuals.durbin_watson / 2);
   if (!std::isfinite(forgotten)) return std::nullopt;
   const RecordFit& widest = result.WidestRecord();

@@ -357,13 +357,18 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   return parameters;
 }
 
+bool CoversMeasuredGap(const Thresholds& thresholds, const FitResult& result) {
+  return result.Find("slip_force")->includes_discrepancy &&
+         SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds);
+}
+
 ParameterEstimate CoverOtherLaw(const Thresholds& thresholds, const FitResult& result) {
   constexpr double kRunAway = 0.25;  // of the half gap
   ParameterEstimate slip_force = *result.Find("slip_force");
   const std::optional<LawChoice>& choice = result.law_choice;
   const std::optional<double> half_gap = MeasuredHalfGap(result);
-  if (!choice || choice->preferred == result.model || !slip_force.includes_discrepancy ||
-      !half_gap || !SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds)) {
+  if (!choice || choice->preferred == result.model || !half_gap ||
+      !CoversMeasuredGap(thresholds, result)) {
     return slip_force;
   }
   const double other = choice->law.slip_force;

@@ -22,6 +22,9 @@ struct Departure {
   /// looked for where that is fitted.
   std::string_view term = {};
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
+  /// No size is negative, as none of a mass: a negative one is no cause, unless a rig is fitted,
+  /// which is too soft then.
+  bool is_positive = false;
   /// The column is in proportion to the square of the size.
   bool is_square = false;
   /// Difference of the force from the mean in parts of a record with a contact of their own, over
