@@ -1,6 +1,6 @@
 #include "mindahl/identification/backbone_estimate.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +14,7 @@
 
 #include "core/draws.h"
 #include "identification/backbone_prior.h"
+#include "identification/dense.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/moved_samples.h"
 #include "identification/solve/linear_columns.h"
@@ -266,7 +267,7 @@ BackboneSeries Assemble(std::span<const Followed> records, const Grid& grid, dou
       for (Eigen::Index c = 0; c < count; ++c) Center(record.counts, columns.col(c));
       Center(record.counts, force);
     }
-    series.product += columns.transpose() * columns;
+    series.product += TransposedProduct(columns, columns);
     series.right += columns.transpose() * force;
     series.samples += static_cast<double>(std::ranges::count(record.counts, 1));
     series.columns.push_back(std::move(columns));
@@ -289,7 +290,7 @@ Smoothest FindSmoothest(const BackboneSeries& series, std::span<const Followed> 
   constexpr double kStiff = 1e6;
   constexpr int kHalvings = 30;               // to 4e-8 of the logarithm
   constexpr double kRoundingSquares = 1e-24;  // a sample, of a record without noise
-  const Eigen::MatrixXd roughness = differences.transpose() * differences;
+  const Eigen::MatrixXd roughness = TransposedProduct(differences, differences);
   const double unit = series.product.trace() / roughness.trace();
   const auto solve = [&](double smoothing) {
     Smoothest at{.smoothing = smoothing,
@@ -330,15 +331,14 @@ SeenNoise NoiseAboutBackbone(const BackboneSeries& series, std::span<const Follo
     correlated += autocorrelation.Quadratic(columns);
   }
   const double absorbed =
-      std::min(smoothest.system.ldlt().solve(correlated).trace(), series.samples / 2);
+      std::min(SolveSymmetric(smoothest.system, correlated).trace(), series.samples / 2);
   SeenNoise noise;
   noise.effective_samples = series.samples / autocorrelation.SquaredCorrelations();
   noise.variance =
       known ? *known * *known : series.SumOfSquares(smoothest.w) / (series.samples - absorbed);
   const double widened = noise.variance * Widening(series, records, smoothest.w, thresholds);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(correlated);
-  noise.root = axes.eigenvectors() *
-               (widened * axes.eigenvalues().array().max(0.0)).sqrt().matrix().asDiagonal();
+  const Eigenpairs axes = SymmetricEigenpairs(correlated);
+  noise.root = axes.vectors * (widened * axes.values.array().max(0.0)).sqrt().matrix().asDiagonal();
   return noise;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/inference/local.h"
 #include "identification/problem/moved_samples.h"
 #include "identification/problem/scaled_records.h"
@@ -364,11 +365,9 @@ std::optional<double> TermScores::TestEffects(const Eigen::MatrixXd& added) cons
   const auto terms = static_cast<std::size_t>(added.cols());
   const std::size_t parts = parts_.size();
   if (parts < terms + kLeastDegrees) return std::nullopt;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(columns_);
-  const Eigen::MatrixXd freed = added - columns_ * fit.solve(added);
-  const Eigen::VectorXd before = residual_ - columns_ * fit.solve(residual_);
-  const Eigen::VectorXd after =
-      before - freed * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(freed).solve(before);
+  const Eigen::MatrixXd freed = LeftOver(columns_, added);
+  const Eigen::VectorXd before = LeftOver(columns_, residual_);
+  const Eigen::VectorXd after = LeftOver(freed, before);
   const auto rows = RowsOfParts();
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(added.cols(), added.cols());
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(added.cols());
@@ -379,10 +378,11 @@ std::optional<double> TermScores::TestEffects(const Eigen::MatrixXd& added) cons
     const Eigen::VectorXd effect = columns.transpose() * after.segment(first, samples);
     scatter += effect * effect.transpose() / (count - 1);
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> inverse(scatter);
-  if (inverse.rank() < added.cols()) return std::nullopt;
+  Eigen::Index rank = 0;
+  const Eigen::VectorXd weighed = SolveLeastSquares(scatter, mean, &rank);
+  if (rank < added.cols()) return std::nullopt;
   const auto columns = static_cast<double>(terms);
-  const double t_squared = count * mean.dot(inverse.solve(mean));
+  const double t_squared = count * mean.dot(weighed);
   return PValueOfF((count - columns) / (columns * (count - 1)) * t_squared, columns,
                    count - columns);
 }
@@ -393,11 +393,11 @@ TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& ste
   const Eigen::VectorXd norms =
       columns.colwise().norm().transpose().unaryExpr([](double n) { return n > 0 ? n : 1.0; });
   const Eigen::MatrixXd unit = columns * norms.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd whole = unit.transpose() * unit;
+  const Eigen::MatrixXd whole = TransposedProduct(unit, unit);
   const Eigen::VectorXd wanted = -(unit.transpose() * residual_);
   const auto solve = [&](Eigen::MatrixXd matrix, const Eigen::VectorXd& vector) {
     matrix.diagonal().array() += kOwnSquare;
-    return Eigen::VectorXd(matrix.ldlt().solve(vector));
+    return Eigen::VectorXd(SolveSymmetric(matrix, vector));
   };
   TermScore score;
   const Eigen::VectorXd solution = solve(whole, wanted);
@@ -412,7 +412,7 @@ TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& ste
     for (std::size_t c = fold; c < parts_.size(); c += folds_) {
       const auto [first, count] = rows_of_parts[c];
       const auto rows = unit.middleRows(first, count);
-      matrix.noalias() -= rows.transpose() * rows;
+      matrix -= TransposedProduct(rows, rows);
       vector.noalias() += rows.transpose() * residual_.segment(first, count);
     }
     const Eigen::VectorXd without = solve(std::move(matrix), vector);

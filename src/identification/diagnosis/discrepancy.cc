@@ -1,6 +1,6 @@
 #include "identification/diagnosis/discrepancy.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/residual_structure.h"
 
@@ -161,14 +162,15 @@ std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates
     vector += vectors[part];
   }
   if (keeps_rest) {
-    matrix = estimates.jacobian().transpose() * estimates.jacobian();
+    matrix = TransposedProduct(estimates.jacobian(), estimates.jacobian());
     vector = -(estimates.jacobian().transpose() * estimates.residual());
   }
   Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
   for (std::size_t part = 0; part < parts; ++part) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rest(matrix - matrices[part]);
-    if (rest.rank() < count) return {};
-    steps.col(static_cast<Eigen::Index>(part)) = rest.solve(vector - vectors[part]);
+    Eigen::Index rank = 0;
+    steps.col(static_cast<Eigen::Index>(part)) =
+        SolveLeastSquares(matrix - matrices[part], vector - vectors[part], &rank);
+    if (rank < count) return {};
   }
   steps.colwise() -= steps.rowwise().mean().eval();
   const auto all = static_cast<double>(parts);

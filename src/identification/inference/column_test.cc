@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/inference/noise.h"
 #include "identification/intervals.h"
 #include "identification/solve/sums.h"
@@ -26,14 +27,13 @@ constexpr double kIndependent = 1e-3;
 /// @param correlated  UᵀRU
 double WaldF(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& correlated,
              double variance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(correlated);
-  const Eigen::ArrayXd along = (axes.eigenvectors().transpose() * coefficients).array();
-  return (along.square() / axes.eigenvalues().array().max(1.0)).mean() / variance;
+  const Eigenpairs axes = SymmetricEigenpairs(correlated);
+  const Eigen::ArrayXd along = (axes.vectors.transpose() * coefficients).array();
+  return (along.square() / axes.values.array().max(1.0)).mean() / variance;
 }
 
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
-  if (symmetric.size() == 0) return symmetric;
-  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(symmetric).pseudoInverse();
+  return symmetric.size() == 0 ? symmetric : PseudoInverse(symmetric);
 }
 
 std::span<const double> ColumnValues(const Eigen::MatrixXd& matrix, Eigen::Index j) {
@@ -59,8 +59,7 @@ Eigen::MatrixXd ProductsOf(const Eigen::MatrixXd& columns) {
 Eigen::MatrixXd OrthonormalOf(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
   Eigen::MatrixXd both(one.rows(), one.cols() + other.cols());
   both << one, other;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(both);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(both.rows(), qr.rank());
+  return OrthonormalBasis(both);
 }
 
 /// AᵀRA of noise that is not white.
@@ -99,7 +98,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   }
   plain_ = ProductsOf(columns);
   inverse_of_law_ = Inverse(plain_.topLeftCorner(law_, law_));
-  shares_ = inverse_of_law_ * plain_.topRightCorner(law_, others.cols());
+  shares_ = Product(inverse_of_law_, plain_.topRightCorner(law_, others.cols()));
   free_plain_ = FreedOfLaw(plain_);
   free_residual_ = residual_.tail(others.cols()) - shares_.transpose() * residual_.head(law_);
 
@@ -120,7 +119,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   } else if (restores) {
     autocorrelation_ = AutocorrelationBeside(
         *problem.data, {rest.data(), problem.size()},
-        OrthonormalOf(columns.leftCols(law_), columns.rightCols(others.cols()) * all_));
+        OrthonormalOf(columns.leftCols(law_), Product(columns.rightCols(others.cols()), all_)));
   } else {
     autocorrelation_ = AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
   }
@@ -131,7 +130,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   if (!is_white_) free_correlated_ = FreedOfLaw(correlated_);
 
   // A fit absorbs more of correlated noise than the number of its parameters.
-  const double by_law = (inverse_of_law_ * correlated_.topLeftCorner(law_, law_)).trace();
+  const double by_law = Product(inverse_of_law_, correlated_.topLeftCorner(law_, law_)).trace();
   const double by_others = CorrelationOf(all_).trace();
   const double absorbed = std::min(by_law + by_others, samples_ / 2);
   if (quieter != nullptr) {
@@ -148,9 +147,9 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
 /// @param products  of A
 Eigen::MatrixXd ColumnTest::FreedOfLaw(const Eigen::MatrixXd& products) const {
   const Eigen::Index count = products.cols() - law_;
-  const Eigen::MatrixXd mixed = shares_.transpose() * products.topRightCorner(law_, count);
+  const Eigen::MatrixXd mixed = TransposedProduct(shares_, products.topRightCorner(law_, count));
   return products.bottomRightCorner(count, count) - mixed - mixed.transpose() +
-         shares_.transpose() * products.topLeftCorner(law_, law_) * shares_;
+         Product(TransposedProduct(shares_, products.topLeftCorner(law_, law_)), shares_);
 }
 
 /// Coefficients, in columns freed of the law, of orthonormal ones that span some of them; none
@@ -184,7 +183,7 @@ Eigen::MatrixXd ColumnTest::Orthonormal(std::span<const Eigen::Index> places) co
 
 Eigen::MatrixXd ColumnTest::CorrelationOf(const Eigen::MatrixXd& basis) const {
   if (is_white_) return Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
-  return basis.transpose() * free_correlated_ * basis;
+  return Product(TransposedProduct(basis, free_correlated_), basis);
 }
 
 ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
@@ -221,7 +220,8 @@ LinearStep ColumnTest::Step(std::span<const Eigen::Index> places) const {
   const Eigen::MatrixXd products = plain_(both, both);
   const Eigen::MatrixXd factor = Inverse(products);
   const Eigen::VectorXd step = -factor * residual_(both);
-  const Eigen::MatrixXd covariance = variance_ * factor * correlated_(both, both) * factor;
+  const Eigen::MatrixXd correlated = correlated_(both, both);
+  const Eigen::MatrixXd covariance = Product(Product(variance_ * factor, correlated), factor);
   const double gain = -step.dot(products * step) - 2 * step.dot(residual_(both));
   const auto error = [&](Eigen::Index j) {
     return std::sqrt(std::max(covariance(j, j), variance_ * factor(j, j)));

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <ranges>
 
+#include "identification/dense.h"
 #include "identification/inference/branch_places.h"
 #include "identification/inference/sampled_time.h"
 #include "identification/problem/scaled_records.h"
@@ -499,7 +500,7 @@ bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
       mean += off / count;
       deviation += off * (own[row] - mean);
     }
-    const Eigen::VectorXd left = own - others * others.colPivHouseholderQr().solve(own);
+    const Eigen::VectorXd left = LeftOver(others, own);
     if (left.squaredNorm() > kOwnPart * kOwnPart * deviation) return false;
   }
   return true;

@@ -1,6 +1,6 @@
 #include "identification/inference/irregularities.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/inference/noise.h"
 
 namespace mindahl::identification {
@@ -475,7 +476,7 @@ std::vector<double> WithoutRipple(std::span<const FittedSample> samples,
         right += plateau.residual[i] * columns;
       }
     }
-    const Eigen::VectorXd factors = normal.completeOrthogonalDecomposition().solve(right);
+    const Eigen::VectorXd factors = PseudoInverse(normal) * right;
     for (const Plateau& plateau : plateaus) {
       if (plateau.rises != rises) continue;
       for (std::size_t i = plateau.begin; i < plateau.end; ++i) {

@@ -1,6 +1,6 @@
 #include "identification/inference/law_tests.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "mindahl/identification/fit_result.h"
@@ -153,17 +154,16 @@ std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& 
   }
   split = split * norms.cwiseInverse().asDiagonal();
   const Eigen::VectorXd& values = estimates.residual();
-  const Eigen::MatrixXd normal = split.transpose() * split;
-  const Eigen::MatrixXd factor =
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(normal).pseudoInverse();
+  const Eigen::MatrixXd normal = TransposedProduct(split, split);
+  const Eigen::MatrixXd factor = PseudoInverse(normal);
   const Eigen::VectorXd step = -factor * (split.transpose() * values);
   const Eigen::MatrixXd correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, split);
   // The misfit of one law for all branches is not noise here.
   const double sum_of_squares = values.squaredNorm();
   if (!(sum_of_squares > 0)) return {};
   const double left = (values + split * step).squaredNorm() / sum_of_squares;
-  const Eigen::MatrixXd covariance =
-      noise.variance * noise.repeating * std::min(left, 1.0) * factor * correlated * factor;
+  const Eigen::MatrixXd covariance = Product(
+      Product(noise.variance * noise.repeating * std::min(left, 1.0) * factor, correlated), factor);
   std::vector<BranchShape> shapes;
   for (Eigen::Index k = 0; k < parts; ++k) {
     const Eigen::Index column = column_of(k);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "identification/dense.h"
 #include "identification/solve/sums.h"
 #include "identification/solve/turning_points.h"
 
@@ -22,12 +23,8 @@ constexpr double kNullComponent = 1e-3;
 /// Returns R of J = QR, which has J's singular values and is small, however long the record; its
 /// diagonal is not negative.
 Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
-  const Eigen::Index count = columns.cols();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(count, count);
-  const Eigen::Index rows = std::min(count, columns.rows());
-  triangle.topRows(rows) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
-  for (Eigen::Index j = 0; j < rows; ++j) {
+  Eigen::MatrixXd triangle = UpperTriangle(columns);
+  for (Eigen::Index j = 0; j < triangle.rows(); ++j) {
     if (triangle(j, j) < 0) triangle.row(j) *= -1;
   }
   return triangle;
@@ -36,8 +33,7 @@ Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
 /// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
 std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
   if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
-  Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
-      Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
+  Eigen::MatrixXd inverse = InverseOfTriangle(triangle);
   // |R|·|R⁻¹| bounds the ratio of the singular values.
   if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;
   return inverse;
@@ -48,13 +44,13 @@ std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle)
 Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& norms,
                                     LocalUncertainty& result) {
   const Eigen::Index size = triangle.cols();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  const RightSingular svd = RightSingularVectors(triangle);
   Eigen::MatrixXd half(size, size);
   Eigen::Index rank = 0;
   for (Eigen::Index k = 0; k < size; ++k) {
-    const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0.0;
-    const Eigen::VectorXd direction = svd.matrixV().col(k);
-    if (value > kRankTolerance * svd.singularValues()[0]) {
+    const double value = k < svd.values.size() ? svd.values[k] : 0.0;
+    const Eigen::VectorXd direction = svd.vectors.col(k);
+    if (value > kRankTolerance * svd.values[0]) {
       half.col(rank++) = direction / value;
       continue;
     }
@@ -72,8 +68,8 @@ Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen
 /// Returns a root L of a symmetric matrix, LLᵀ = M, without what rounding leaves below zero.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& matrix) {
   if (matrix.size() == 0) return matrix;  // which Eigen's solver does not take
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((matrix + matrix.transpose()) / 2);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigenpairs pairs = SymmetricEigenpairs((matrix + matrix.transpose()) / 2);
+  return pairs.vectors * pairs.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
@@ -164,9 +160,10 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
                                   const Noise& noise, const DisplacementEffect& displacement,
                                   const Eigen::MatrixXd& jacobian) {
-  const Eigen::MatrixXd drawn = jacobian.transpose() * displacement.residuals;
+  const Eigen::MatrixXd drawn = TransposedProduct(jacobian, displacement.residuals);
   const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
-  return drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance) +
+  return Product(drawn, drawn.transpose()) /
+             (static_cast<double>(drawn.cols()) * displacement.variance) +
          CorrelatedProduct(data, autocorrelation, share.asDiagonal() * jacobian);
 }
 
@@ -208,16 +205,16 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   Eigen::MatrixXd root = half;
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {
-    const Eigen::MatrixXd orthonormal = jacobian * (inverse_norms.asDiagonal() * half);
+    const Eigen::MatrixXd orthonormal = Product(jacobian, inverse_norms.asDiagonal() * half);
     Eigen::MatrixXd product =
         displacement.residuals.size() > 0
             ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,
                                 orthonormal)
             : CorrelatedProduct(*problem.data, noise.autocorrelation, orthonormal);
     result.absorbed = product.trace();
-    const Eigen::MatrixXd of_priors = priors * (inverse_norms.asDiagonal() * half);
-    product += of_priors.transpose() * of_priors;
-    root = half * RootOf(product);
+    const Eigen::MatrixXd of_priors = Product(priors, inverse_norms.asDiagonal() * half);
+    product += TransposedProduct(of_priors, of_priors);
+    root = Product(half, RootOf(product));
   }
   const Eigen::MatrixXd in_theta = inverse_norms.asDiagonal() * root;
   const Eigen::MatrixXd white_in_theta = inverse_norms.asDiagonal() * half;

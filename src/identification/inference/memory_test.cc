@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/dense.h"
 #include "identification/inference/branch_places.h"
 #include "identification/inference/column_test.h"
 #include "identification/solve/turning_points.h"
@@ -365,9 +366,7 @@ Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& law, const Eigen::MatrixXd& shape
       column /= norm;
     }
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
-  factors.setThreshold(kOwn);
-  return factors.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factors.rank());
+  return OrthonormalBasis(columns, kOwn);
 }
 
 /// Holds the comparisons under one memory.

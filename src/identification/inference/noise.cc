@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/sums.h"
 
@@ -120,8 +121,8 @@ Autocovariances TakenUp(const Autocorrelation& process, double variance,
     correlated.middleRows(begin, size) = process.Apply(columns.middleRows(begin, size));
     begin += size;
   }
-  const Eigen::MatrixXd mixed = columns.transpose() * correlated;
-  const Eigen::MatrixXd other = correlated - columns * mixed;
+  const Eigen::MatrixXd mixed = TransposedProduct(columns, correlated);
+  const Eigen::MatrixXd other = correlated - Product(columns, mixed);
   Autocovariances taken{};
   const auto samples = static_cast<double>(columns.rows());
   for (std::size_t lag = 0; lag <= highest; ++lag) {
@@ -198,7 +199,7 @@ double Autocorrelation::SquaredCorrelations() const {
 }
 
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  if (order == 0 || columns.cols() == 0) return columns.transpose() * columns;
+  if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
   // A column a sample, so that those of one time lie side by side; the latest first.
   const Eigen::Index rows = columns.rows();
   Eigen::MatrixXd filtered(columns.cols(), rows + 64);
@@ -224,10 +225,7 @@ Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixX
       break;
     }
   }
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  product.selfadjointView<Eigen::Lower>().rankUpdate(filtered.leftCols(i), innovation_share);
-  product.triangularView<Eigen::StrictlyUpper>() = product.transpose();
-  return product;
+  return innovation_share * SquareOf(filtered.leftCols(i));
 }
 
 Eigen::MatrixXd Autocorrelation::Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {

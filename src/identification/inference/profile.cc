@@ -1,5 +1,7 @@
 #include "identification/inference/profile.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

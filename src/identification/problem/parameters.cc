@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/nearest_name.h"
+#include "identification/dense.h"
 #include "identification/problem/moved_samples.h"
 #include "mindahl/core/error.h"
 
@@ -36,7 +37,7 @@ void TakeOffCubic(std::vector<PlacedForce>& forces) {
     columns.row(i) << 1.0, at.position, square, square * at.position;
     values[i] = at.force;
   }
-  const Eigen::VectorXd left = values - columns * columns.householderQr().solve(values);
+  const Eigen::VectorXd left = LeftOver(columns, values);
   for (Eigen::Index i = 0; i < size; ++i) forces[static_cast<std::size_t>(i)].force = left[i];
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "identification/dense.h"
 #include "identification/solve/sums.h"
 
 namespace mindahl::identification {
@@ -180,7 +181,7 @@ Eigen::VectorXd SolveFree(const Eigen::MatrixXd& product, const Eigen::VectorXd&
   if (places.empty()) return w;
   const Eigen::MatrixXd of_free = product(places, places);
   const Eigen::VectorXd right = b(places);
-  const Eigen::VectorXd solved = of_free.ldlt().solve(right);
+  const Eigen::VectorXd solved = SolveSymmetric(of_free, right);
   w(places) = solved;
   return w;
 }

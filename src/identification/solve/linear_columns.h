@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "identification/solve/projected_residual.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>

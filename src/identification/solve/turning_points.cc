@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "identification/dense.h"
 #include "identification/solve/ceres_options.h"
 
 namespace mindahl::identification {
@@ -329,12 +330,13 @@ ArrowStep GaussNewtonStep(const ArrowSystem& system) {
   const Eigen::MatrixXd cross = system.overshoots.transpose() * system.jacobian;
   const Eigen::VectorXd sparse_right = -(system.overshoots.transpose() * system.residual);
   const Eigen::VectorXd dense_right = -(system.jacobian.transpose() * system.residual);
-  Eigen::MatrixXd dense = system.jacobian.transpose() * system.jacobian;
+  Eigen::MatrixXd dense = TransposedProduct(system.jacobian, system.jacobian);
   for (Eigen::Index j = 0; j < dense.cols(); ++j) dense(j, j) = damp(dense(j, j));
   const Eigen::MatrixXd solved_cross = eliminated.solve(cross);
   const Eigen::VectorXd solved_right = eliminated.solve(sparse_right);
-  const Eigen::LDLT<Eigen::MatrixXd> schur(dense - cross.transpose() * solved_cross);
-  const Eigen::VectorXd of_parameters = schur.solve(dense_right - cross.transpose() * solved_right);
+  const Eigen::VectorXd of_parameters =
+      SolveSymmetric(dense - TransposedProduct(cross, solved_cross),
+                     dense_right - cross.transpose() * solved_right);
   step.overshoot = solved_right - solved_cross * of_parameters;
   step.left =
       system.residual + system.jacobian * of_parameters + system.overshoots * step.overshoot;
