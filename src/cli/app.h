@@ -1,9 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
+
+// Only app.cc and options.cc include CLI11, which takes longer to compile than a command.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace mindahl::cli {
 

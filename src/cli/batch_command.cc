@@ -140,24 +140,22 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
 
 void AddBatchCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<BatchCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("batch",
-                         "Fits each file on its own, with any option of fit for all of them:\n"
-                         "one row a file, and the scatter between files next to their stated\n"
-                         "errors. A file that fails does not stop the others: exit status 3\n"
-                         "when any did.");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "batch",
+      "Fits each file on its own, with any option of fit for all of them:\n"
+      "one row a file, and the scatter between files next to their stated\n"
+      "errors. A file that fails does not stop the others: exit status 3\n"
+      "when any did.",
       {"mindahl batch run1.csv run2.csv run3.csv --output table.csv --normal-load 50",
        "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
-  command->add_option("files", options->request.files, "CSV records, each a test of its own")
-      ->type_name("FILE");
-  AddFilesFrom(*command, options->list);
-  AddShard(*command, options->list);
-  AddFitOptions(*command, options->request, NormalLoads::kOne);
-  const OptionGroup group(*command, "Results");
+  OptionGroup(command, kPlainGroup)
+      .Add("files", options->request.files, "CSV records, each a test of its own", "FILE");
+  AddFilesFrom(command, options->list);
+  AddShard(command, options->list);
+  AddFitOptions(command, options->request, NormalLoads::kOne);
+  const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
-      ->required();
+      .Required();
   group.Add("--json", options->json_path,
             "the answer of fit for each file as JSON; - for standard output alone", "PATH");
   group.Add(
@@ -167,12 +165,12 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   group
       .Add("--threads", options->threads,
            "number of worker threads (default: one per core); they do not change\nthe results")
-      ->check(WholeNumber(1, 1024));
+      .WholeNumber(1, 1024);
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
-  command->callback([options, command, &console] {
+  WhenCalled(command, [options, &command, &console] {
     options->request.files = FilesOf(options->request.files, options->list);
-    RunBatch(*options, *command, console);
+    RunBatch(*options, command, console);
   });
 }
 

@@ -29,22 +29,20 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
 
 void AddContactCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ContactCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("contact",
-                         "Computes sigma = 8a/G*, alpha = 1/3 and Tc = mu N of a contact from\n"
-                         "materials, radii, load and friction, or from contact radius and\n"
-                         "compliance, by Hertz and Mindlin.");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "contact",
+      "Computes sigma = 8a/G*, alpha = 1/3 and Tc = mu N of a contact from\n"
+      "materials, radii, load and friction, or from contact radius and\n"
+      "compliance, by Hertz and Mindlin.",
       {"mindahl contact --friction 0.3 --normal-load 50±0.5 --radius-1 0.05 --radius-2 inf \\",
        "    --youngs-modulus-1 210e9 --poisson-1 0.3 --youngs-modulus-2 210e9 --poisson-2 0.3",
        "mindahl contact --friction 0.3 --normal-load 50 --contact-radius 2.5e-4 --compliance "
        "4.2e-11"});
-  AddContactOptions(*command, options->contact);
-  AddFrictionOption(*command, options->contact);
-  command->add_option("--json", options->json_path, "result as JSON; - for standard output")
-      ->type_name("PATH");
-  command->callback([options, &console] { RunContact(*options, console); });
+  AddContactOptions(command, options->contact);
+  AddFrictionOption(command, options->contact);
+  OptionGroup(command, kPlainGroup)
+      .Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
+  WhenCalled(command, [options, &console] { RunContact(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -20,13 +20,6 @@ namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
 
-/// A number as CLI11 reads it for every other option.
-std::optional<double> ReadNumber(std::string_view text) {
-  double number = 0.0;
-  if (!CLI::detail::lexical_cast(std::string(Trimmed(text)), number)) return std::nullopt;
-  return number;
-}
-
 /// Value and uncertainty, which is empty where there is no separator.
 std::pair<std::string_view, std::optional<std::string_view>> SplitUncertainty(
     std::string_view text) {
@@ -42,13 +35,11 @@ std::pair<std::string_view, std::optional<std::string_view>> SplitUncertainty(
 
 void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
               const std::string& description, const std::string& unit) {
-  command
-      .add_option_function<std::string>(
+  OptionGroup(command, kGroup)
+      .AddRead(
           name,
           [&target, name](const std::string& text) { target = ParseUncertainValue(text, name); },
-          description)
-      ->type_name(unit + "[+-U]")
-      ->group(kGroup);
+          description, unit + "[+-U]");
 }
 
 /// "25,50±1%,100".
@@ -76,13 +67,13 @@ void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
 
 UncertainValue ParseUncertainValue(std::string_view text, std::string_view option) {
   const auto [number, uncertainty] = SplitUncertainty(text);
-  const std::optional<double> value = ReadNumber(number);
+  const std::optional<double> value = NumberOf(number);
   std::optional<double> standard_error = 0.0;
   if (uncertainty) {
     std::string_view magnitude = Trimmed(*uncertainty);
     const bool is_percentage = magnitude.ends_with('%');
     if (is_percentage) magnitude.remove_suffix(1);
-    standard_error = ReadNumber(magnitude);
+    standard_error = NumberOf(magnitude);
     if (value && standard_error && is_percentage && std::isfinite(*value)) {
       *standard_error *= 0.01 * std::abs(*value);
     }
@@ -104,15 +95,14 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
 
 void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
   if (loads == NormalLoads::kOneAFile) {
-    command
-        .add_option_function<std::string>(
+    OptionGroup(command, kGroup)
+        .AddRead(
             "--normal-load",
             [&options](const std::string& text) { ReadNormalLoads(text, options); },
             "normal load N [N], one for all files or one a file: 25,50,100; like\n"
             "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
-            "50+/-0.5, 50±1%")
-        ->type_name("N[+-U],...")
-        ->group(kGroup);
+            "50+/-0.5, 50±1%",
+            "N[+-U],...");
   } else {
     AddKnown(command, "--normal-load", options.known.normal_load,
              "normal load N [N]; like all below exact, or with a standard\n"

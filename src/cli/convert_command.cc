@@ -47,35 +47,33 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
 
 void AddConvertCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ConvertCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert",
-                         "Converts a contact's steady loop to another law or program: the\n"
-                         "parameters, the remaining error, and the amplitudes at which it is\n"
-                         "small.");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "convert",
+      "Converts a contact's steady loop to another law or program: the\n"
+      "parameters, the remaining error, and the amplitudes at which it is\n"
+      "small.",
       {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
        "    --input-lines contact.tcl"});
-  const OptionGroup contact(*command, "The contact");
+  const OptionGroup contact(command, "The contact");
   contact
       .Add("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]", "N/M")
-      ->required();
+      .Required();
   contact.Add("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3",
               "ALPHA");
-  contact.Add("--slip-force", options->asked.law.slip_force, "slip force Tc [N]", "N")->required();
+  contact.Add("--slip-force", options->asked.law.slip_force, "slip force Tc [N]", "N").Required();
   contact
       .AddShown("--from", options->asked.from,
                 "law of these parameters: of fit --model mindlin-dahl or --model dahl")
-      ->check(OneOf({"masing", "dahl"}));
+      .OneOf({"masing", "dahl"});
   contact
       .Add("--amplitude", options->asked.options.amplitude,
            "amplitude X of the contact's steady loop [m], without the rig's travel", "M")
-      ->required();
-  const OptionGroup result(*command, "What it becomes");
+      .Required();
+  const OptionGroup result(command, "What it becomes");
   std::vector<std::string> names;
   for (const convert::TargetRow& row : convert::Targets()) names.emplace_back(row.name);
-  result.Add("--to", options->asked.to, "law or program")->required()->check(OneOf(names));
+  result.Add("--to", options->asked.to, "law or program").Required().OneOf(names);
   result.Add(
       "--least-amplitude", options->asked.least_amplitude,
       "from this amplitude [m] on a target that is not exact is fitted;\ndefault --amplitude", "M");
@@ -85,7 +83,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
                   "E");
   result.AddShown("--elements", options->asked.options.elements, "number of elements of --to iwan")
-      ->check(WholeNumber(1, kMostElements));
+      .WholeNumber(1, kMostElements);
   result.AddShown("--beta", options->asked.options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.Add("--normal-load", options->asked.normal.normal_load,
@@ -94,11 +92,11 @@ void AddConvertCommand(CLI::App& app, Console& console) {
              "contact radius [m] for --to lammps: the stiffness follows it", "M");
   result.Add("--viscous", options->asked.normal.viscous,
              "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
-  const OptionGroup outputs(*command, "Output");
+  const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
   outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  command->callback([options, &console] { RunConvert(*options, console); });
+  WhenCalled(command, [options, &console] { RunConvert(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -93,11 +93,12 @@ void RequireSweepOptions(const CLI::App& command) {
                                                           "fix",
                                                           "model",
                                                           "confidence"};
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() == 0 || option->get_lnames().empty()) continue;
-    const std::string& name = option->get_lnames().front();
-    if (name == "json" || std::ranges::find(kOfSweeps, name) != kOfSweeps.end()) continue;
-    throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", name));
+  for (const OptionState& option : OptionsOf(command)) {
+    if (!option.is_given || option.name == "json" ||
+        std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end()) {
+      continue;
+    }
+    throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", option.name));
   }
 }
 
@@ -149,23 +150,23 @@ void AddFitCommand(CLI::App& app, Console& console) {
       "files: one joint fit) and translates them into the contact. Exit\n"
       "status 3 when the fit does not converge or, with --strict, the model\n"
       "is not adequate or a parameter not identifiable.";
-  CLI::App* command = app.add_subcommand("fit", kAbout);
-  AddExamples(*command, app,
-              {"mindahl fit loop.csv --normal-load 50",
-               "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
-               "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"});
-  command->add_option("files", options->request.files, "CSV records of one contact")
-      ->type_name("FILE")
-      ->required();
-  AddJoin(*command, options->request);
-  AddFitOptions(*command, options->request, NormalLoads::kOneAFile);
-  const OptionGroup sweeps(*command, "Amplitude sweeps");
+  CLI::App& command =
+      AddCommand(app, "fit", kAbout,
+                 {"mindahl fit loop.csv --normal-load 50",
+                  "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
+                  "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"});
+  OptionGroup(command, kPlainGroup)
+      .Add("files", options->request.files, "CSV records of one contact", "FILE")
+      .Required();
+  AddJoin(command, options->request);
+  AddFitOptions(command, options->request, NormalLoads::kOneAFile);
+  const OptionGroup sweeps(command, "Amplitude sweeps");
   sweeps
       .Add("--sweep", options->sweep,
            "the file has stiffness or compliance against the amplitude of force or\ndisplacement, "
            "as lock-in rigs report: secant, of the loop from end to\nend, or tangent, of a small "
            "oscillation about a force that was reached")
-      ->check(OneOf({"secant", "tangent"}));
+      .OneOf({"secant", "tangent"});
   sweeps.Add("--response", options->response.column,
              "column of the stiffness or compliance; default a recognised name;\n--displacement or "
              "--force names the column of the amplitude",
@@ -175,7 +176,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
              "UNIT");
   sweeps.Add("--response-noise", options->response_noise,
              "known standard deviation of a response [N/m] or [m/N]", "S");
-  const OptionGroup group(*command, "Results");
+  const OptionGroup group(command, "Results");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
   group.Add("--residuals", options->residuals_path,
             "measured and fitted force of every sample as CSV", "PATH");
@@ -190,7 +191,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
                 "compute joint confidence regions of sigma and alpha and of slip_force\nand alpha, "
                 "for the JSON; --report implies it");
   AddStrict(group, options->strict, "exit status 3");
-  command->callback([options, command, &console] { RunFit(*options, *command, console); });
+  WhenCalled(command, [options, &command, &console] { RunFit(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

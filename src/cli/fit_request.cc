@@ -5,7 +5,6 @@
 #include <charconv>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,10 +31,6 @@ using identification::Term;
 namespace {
 
 using request::kFitIt;
-
-CLI::Validator OneOfWords(std::span<const std::string_view> words) {
-  return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
-}
 
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
@@ -127,95 +122,75 @@ request::TermRequest ParseTerm(const std::string& text, const Term& term) {
 
 /// Adds an option that is read into an optional range.
 template <typename Range, typename Parse>
-CLI::Option* AddRange(CLI::App& command, const std::string& name, std::optional<Range>& range,
-                      const std::string& form, const std::string& help, Parse parse) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [&range, name, form, parse](const std::string& text) { range = parse(text, name, form); },
-          help)
-      ->type_name("LO:HI");
+void AddRange(const OptionGroup& group, const std::string& name, std::optional<Range>& range,
+              const std::string& form, const std::string& help, Parse parse) {
+  group.AddRead(
+      name,
+      [&range, name, form, parse](const std::string& text) { range = parse(text, name, form); },
+      help, "LO:HI");
 }
 
 void AddLimitOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, std::string(kColumnGroup));
   group.AddShown("--max-rows", options.max_rows, "refuse files with more rows than this in total")
-      ->check(WholeNumber(1, 1'000'000'000'000));
+      .WholeNumber(1, 1'000'000'000'000);
   group
       .Add("--max-memory", options.max_memory,
            "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
            "memory, or the limit of the process",
            "SIZE")
-      ->check(WholeNumber(1, 1'000'000'000'000'000'000))
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
+      .WholeNumber(1, 1'000'000'000'000'000'000)
+      .WithUnitOfSize();
 }
 
 void AddWindowOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, std::string(kColumnGroup));
-  AddRange(command, "--time-window", options.time_window, "LO:HI in seconds",
-           "fit only samples from LO to HI [s]", &ParseInterval)
-      ->group(group.name());
-  AddRange(command, "--load-window", options.load_window, "LO:HI in newtons",
+  AddRange(group, "--time-window", options.time_window, "LO:HI in seconds",
+           "fit only samples from LO to HI [s]", &ParseInterval);
+  AddRange(group, "--load-window", options.load_window, "LO:HI in newtons",
            "fit only samples under a normal load from LO to HI [N];\nthe others still count as "
            "loading history",
-           &ParseInterval)
-      ->group(group.name());
+           &ParseInterval);
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
-  AddRange(command, "--cycles", options.cycles, counted,
+  AddRange(group, "--cycles", options.cycles, counted,
            "fit only samples of the cycles LO to HI, counted from 1;\nthe others still count as "
            "loading history",
-           &ParseCountRange)
-      ->group(group.name());
-  AddRange(command, "--samples", options.samples, counted,
+           &ParseCountRange);
+  AddRange(group, "--samples", options.samples, counted,
            "fit only the samples LO to HI of each record, counted from 1;\nthe others still count "
            "as loading history",
-           &ParseCountRange)
-      ->group(group.name());
+           &ParseCountRange);
   group
       .AddShown("--skip-cycles", options.skip_cycles,
                 "number of cycles to leave out at the start;\nthey still count as loading history")
-      ->check(WholeNumber(0, 1'000'000'000));
+      .WholeNumber(0, 1'000'000'000);
   group
       .AddShown("--trim", options.trim,
                 "auto leaves out what at the ends of a record is not the test, with a\nnote: "
                 "rests, ramps of load and amplitude, cycles of running in")
-      ->check(OneOfWords(request::kTrims));
+      .OneOf(request::kTrims);
 }
 
-void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& group) {
+void AddTermOptions(const OptionGroup& group, FitRequest& options) {
   for (const Term& term : identification::Terms()) {
     if (term.option.empty()) continue;
     const std::string option(term.option);
     const std::string help(term.help);
+    const std::string argument(term.argument);
     if (term.of_column) {
-      command
-          .add_option_function<std::vector<std::string>>(
-              option,
-              [&options](const std::vector<std::string>& texts) {
-                options.covariates.clear();
-                for (const std::string& text : texts) {
-                  options.covariates.push_back(ParseCovariate(text));
-                }
-              },
-              help)
-          ->type_name(std::string(term.argument))
-          ->allow_extra_args(false)
-          ->group(group);
-    } else if (term.argument.empty()) {
-      command
-          .add_flag_callback(
-              option, [&options, &term] { options.terms[term.name] = {}; }, help)
-          ->group(group);
+      const auto read = [&options](const std::vector<std::string>& texts) {
+        options.covariates.clear();
+        for (const std::string& text : texts) options.covariates.push_back(ParseCovariate(text));
+      };
+      group.AddReadAll(option, read, help, argument).OneAtATime();
+    } else if (argument.empty()) {
+      group.AddAction(
+          option, [&options, &term] { options.terms[term.name] = {}; }, help);
     } else {
-      command
-          .add_option_function<std::string>(
-              option,
-              [&options, &term](const std::string& text) {
-                options.terms[term.name] = ParseTerm(text, term);
-              },
-              help)
-          ->type_name(std::string(term.argument))
-          ->group(group);
+      const auto read = [&options, &term](const std::string& text) {
+        options.terms[term.name] = ParseTerm(text, term);
+      };
+      group.AddRead(option, read, help, argument);
     }
   }
 }
@@ -333,25 +308,25 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
     description += fmt::format(" {} ({});", model.name, model.title);
   }
   description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
-  group.AddShown("--model", options.model, description)->check(OneOfWords(models));
+  group.AddShown("--model", options.model, description).OneOf(models);
   group
       .AddShown("--initial-state", options.initial_state,
                 "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
                 "auto fits both and keeps the smaller AICc")
-      ->check(OneOfWords(request::kInitialStates));
+      .OneOf(request::kInitialStates);
   group
       .AddShown("--force-sign", options.force_sign,
                 "sign of the force in the file relative to the displacement; auto\ndecides by the "
                 "sign of the loop's energy")
-      ->check(OneOfWords(request::kForceSigns));
+      .OneOf(request::kForceSigns);
   group
       .AddShown("--noise-in", options.noise_in,
                 "channel that has the noise and is fitted; the other one is taken as\nexact: give "
                 "displacement where the machine imposes the force")
-      ->check(OneOfWords(request::kNoiseIn));
+      .OneOf(request::kNoiseIn);
   group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
-      ->check(OneOfWords(request::kOnOff));
-  AddTermOptions(command, options, group.name());
+      .OneOf(request::kOnOff);
+  AddTermOptions(group, options);
   group.Add("--terms", options.term_choice,
             "auto adds the terms that the record requires, one at a time, as\njudged by held-out "
             "cycles; NAME,NAME,... fits these:\n" +
@@ -359,27 +334,23 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                 "\ndefault: auto for a single record that the law alone misses by more\nthan 5 %, "
                 "without options for terms; else none; in track none",
             "auto|none|NAME,...");
-  command
-      .add_flag_callback(
-          "--follow-load",
-          [] {
-            throw InputError(
-                "--follow-load is no longer needed: a load column that varies by more than 1 % is "
-                "followed by itself; leave the option out");
-          },
-          "no longer needed: a load that varies is followed by itself")
-      ->group("");  // not shown
+  const OptionGroup hidden(command, "");
+  hidden.AddAction(
+      "--follow-load",
+      [] {
+        throw InputError(
+            "--follow-load is no longer needed: a load column that varies by more than 1 % is "
+            "followed by itself; leave the option out");
+      },
+      "no longer needed: a load that varies is followed by itself");
   const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
-    command
-        .add_option_function<std::vector<std::string>>(
-            name,
-            [&target, name, form, parse](const std::vector<std::string>& texts) {
-              ReadAssignments(texts, name, form, target, parse);
-            },
-            help)
-        ->type_name(type)
-        ->group(group.name());
+    group.AddReadAll(
+        name,
+        [&target, name, form, parse](const std::vector<std::string>& texts) {
+          ReadAssignments(texts, name, form, target, parse);
+        },
+        help, type);
   };
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
   add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
@@ -408,14 +379,14 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       .AddShown("--loss", options.loss,
                 "weight of residuals that are large against their scatter: huber and\ncauchy "
                 "reduce it, tukey reduces it to zero")
-      ->check(OneOfWords(request::kLosses));
+      .OneOf(request::kLosses);
   group
       .AddShown("--starts", options.starts,
                 "number of starting points that are refined: the four most promising,\nthe others "
                 "drawn at random")
-      ->check(WholeNumber(1, 1000));
+      .WholeNumber(1, 1000);
   group.AddShown("--seed", options.seed, "seed of the starting points drawn at random")
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
   group.Add("--reversal-gate", options.reversal_gate,
             "excursions up to this [m] are noise, not reversals; default from the data", "M");
 }
@@ -434,8 +405,7 @@ void AddStrict(const OptionGroup& group, Strictness& strictness, const std::stri
                                                            {"true", Strictness::kAdequate},
                                                            {"doubtful", Strictness::kDoubtful},
                                                            {"false", Strictness::kNone}};
-  const auto text = std::make_shared<std::string>();
-  const auto read = [text, &strictness](const std::string& given) {
+  const auto read = [&strictness](const std::string& given) {
     const auto level = levels.find(given);
     if (level == levels.end()) {
       throw InputError(fmt::format(
@@ -443,13 +413,11 @@ void AddStrict(const OptionGroup& group, Strictness& strictness, const std::stri
     }
     strictness = level->second;
   };
-  group
-      .AddFlag("--strict{adequate}", *text,
-               otherwise +
-                   " unless the model is adequate and every free\n"
-                   "parameter identifiable; --strict=doubtful accepts a doubtful\n"
-                   "model and parameters that are effective")
-      ->each(read);
+  group.AddFlagWithWord("--strict{adequate}", read,
+                        otherwise +
+                            " unless the model is adequate and every free\n"
+                            "parameter identifiable; --strict=doubtful accepts a doubtful\n"
+                            "model and parameters that are effective");
 }
 
 void Messages::Note(std::string_view text) const {

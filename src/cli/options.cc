@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -14,24 +17,161 @@
 
 namespace mindahl::cli {
 
-void AddExamples(CLI::App& command, const CLI::App& app,
-                 std::initializer_list<std::string_view> lines) {
+CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
+                     std::initializer_list<std::string_view> examples) {
+  CLI::App* command = program.add_subcommand(name, about);
   std::string text = "Examples:\n";
-  for (const std::string_view line : lines) {
+  for (const std::string_view line : examples) {
     text += "  ";
     text += line;
     text += '\n';
   }
-  command.footer(text + '\n' + app.get_footer());
+  command->footer(text + '\n' + program.get_footer());
+  return *command;
 }
 
-CLI::Validator OneOf(std::vector<std::string> words) {
+void WhenCalled(CLI::App& command, std::function<void()> run) { command.callback(std::move(run)); }
+
+const Option& Option::OneOf(std::vector<std::string> words) const {
   const std::string listed = fmt::format("{{{}}}", fmt::join(words, ","));
   const auto check = [words = std::move(words)](const std::string& text) {
     const bool is_one = std::ranges::find(words, text) != words.end();
     return is_one ? std::string() : UnknownAmong(text, words);
   };
-  return CLI::Validator(check, listed);
+  option_->check(CLI::Validator(check, listed));
+  return *this;
+}
+
+const Option& Option::OneOf(std::span<const std::string_view> words) const {
+  return OneOf(std::vector<std::string>(words.begin(), words.end()));
+}
+
+const Option& Option::WholeNumber(std::uint64_t least, std::uint64_t most) const {
+  const auto check = [least, most](const std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    if (whole && number >= least && number <= most) return {};
+    return fmt::format("'{}' is invalid: must be a whole number from {} to {}", text, least, most);
+  };
+  option_->check(CLI::Validator(check, ""));
+  return *this;
+}
+
+const Option& Option::Required() const {
+  option_->required();
+  return *this;
+}
+
+const Option& Option::Needs(const Option& other) const {
+  option_->needs(other.option_);
+  return *this;
+}
+
+const Option& Option::Excludes(const Option& other) const {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+const Option& Option::SplitAtCommas() const {
+  option_->delimiter(',');
+  return *this;
+}
+
+const Option& Option::OneAtATime() const {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+const Option& Option::WithUnitOfSize() const {
+  option_->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
+  return *this;
+}
+
+Option OptionGroup::Grouped(CLI::Option* added, const std::string& type) const {
+  added->group(name_);
+  if (!type.empty()) added->type_name(type);
+  return Option(added);
+}
+
+template <typename Value>
+Option OptionGroup::Add(const std::string& option, Value& value, const std::string& help,
+                        const std::string& type) const {
+  return Grouped(command_.add_option(option, value, help), type);
+}
+
+template <typename Value>
+Option OptionGroup::AddShown(const std::string& option, Value& value, const std::string& help,
+                             const std::string& type) const {
+  return Grouped(command_.add_option(option, value, help)->capture_default_str(), type);
+}
+
+using Text = const std::string&;
+template Option OptionGroup::Add(Text, std::uint64_t&, Text, Text) const;
+template Option OptionGroup::Add(Text, double&, Text, Text) const;
+template Option OptionGroup::Add(Text, std::string&, Text, Text) const;
+template Option OptionGroup::Add(Text, std::optional<std::uint64_t>&, Text, Text) const;
+template Option OptionGroup::Add(Text, std::optional<double>&, Text, Text) const;
+template Option OptionGroup::Add(Text, std::vector<double>&, Text, Text) const;
+template Option OptionGroup::Add(Text, std::vector<std::string>&, Text, Text) const;
+template Option OptionGroup::AddShown(Text, std::uint64_t&, Text, Text) const;
+template Option OptionGroup::AddShown(Text, double&, Text, Text) const;
+template Option OptionGroup::AddShown(Text, std::string&, Text, Text) const;
+
+Option OptionGroup::AddRead(const std::string& option, std::function<void(const std::string&)> read,
+                            const std::string& help, const std::string& type) const {
+  return Grouped(command_.add_option_function<std::string>(option, std::move(read), help), type);
+}
+
+Option OptionGroup::AddReadAll(const std::string& option,
+                               std::function<void(const std::vector<std::string>&)> read,
+                               const std::string& help, const std::string& type) const {
+  return Grouped(
+      command_.add_option_function<std::vector<std::string>>(option, std::move(read), help), type);
+}
+
+Option OptionGroup::AddFlag(const std::string& option, bool& value, const std::string& help) const {
+  return Grouped(command_.add_flag(option, value, help), "");
+}
+
+Option OptionGroup::AddFlagWithWord(const std::string& option,
+                                    std::function<void(const std::string&)> read,
+                                    const std::string& help) const {
+  const auto text = std::make_shared<std::string>();
+  return Grouped(
+      command_.add_flag(option, *text, help)->each([text, read](const std::string& word) {
+        read(word);
+      }),
+      "");
+}
+
+Option OptionGroup::AddAction(const std::string& option, std::function<void()> act,
+                              const std::string& help) const {
+  return Grouped(command_.add_flag_callback(option, std::move(act), help), "");
+}
+
+Option FindOption(CLI::App& command, const std::string& option) {
+  return Option(command.get_option(option));
+}
+
+std::vector<OptionState> OptionsOf(const CLI::App& command) {
+  std::vector<OptionState> options;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty()) continue;
+    options.push_back({.name = option->get_lnames().front(),
+                       .group = option->get_group(),
+                       .default_text = option->get_default_str(),
+                       .values = option->results(),
+                       .is_given = option->count() > 0,
+                       .is_flag = option->get_items_expected_max() == 0});
+  }
+  return options;
+}
+
+std::optional<double> NumberOf(std::string_view text) {
+  double number = 0.0;
+  if (!CLI::detail::lexical_cast(std::string(Trimmed(text)), number)) return std::nullopt;
+  return number;
 }
 
 double ParseTolerance(const std::string& text) {

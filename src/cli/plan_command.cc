@@ -102,23 +102,21 @@ void RunPlan(const PlanOptions& options, Console& console) {
 
 void AddPlanCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command =
-      app.add_subcommand("plan",
-                         "Plans a measurement: the standard errors that a loop of each\n"
-                         "amplitude would give, and the smallest amplitude that reaches a wanted\n"
-                         "precision. Exit status 3 when none does.");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "plan",
+      "Plans a measurement: the standard errors that a loop of each\n"
+      "amplitude would give, and the smallest amplitude that reaches a wanted\n"
+      "precision. Exit status 3 when none does.",
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json",
        "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
-  AddLawOptions(*command, options->plan.law);
-  const OptionGroup expected(*command, "What is expected");
+  AddLawOptions(command, options->plan.law);
+  const OptionGroup expected(command, "What is expected");
   expected.Add("--record", options->record,
                "take contact and noise from a fit of this record; --alpha is used\n"
                "where the record does not determine it",
                "FILE");
-  AddColumnOptions(*command, options->columns);
+  AddColumnOptions(command, options->columns);
   expected.Add("--rig-stiffness", options->plan.rig_stiffness,
                "stiffness of the rig in series [N/m]; known unless --with fits it", "K");
   expected.Add("--force-noise", options->plan.force_noise,
@@ -130,28 +128,28 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                "RHO");
   expected.Add("--load-exponent", options->plan.load_exponent,
                "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P");
-  const OptionGroup loop(*command, "The loop");
+  const OptionGroup loop(command, "The loop");
   loop.Add("--amplitude", options->plan.amplitudes,
            "amplitude X [m], repeatable; default 13 around the onset of slip", "X");
   loop.Add("--load-ratio", options->plan.load_ratios,
            "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
-      ->delimiter(',');
+      .SplitAtCommas();
   loop.AddShown("--cycles", options->plan.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
-      ->check(WholeNumber(4, 1'000'000));
+      .WholeNumber(4, 1'000'000);
   loop.AddShown("--initial-state", options->initial_state,
                 "virgin: the loop includes the first loading; steady: it does not")
-      ->check(OneOf({"virgin", "steady", "both"}));
-  const OptionGroup fit(*command, "The fit");
+      .OneOf({"virgin", "steady", "both"});
+  const OptionGroup fit(command, "The fit");
   fit.Add("--with", options->plan.with,
           "further terms that are fitted: rig_stiffness, plateau_slope …", "TERM")
-      ->delimiter(',');
+      .SplitAtCommas();
   fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
-      ->delimiter(',');
-  const OptionGroup output(*command, "Output");
+      .SplitAtCommas();
+  const OptionGroup output(command, "Output");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
-  command->callback([options, &console] { RunPlan(*options, console); });
+  WhenCalled(command, [options, &console] { RunPlan(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -7,23 +7,11 @@
 #include <array>
 #include <vector>
 
+#include "cli/options.h"
 #include "io/input_file.h"
 
 namespace mindahl::cli {
 namespace {
-
-/// Options of the command and of the program that were given, but for the files.
-std::vector<const CLI::Option*> GivenOptions(const CLI::App& command) {
-  std::vector<const CLI::Option*> given;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back(option);
-  }
-  return given;
-}
-
-std::string OptionName(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
-
-bool IsFlag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
 report::InputFile DigestOf(const std::string& file) {
   return {.name = file, .sha256 = io::Sha256OfFile(file)};
@@ -36,10 +24,11 @@ report::Provenance OptionsAndInputs(const CLI::App& command, const Console& cons
   for (const std::string& file : console.inputs) {
     if (!file.empty()) provenance.inputs.push_back(DigestOf(file));
   }
-  for (const CLI::Option* option : GivenOptions(command)) {
+  for (const OptionState& option : OptionsOf(command)) {
+    if (!option.is_given) continue;
     provenance.options.emplace_back(
-        OptionName(*option),
-        IsFlag(*option) ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
+        "--" + option.name,
+        option.is_flag ? "on" : fmt::format("{}", fmt::join(option.values, ", ")));
   }
   return provenance;
 }
@@ -85,14 +74,14 @@ report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& cons
     return std::ranges::find(kOfBatch, option.first) != kOfBatch.end();
   });
   provenance.command = "mindahl fit " + ShellWord(file);
-  for (const CLI::Option* option : GivenOptions(batch)) {
-    const std::string name = OptionName(*option);
-    if (std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
-    if (IsFlag(*option)) {
+  for (const OptionState& option : OptionsOf(batch)) {
+    const std::string name = "--" + option.name;
+    if (!option.is_given || std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
+    if (option.is_flag) {
       provenance.command += " " + name;
       continue;
     }
-    for (const std::string& value : option->results()) {
+    for (const std::string& value : option.values) {
       provenance.command += " " + name + " " + ShellWord(value);
     }
   }

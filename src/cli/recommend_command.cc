@@ -37,12 +37,12 @@ void Write(const Recommendation& recommendation, const std::string& json, Consol
 /// A record brings its contact, its motion and its tolerance.
 void RunForRecord(const RecommendCommandOptions& options, const CLI::App& command,
                   Console& console) {
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string& name = option->get_name();
-    const bool is_of_record = name == "--record" || option->get_group() == kColumnGroup;
-    if (option->count() == 0 || is_of_record || name == "--json") continue;
-    throw InputError(fmt::format(
-        "--record excludes {}: the record determines contact, motion and tolerance", name));
+  for (const OptionState& option : OptionsOf(command)) {
+    const bool is_of_record = option.name == "record" || option.group == kColumnGroup;
+    if (!option.is_given || is_of_record || option.name == "json") continue;
+    throw InputError(
+        fmt::format("--record excludes --{}: the record determines contact, motion and tolerance",
+                    option.name));
   }
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.record);
@@ -73,21 +73,19 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
 
 void AddRecommendCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<RecommendCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("recommend",
-                         "Finds the cheapest model and method that meet a tolerance along a\n"
-                         "given displacement: each is run and compared with the exact Masing\n"
-                         "response of the contact (Mindlin's for alpha = 1/3).");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "recommend",
+      "Finds the cheapest model and method that meet a tolerance along a\n"
+      "given displacement: each is run and compared with the exact Masing\n"
+      "response of the contact (Mindlin's for alpha = 1/3).",
       {"mindahl recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --tolerance 1%",
        "mindahl recommend --record loop.csv"});
-  AddLawOptions(*command, options->asked.law);
-  AddDriveOptions(*command, options->asked.drive);
-  OptionGroup(*command, "Excitation")
+  AddLawOptions(command, options->asked.law);
+  AddDriveOptions(command, options->asked.drive);
+  OptionGroup(command, "Excitation")
       .AddShown("--seed", options->asked.drive.seed, "seed of the random waveform")
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
-  const OptionGroup asked(*command, "What is asked");
+      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+  const OptionGroup asked(command, "What is asked");
   asked.AddShown("--tolerance", options->tolerance,
                  "largest error allowed, of the peak force or the energy: 0.01 or 1%", "E");
   asked.Add("--cost", options->asked.asked.largest_cost,
@@ -95,24 +93,24 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
   asked
       .AddShown("--criterion", options->criterion,
                 "error that counts: max or rms of the force, or the energy dissipated")
-      ->check(OneOf(request::CriterionNames()));
+      .OneOf(request::CriterionNames());
   asked
       .AddShown("--transient-cycles", options->asked.asked.transient_cycles,
                 "cycles at the start that do not count")
-      ->check(WholeNumber(0, 1'000'000'000));
-  command->add_option("--json", options->json, "results for scripts; - is standard output")
-      ->type_name("PATH");
-  OptionGroup(*command, "What is asked")
+      .WholeNumber(0, 1'000'000'000);
+  OptionGroup(command, kPlainGroup)
+      .Add("--json", options->json, "results for scripts; - is standard output", "PATH");
+  OptionGroup(command, "What is asked")
       .Add("--record", options->record,
            "fit all laws to this record, and find the cheapest that it does not\ndistinguish from "
            "the best; instead of all options above",
            "FILE");
-  AddColumnOptions(*command, options->columns);
-  command->callback([options, command, &console] {
+  AddColumnOptions(command, options->columns);
+  WhenCalled(command, [options, &command, &console] {
     if (options->record.empty()) {
       RunRecommend(*options, console);
     } else {
-      RunForRecord(*options, *command, console);
+      RunForRecord(*options, command, console);
     }
   });
 }

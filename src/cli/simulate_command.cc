@@ -89,58 +89,49 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
 
 void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command =
-      app.add_subcommand("simulate",
-                         "Computes the tangential force along an imposed displacement, or the\n"
-                         "displacement under an imposed force (--force-path), exactly for any\n"
-                         "history. The contact is unloaded at displacement zero; a first row\n"
-                         "that is not zero is the first loading step. Writes time [s],\n"
-                         "displacement [m], force [N].");
-  AddExamples(*command, app,
-              {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
-               "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
-               "path.csv --path-unit um"});
-  command->add_option("--model", options->simulation.model, "friction model")
-      ->capture_default_str()
-      ->check(OneOf(request::SimulatedModels()));
-  AddLawOptions(*command, options->simulation.law);
-  command
-      ->add_option(
-          "--asymmetry", options->simulation.asymmetry,
-          "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]")
-      ->type_name("A")
-      ->capture_default_str();
-  command
-      ->add_option("--backlash", options->simulation.backlash,
-                   "width of a gap before the contact that is crossed at zero force [m]")
-      ->type_name("G")
-      ->capture_default_str();
-  AddAddedForceOptions(*command, options->simulation.forces);
-  AddDriveOptions(*command, options->simulation.drive);
-  AddLoadColumnOptions(*command, options->simulation.drive);
-  AddForcePathOptions(*command, options->simulation.drive);
+  CLI::App& command = AddCommand(
+      app, "simulate",
+      "Computes the tangential force along an imposed displacement, or the\n"
+      "displacement under an imposed force (--force-path), exactly for any\n"
+      "history. The contact is unloaded at displacement zero; a first row\n"
+      "that is not zero is the first loading step. Writes time [s],\n"
+      "displacement [m], force [N].",
+      {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
+       "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
+       "path.csv --path-unit um"});
+  const OptionGroup plain(command, kPlainGroup);
+  plain.AddShown("--model", options->simulation.model, "friction model")
+      .OneOf(request::SimulatedModels());
+  AddLawOptions(command, options->simulation.law);
+  plain.AddShown(
+      "--asymmetry", options->simulation.asymmetry,
+      "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]", "A");
+  plain.AddShown("--backlash", options->simulation.backlash,
+                 "width of a gap before the contact that is crossed at zero force [m]", "G");
+  AddAddedForceOptions(command, options->simulation.forces);
+  AddDriveOptions(command, options->simulation.drive);
+  AddLoadColumnOptions(command, options->simulation.drive);
+  AddForcePathOptions(command, options->simulation.drive);
 
-  const OptionGroup noise(*command, "Noise");
+  const OptionGroup noise(command, "Noise");
   noise.Add("--noise-force", options->simulation.force_noise, "standard deviation [N]", "N");
   noise.Add("--noise-displacement", options->simulation.displacement_noise,
             "standard deviation [m]", "M");
   noise
       .AddShown("--seed", options->simulation.drive.seed,
                 "seed of the noise and of the random waveform")
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
 
-  const OptionGroup method(*command, "Method");
-  method.AddShown("--method", options->simulation.method, MethodHelp())
-      ->check(OneOf(MethodNames()));
+  const OptionGroup method(command, "Method");
+  method.AddShown("--method", options->simulation.method, MethodHelp()).OneOf(MethodNames());
   method
       .Add("--steps", options->simulation.steps,
            "substeps a sample, elements of iwan, intervals of table", "N")
-      ->check(WholeNumber(1, 1'000'000'000));
+      .WholeNumber(1, 1'000'000'000);
   method.Add("--tolerance", options->simulation.tolerance,
              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
-  command->add_option("-o,--output", options->output, "CSV file; default standard output")
-      ->type_name("FILE");
-  command->callback([options, &console] { RunSimulate(*options, console); });
+  plain.Add("-o,--output", options->output, "CSV file; default standard output", "FILE");
+  WhenCalled(command, [options, &console] { RunSimulate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -97,13 +97,11 @@ std::uint64_t SeedOf(const CLI::App& command) {
       seed = (seed ^ static_cast<unsigned char>(character)) * 0x100000001b3U;
     }
   };
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_lnames().empty()) continue;  // the files, whose content counts
-    const std::string& name = option->get_lnames().front();
-    if (std::ranges::find(kOfNoRow, name) != kOfNoRow.end()) continue;
-    add(name);
-    for (const std::string& value : option->results()) add("=" + value);
-    if (option->count() == 0) add("=" + option->get_default_str());
+  for (const OptionState& option : OptionsOf(command)) {  // not the files, whose content counts
+    if (std::ranges::find(kOfNoRow, option.name) != kOfNoRow.end()) continue;
+    add(option.name);
+    for (const std::string& value : option.values) add("=" + value);
+    if (!option.is_given) add("=" + option.default_text);
   }
   return seed;
 }
@@ -590,56 +588,55 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
 
 void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
-  CLI::App* command =
-      app.add_subcommand("track",
-                         "Fits every cycle of a long record while reading it, in constant\n"
-                         "memory: one row a cycle, and the changes over the test. --resume\n"
-                         "continues a run that was ended. Exit status 3 when no fit converged.");
-  AddExamples(*command, app,
-              {"mindahl track day1.csv --output cycles.csv",
-               "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
-               "track.json"});
-  command
-      ->add_option("files", options->track.fit.files,
-                   "CSV records of one test, in order; no cycle extends over two files.\nWith "
-                   "--separate each file is a test of its own")
-      ->type_name("FILE");
-  AddFilesFrom(*command, options->list);
-  OptionGroup(*command, "Files")
+  CLI::App& command =
+      AddCommand(app, "track",
+                 "Fits every cycle of a long record while reading it, in constant\n"
+                 "memory: one row a cycle, and the changes over the test. --resume\n"
+                 "continues a run that was ended. Exit status 3 when no fit converged.",
+                 {"mindahl track day1.csv --output cycles.csv",
+                  "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
+                  "track.json"});
+  OptionGroup(command, kPlainGroup)
+      .Add("files", options->track.fit.files,
+           "CSV records of one test, in order; no cycle extends over two files.\nWith "
+           "--separate each file is a test of its own",
+           "FILE");
+  AddFilesFrom(command, options->list);
+  OptionGroup(command, "Files")
       .AddFlag("--separate", options->separate,
                "each file is a test of its own: one table of all, with columns for\ntest, version, "
                "SHA-256 of the file and fault; a test that fails does\nnot stop the others; "
                "implied by --shard");
-  AddShard(*command, options->list);
-  AddJoin(*command, options->track.fit);
-  AddColumnOptions(*command, options->track.fit.columns);
-  AddModelOptions(*command, options->track.fit);
-  const OptionGroup cycles(*command, "Cycles");
+  AddShard(command, options->list);
+  AddJoin(command, options->track.fit);
+  AddColumnOptions(command, options->track.fit.columns);
+  AddModelOptions(command, options->track.fit);
+  const OptionGroup cycles(command, "Cycles");
   cycles.Add("--normal-load", options->track.normal_load,
              "normal load N [N] of all cycles; default the column's mean over each", "N");
   cycles
       .AddShown("--average", options->track.average,
                 "number of consecutive cycles that are fitted together")
-      ->check(WholeNumber(1, 1'000'000));
+      .WholeNumber(1, 1'000'000);
   cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
-      ->check(WholeNumber(1, 1'000'000'000));
+      .WholeNumber(1, 1'000'000'000);
   cycles
       .AddShown("--alpha", options->alpha,
                 "cycle: each cycle has its own; shared: all have the weighted mean of a\nfirst "
                 "pass, and a second pass fits sigma and Tc")
-      ->check(CLI::IsMember({std::string(kOwnAlpha), std::string(kSharedAlpha)}));
+      .OneOf({std::string(kOwnAlpha), std::string(kSharedAlpha)});
   cycles
       .AddShown("--broken-rows", options->broken_rows,
                 "refuse: a row without a number in a needed column ends the run; skip:\nit is "
                 "skipped and counted")
-      ->check(OneOf({"refuse", "skip"}));
+      .OneOf({"refuse", "skip"});
   cycles
       .Add("--threads", options->track.threads,
            "number of worker threads (default: one per core); they do not change\nthe table")
-      ->check(WholeNumber(1, 1024));
-  const OptionGroup group(*command, "Results");
+      .WholeNumber(1, 1024);
+  const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
-      ->required();
+      .Required();
   group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
   group.Add("--plot", options->plot_path,
             "evolution over the cycles with its changes, as svg or png", "PATH");
@@ -648,11 +645,11 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.AddFlag("--resume", options->resume,
                 "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
-  command->callback([options, command, &console] {
+  WhenCalled(command, [options, &command, &console] {
     options->track.fit.files = FilesOf(options->track.fit.files, options->list);
     options->track.shares_alpha = options->alpha == kSharedAlpha;
     if (options->broken_rows == "skip") options->track.broken_rows = io::BrokenRows::kSkip;
-    RunTrack(*options, *command, console);
+    RunTrack(*options, command, console);
   });
 }
 

@@ -68,37 +68,36 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
 
 void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
-  CLI::App* command =
-      app.add_subcommand("tradeoff",
-                         "Compares error and cost of every method and model along five\n"
-                         "excitations, the cost by counted operations and as measured in this\n"
-                         "run, and lists the amplitudes at which each model is good enough. The\n"
-                         "default contact is that of Peyret et al. (2017).");
-  AddExamples(*command, app,
-              {"mindahl tradeoff --excitation micro",
-               "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
-               "points.csv"});
-  AddLawOptions(*command, options->study.law);
-  const OptionGroup group(*command, "Excitation");
-  CLI::Option* scenes =
+  CLI::App& command = AddCommand(
+      app, "tradeoff",
+      "Compares error and cost of every method and model along five\n"
+      "excitations, the cost by counted operations and as measured in this\n"
+      "run, and lists the amplitudes at which each model is good enough. The\n"
+      "default contact is that of Peyret et al. (2017).",
+      {"mindahl tradeoff --excitation micro",
+       "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
+       "points.csv"});
+  AddLawOptions(command, options->study.law);
+  const OptionGroup group(command, "Excitation");
+  const Option scenes =
       group
           .Add("--excitation", options->study.excitations,
                "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                "default all")
-          ->check(OneOf(request::ExcitationNames()));
-  CLI::Option* path = group
+          .OneOf(request::ExcitationNames());
+  const Option path = group
                           .Add("--path", options->path,
                                "CSV file whose first column is the displacement [m]", "FILE")
-                          ->excludes(scenes);
+                          .Excludes(scenes);
   group.Add("--path-unit", options->path_unit, "unit of that column, default the header's", "UNIT")
-      ->needs(path);
-  const OptionGroup output(*command, "Output");
+      .Needs(path);
+  const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--regions-csv", options->regions_csv,
              "amplitudes at which each model is good enough, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
-  command->callback([options, &console] { RunTradeoff(*options, console); });
+  WhenCalled(command, [options, &console] { RunTradeoff(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -42,25 +42,21 @@ void RunValidate(const ValidateOptions& options, Console& console) {
 void AddValidateCommand(CLI::App& app, Console& console) {
   constexpr std::uint64_t kMostCases = 1'000'000'000;
   const auto options = std::make_shared<ValidateOptions>();
-  CLI::App* command =
-      app.add_subcommand("validate",
-                         "Tests the mapping: fits Mindlin loops of many contacts at many\n"
-                         "amplitudes and noise levels, by Masing's law and by Dahl's own, and\n"
-                         "compares sigma with 8a/G*, alpha with 1/3 and Tc with mu N. Exit\n"
-                         "status 3 when a case misses its tolerance, or the 95 % intervals cover\n"
-                         "the truth too rarely or too often.");
-  AddExamples(
-      *command, app,
+  CLI::App& command = AddCommand(
+      app, "validate",
+      "Tests the mapping: fits Mindlin loops of many contacts at many\n"
+      "amplitudes and noise levels, by Masing's law and by Dahl's own, and\n"
+      "compares sigma with 8a/G*, alpha with 1/3 and Tc with mu N. Exit\n"
+      "status 3 when a case misses its tolerance, or the 95 % intervals cover\n"
+      "the truth too rarely or too often.",
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
-  command->add_option("--cases", options->validation.cases, "contacts to draw")
-      ->capture_default_str()
-      ->check(WholeNumber(1, kMostCases));
-  command->add_option("--seed", options->validation.seed, "seed of the random numbers")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
-  command->add_option("--json", options->json_path, "report as JSON; - for standard output")
-      ->type_name("PATH");
-  command->callback([options, &console] { RunValidate(*options, console); });
+  const OptionGroup plain(command, kPlainGroup);
+  plain.AddShown("--cases", options->validation.cases, "contacts to draw")
+      .WholeNumber(1, kMostCases);
+  plain.AddShown("--seed", options->validation.seed, "seed of the random numbers")
+      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+  plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
+  WhenCalled(command, [options, &console] { RunValidate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 # Each file of a module declares only its module's namespace, mindahl::MODULE or deeper, and core's
-# alone declare mindahl itself; no file opens another's namespace wide.
+# alone declare mindahl itself; no file opens another's namespace wide. cli/app.h names two classes
+# of CLI11 instead of including it.
 set(errors "")
 foreach(module core contact loop models methods tradeoff convert identification io campaign request cli)
   if(module STREQUAL "core")
@@ -16,7 +17,8 @@ foreach(module core contact loop models methods tradeoff convert identification 
   foreach(file IN LISTS files)
     file(STRINGS ${file} opened REGEX "^ *(inline +)?namespace[^=;]*{")
     foreach(line IN LISTS opened)
-      if(NOT line MATCHES "^namespace (${own} )?{$")
+      if(NOT line MATCHES "^namespace (${own} )?{$" AND
+         NOT (line STREQUAL "namespace CLI {" AND file MATCHES "/src/cli/app.h$"))
         list(APPEND errors "${file}: ${module} must not declare: ${line}")
       endif()
     endforeach()
