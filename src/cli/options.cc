@@ -130,8 +130,21 @@ Option OptionGroup::AddReadAll(const std::string& option,
       command_.add_option_function<std::vector<std::string>>(option, std::move(read), help), type);
 }
 
+namespace {
+
+/// Checks what a flag is given: CLI11 itself reads --flag=5 as five times --flag.
+CLI::Validator TrueOrFalse() {
+  const auto check = [](const std::string& text) -> std::string {
+    if (text == "true" || text == "false") return {};
+    return fmt::format("'{}' is no value: a flag takes none, or true or false", text);
+  };
+  return {check, /*description=*/""};
+}
+
+}  // namespace
+
 Option OptionGroup::AddFlag(const std::string& option, bool& value, const std::string& help) const {
-  return Grouped(command_.add_flag(option, value, help), "");
+  return Grouped(command_.add_flag(option, value, help)->check(TrueOrFalse()), "");
 }
 
 Option OptionGroup::AddFlagWithWord(const std::string& option,
@@ -147,7 +160,8 @@ Option OptionGroup::AddFlagWithWord(const std::string& option,
 
 Option OptionGroup::AddAction(const std::string& option, std::function<void()> act,
                               const std::string& help) const {
-  return Grouped(command_.add_flag_callback(option, std::move(act), help), "");
+  return Grouped(command_.add_flag_callback(option, std::move(act), help)->check(TrueOrFalse()),
+                 "");
 }
 
 Option FindOption(CLI::App& command, const std::string& option) {

@@ -253,7 +253,8 @@ IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
   identified.gross_slip_displacement = Total(gross_slip, correlation);
 
   if (derived.normal_load) {
-    identified.friction_coefficient = Total(Product(force.value / derived.normal_load->value,
+    const long double ratio = static_cast<long double>(force.value) / derived.normal_load->value;
+    identified.friction_coefficient = Total(Product(InRange("friction coefficient [-]", ratio),
                                                     {{force}, {Present(derived.normal_load), -1}}));
   }
   std::optional<Quantity> measured_radius;

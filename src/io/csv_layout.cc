@@ -16,8 +16,6 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kSampledRows = 1000;
-
 // A tie goes to the first: a cell may contain what comes after it in this list.
 constexpr std::array kDelimiters = {Delimiter::kTab, Delimiter::kSemicolon, Delimiter::kComma,
                                     Delimiter::kBlanks};

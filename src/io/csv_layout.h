@@ -12,6 +12,10 @@ namespace mindahl::io {
 /// Byte order mark with which some programs begin a file in UTF-8.
 inline constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
+/// Rows, the first of a file, in which the layout is looked for: at most so many are above the
+/// data.
+inline constexpr std::size_t kSampledRows = 1000;
+
 /// How a text is to be read as a table; csv_table.h states the rules by which it is found.
 struct CsvLayout {
   Delimiter delimiter = Delimiter::kComma;

@@ -24,22 +24,24 @@ namespace mindahl::io {
 
 namespace {
 
+constexpr std::string_view kRemedy =
+    "fit a part of the file, every n-th row, or each cycle with mindahl track; or allow more";
+
+void RequireRows(const ReadLimits& limits, std::uintmax_t rows, const std::string& name) {
+  if (rows <= limits.rows) return;
+  throw InputError(fmt::format("{}: has more than the {} rows that --max-rows leaves for it: {}",
+                               name, limits.rows, kRemedy));
+}
+
 /// Refuses a file that is larger than can be held, by as much of it as has been read.
-void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
+void RequireMemory(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
                    const std::string& name) {
-  constexpr std::string_view kRemedy =
-      "fit a part of the file, every n-th row, or each cycle with mindahl track; or allow more";
-  if (rows > limits.rows) {
-    throw InputError(fmt::format("{}: has more than the {} rows that --max-rows leaves for it: {}",
-                                 name, limits.rows, kRemedy));
-  }
   const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
-  if (memory > limits.memory) {
-    throw InputError(fmt::format(
-        "{}: {} of it need about {} of memory, more than the {} that --max-memory "
-        "leaves for it: {}",
-        name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy));
-  }
+  if (memory <= limits.memory) return;
+  throw InputError(fmt::format(
+      "{}: {} of it need about {} of memory, more than the {} that --max-memory "
+      "leaves for it: {}",
+      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy));
 }
 
 /// Reads as far as a table can be made of it: to a zero byte, of which RequireText() says where.
@@ -50,21 +52,22 @@ std::string ReadFile(const std::filesystem::path& path, const ReadLimits& limits
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
   std::string text;
   std::array<char, 1 << 16> block{};
-  std::uintmax_t rows = 0;
+  std::uintmax_t lines = 0;
   std::size_t line = 0;  // where the last begins
   while (const std::size_t read = input.Read(block.data(), block.size())) {
     const std::string_view piece(block.data(), read);
     text.append(piece);
     if (piece.find('\0') != std::string_view::npos) return text;
     if (text.size() == read && !is_no_file) {
-      RequireWithin(limits, 0, size, name);
+      RequireMemory(limits, 0, size, name);
       text.reserve(size);
     }
     const std::size_t end = piece.find_last_of("\r\n");
     if (end != std::string_view::npos) line = text.size() - read + end + 1;
     if (text.size() - line > kLongestLine) ThrowLongLine(name);
-    rows += static_cast<std::uintmax_t>(std::ranges::count(piece, '\n'));
-    RequireWithin(limits, rows, text.size(), name);
+    lines += static_cast<std::uintmax_t>(std::ranges::count(piece, '\n'));
+    RequireRows(limits, lines - std::min<std::uintmax_t>(lines, kSampledRows), name);
+    RequireMemory(limits, lines, text.size(), name);
   }
   return text;
 }
@@ -171,6 +174,7 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limit
                       const std::string& encoding) {
   TextInput input(path, encoding);
   CsvTable table = ParseCsvTable(ReadFile(path, limits, input), NameOfInput(path));
+  RequireRows(limits, table.rows(), table.file());
   if (!input.note().empty()) table.notes_.insert(table.notes_.begin(), input.note());
   return table;
 }

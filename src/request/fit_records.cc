@@ -76,6 +76,9 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
           PlaceOf(file, input, input.displacement, 0), record.displacement.front(),
           torsional ? "rad" : "m"));
     }
+    if (input.time && !record.time.empty()) {
+      RequireHalfRange(file, input, *input.time, record.time, "time", "s");
+    }
     is_loaded = RequireHalfRange(file, input, input.force, record.force, "force",
                                  torsional ? "N m" : "N") > 0 ||
                 is_loaded;

@@ -439,6 +439,8 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
       {"huge.csv", "x [m],F [N]\n0,0\n1e300,1\n-1e300,-1\n",
        "huge.csv:3:1: half the range of the "
        "displacement is 1e+300 m: must lie between 1e-100 and 1e100"},
+      {"instant.csv", "t [s],x [m],F [N]\n0,0,0\n1e-310,1,1\n2e-310,-1,-1\n",
+       "instant.csv:4:1: half the range of the time is 1e-310 s: must lie between 1e-100 and"},
       {"tiny.csv", "x [m],F [N]\n0,0\n1,1e-300\n-1,-1e-300\n0,0\n", "choose other units"}};
   for (const BadFile& file : files) {
     SCOPED_TRACE(file.name);

@@ -703,5 +703,11 @@ TEST(IdentifyContactInput, NamesTheKnowledgeThatIsInvalidEvenWhereItIsNotNeeded)
             std::string::npos);
 }
 
+TEST(IdentifyContact, RefusesAFrictionCoefficientThatNoDoubleHolds) {
+  KnownContact known;
+  known.normal_load = UncertainValue{1e-320, 0.0};
+  EXPECT_THROW(IdentifyContact(FittedStiffness(), FittedSlipForce(), known), InvalidArgument);
+}
+
 }  // namespace
 }  // namespace mindahl::contact::mindlin_dahl_mapping_test

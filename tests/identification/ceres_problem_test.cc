@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 #include <ceres/gradient_checker.h>
+#include <fmt/format.h>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
@@ -205,6 +206,42 @@ TEST(CeresProblem, MinimumIsThatOfTheFitForTwoHundredLoops) {
     }
   }
   EXPECT_EQ(loops, 200);
+}
+
+// Ceres writes a page to the standard error of a residual or derivative that is no number.
+TEST(CeresProblem, SaysWhereItHasNoValueInsteadOfReturningIt) {
+  const Record record = TimedLoop("mindlin-dahl", 1.0, 1);
+  const RecordView view(record);
+  int refused = 0;
+  for (const loop::Channel response : {loop::Channel::kForce, loop::Channel::kDisplacement}) {
+    FitOptions options = OptionsOf("mindlin-dahl", "");
+    options.preparation.excitation =
+        response == loop::Channel::kForce ? loop::Channel::kDisplacement : loop::Channel::kForce;
+    Fitter fitter(options);
+    CeresProblem contact({&view, 1}, options, fitter.Fit(view, Depth::kEstimate));
+    ceres::Problem problem;
+    contact.AddTo(problem);
+    for (CeresParameter& parameter : contact.parameters()) {
+      const double start = parameter.theta;
+      for (const double theta : {-750.0, -709.0, -400.0, 400.0, 709.0, 750.0}) {
+        SCOPED_TRACE(fmt::format("{} = {}", parameter.name, theta));
+        parameter.theta = theta;
+        double cost = 0.0;
+        std::vector<double> residuals;
+        std::vector<double> gradient;
+        ceres::CRSMatrix jacobian;
+        ::testing::internal::CaptureStderr();
+        const bool has_value = problem.Evaluate({}, &cost, &residuals, &gradient, &jacobian);
+        EXPECT_THAT(::testing::internal::GetCapturedStderr(), IsEmpty());
+        refused += has_value ? 0 : 1;
+        EXPECT_TRUE(!has_value || std::ranges::all_of(jacobian.values, [](double value) {
+          return std::isfinite(value);
+        }));
+      }
+      parameter.theta = start;
+    }
+  }
+  EXPECT_GT(refused, 0);
 }
 
 TEST(CeresProblem, RefusesANameThatItDoesNotHave) {

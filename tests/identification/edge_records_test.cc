@@ -92,6 +92,43 @@ TEST(EdgeRecords, AForceNoiseWhoseSquareIsNoNumberIsRefused) {
   }
 }
 
+TEST(EdgeRecords, ValuesWhoseSquaresInUnitsOfTheDataAreNoNumbersAreRefused) {
+  const Record record = Loop();
+  const std::string rule = "must be within a factor of 1e100 of the data's ";
+  for (const double far : {1e308, 1e150}) {
+    SCOPED_TRACE(far);
+    for (const char* name : {"sigma", "slip_force", "force_offset"}) {
+      EXPECT_THAT(RefusalOf({record}, {.fixed = {{name, far}}}), HasSubstr(rule)) << name;
+      EXPECT_THAT(RefusalOf({record}, {.start = {{name, far}}}), HasSubstr(rule)) << name;
+      EXPECT_THAT(RefusalOf({record}, {.bounds = {{name, {1e-9, far}}}}), HasSubstr(rule)) << name;
+      EXPECT_THAT(RefusalOf({record}, {.priors = {{name, {far, 1.0}}}}), HasSubstr(rule)) << name;
+    }
+    EXPECT_THAT(RefusalOf({record}, {.fixed = {{"sigma", 1 / far}}}), HasSubstr(rule));
+    for (const double uncertainty : {far, 1 / far}) {
+      EXPECT_THAT(RefusalOf({record}, {.priors = {{"alpha", {1.0, uncertainty}}}}),
+                  HasSubstr(rule));
+    }
+    EXPECT_THAT(
+        RefusalOf({record}, {.terms = {"ripple_period"}, .fixed = {{"ripple_period", far}}}),
+        HasSubstr(rule));
+  }
+  for (const double near : {1e-50, 1e50}) {
+    ExpectNumbersOrNone(FitOne(record, {.fixed = {{"sigma", near}}}));
+    ExpectNumbersOrNone(FitOne(record, {.priors = {{"alpha", {1.0, near}}}}));
+  }
+}
+
+TEST(EdgeRecords, ADurationWhoseInverseIsNoNumberIsRefused) {
+  Record record = Loop();
+  for (const double step : {1e-320, 1e300}) {
+    record.time.clear();
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.time.push_back(static_cast<double>(i) * step);
+    }
+    EXPECT_THAT(RefusalOf({record}, {}), HasSubstr("half duration [s]")) << step;
+  }
+}
+
 TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
   // The chord over a tenth of the way is softer than σ, and steeper than T*/X.
   const Record record = Loop();

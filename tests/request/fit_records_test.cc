@@ -174,13 +174,31 @@ TEST(ReadRecords, HoldNoMoreRowsInAllThanAreAllowed) {
   FitRequest request;
   request.files = {directory.Write("a.csv", "x [m],F [N]\n0,0\n1,1\n0,2\n").string(),
                    directory.Write("b.csv", "x [m],F [N]\n0,0\n1,1\n").string()};
-  // Three rows leave three, as many as the second file has lines: a header is not known before.
-  request.max_rows = 6;
+  request.max_rows = 5;  // of numbers: headers do not count
   EXPECT_EQ(ReadRecords(request, kIgnore).size(), 2U);
-  request.max_rows = 5;
+  request.max_rows = 4;
   EXPECT_THROW(ReadRecords(request, kIgnore), InputError);
   request.files.pop_back();
   EXPECT_EQ(ReadRecords(request, kIgnore).size(), 1U);
+}
+
+TEST(ReadRecords, RefuseALongFileBeforeItIsReadAsATable) {
+  std::string text = "x [m],F [N]\n";
+  for (int row = 0; row < 2000; ++row) text += "0,1\n";
+  const TemporaryDirectory directory;
+  FitRequest request;
+  request.files = {directory.Write("a.csv", text + "broken\n1,1\n").string()};
+  const auto refusal = [&](std::uint64_t rows) -> std::string {
+    request.max_rows = rows;
+    try {
+      ReadRecords(request, kIgnore);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(refusal(100), HasSubstr("has more than the 100 rows"));
+  EXPECT_THAT(refusal(3000), HasSubstr("'broken' is not a number"));
 }
 
 TEST(WarningsBesideText, OfAnInadequateFitAreThoseOfTheRecord) {

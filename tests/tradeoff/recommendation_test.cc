@@ -177,7 +177,9 @@ TEST(Recommend, AChoiceHoldsOnExcitationsItHasNotSeen) {
 
 TEST(Recommend, RefusesOptionsOutOfRange) {
   const std::vector<double> drive = Sine(0.8, 2, 20);
-  EXPECT_THROW(RecommendFor(drive, {.tolerance = 0}), InvalidArgument);
+  for (const double tolerance : {0.0, 1.0, 1e308}) {
+    EXPECT_THROW(RecommendFor(drive, {.tolerance = tolerance}), InvalidArgument) << tolerance;
+  }
   EXPECT_THROW(RecommendFor(drive, {.largest_cost = -1}), InvalidArgument);
   EXPECT_THROW(RecommendFor(drive, {.transient_cycles = 3}), InvalidArgument);
   EXPECT_THROW(RecommendFor({}, {}), InvalidArgument);

@@ -98,6 +98,19 @@ double StartingPeriod(const ScaledRecords& data) {
 
 namespace {
 
+/// Squares and products of what is further from the unit of the data overflow or vanish.
+void RequireNearUnit(const Parameter& parameter, std::string_view quantity, double value,
+                     bool is_positive) {
+  constexpr double kFarthest = 1e100;
+  const double units = std::abs(value / parameter.scale);
+  if (units <= kFarthest && (units >= 1 / kFarthest || !is_positive)) return;
+  ThrowInvalid(
+      quantity, value,
+      fmt::format("must be within a factor of 1e100 of the data's {:.3g}{}",
+                  std::abs(parameter.scale),
+                  parameter.term->unit == "-" ? "" : fmt::format(" {}", parameter.term->unit)));
+}
+
 /// A value from the user must be one that the model takes.
 void RequireInDomain(const Parameter& parameter, std::string_view name, double value) {
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
@@ -124,6 +137,7 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
   } else {
     RequireFinite(quantity, value);
   }
+  RequireNearUnit(parameter, quantity, value, parameter.term->positive);
 }
 
 bool IsAskedFor(const FitOptions& options, const Term& term) {
@@ -542,8 +556,10 @@ void Parameters::ApplyPriors(const FitOptions& options, double noise) {
   for (const auto& [name, prior] : options.priors) {
     Parameter& parameter = Find(name);
     RequireInDomain(parameter, name, prior.value);
-    RequirePositive(fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit),
-                    prior.standard_uncertainty);
+    const std::string uncertainty =
+        fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit);
+    RequirePositive(uncertainty, prior.standard_uncertainty);
+    RequireNearUnit(parameter, uncertainty, prior.standard_uncertainty, true);
     if (parameter.absent || options.fixed.contains(name)) {
       throw InvalidArgument(
           fmt::format("a prior of {} has no effect: it is not fitted; leave it out", name));

@@ -445,6 +445,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     target.reversals = prepared.reversals;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
+    if (!time.empty() && last > first) RequireScale("half duration [s]", last / 2 - first / 2);
     target.units = {.force = scaled.force,
                     .length = scaled.length,
                     .half_duration = last > first ? (last - first) / 2 : 1.0,

@@ -418,12 +418,14 @@ class StrokeCost final : public ceres::CostFunction {
     const ArrowSystem& system = residuals_.system();
     const Eigen::Index rows = num_residuals();
     Eigen::Map<Eigen::VectorXd>(residuals, rows) = system.residual.segment(begin_, rows);
-    if (!Eigen::Map<Eigen::VectorXd>(residuals, rows).allFinite()) return false;
-    if (jacobians == nullptr) return true;
+    // Ceres would print what is no number.
+    bool is_finite = Eigen::Map<Eigen::VectorXd>(residuals, rows).allFinite();
+    if (jacobians == nullptr) return is_finite;
     const std::size_t dense = residuals_.free.empty() ? 0 : 1;
     if (dense != 0 && jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor>(jacobians[0], rows, system.jacobian.cols()) =
-          system.jacobian.middleRows(begin_, rows);
+      Eigen::Map<RowMajor> dense_rows(jacobians[0], rows, system.jacobian.cols());
+      dense_rows = system.jacobian.middleRows(begin_, rows);
+      is_finite = is_finite && dense_rows.allFinite();
     }
     for (std::size_t k = 0; k < overshoots_.size(); ++k) {
       if (jacobians[dense + k] == nullptr) continue;
@@ -434,8 +436,9 @@ class StrokeCost final : public ceres::CostFunction {
           column[entry.row() - begin_] = entry.value();
         }
       }
+      is_finite = is_finite && column.allFinite();
     }
-    return true;
+    return is_finite;
   }
 
  private:

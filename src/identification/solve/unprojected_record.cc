@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory_resource>
 #include <utility>
+
+#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 namespace {
@@ -20,6 +23,10 @@ ScaledRecords DataOfRecord(const ScaledRecords& data, std::size_t r) {
   return one;
 }
 
+bool AreFinite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
 class RecordCost final : public ceres::CostFunction {
  public:
   explicit RecordCost(std::shared_ptr<UnprojectedRecord> record) : record_(std::move(record)) {
@@ -31,10 +38,13 @@ class RecordCost final : public ceres::CostFunction {
                 double** jacobians) const override {
     record_->MoveTo(parameters, jacobians != nullptr);
     std::ranges::copy(record_->residual(), residuals);
+    bool is_finite = AreFinite(record_->residual());
     for (std::size_t b = 0; jacobians != nullptr && b < record_->blocks().size(); ++b) {
-      if (jacobians[b] != nullptr) std::ranges::copy(record_->Derivative(b), jacobians[b]);
+      if (jacobians[b] == nullptr) continue;
+      std::ranges::copy(record_->Derivative(b), jacobians[b]);
+      is_finite = is_finite && AreFinite(record_->Derivative(b));
     }
-    return std::ranges::all_of(record_->residual(), [](double r) { return std::isfinite(r); });
+    return is_finite;  // Ceres would print what is no number
   }
 
  private:
@@ -53,10 +63,13 @@ class SampleCost final : public ceres::CostFunction {
                 double** jacobians) const override {
     record_->MoveTo(parameters, jacobians != nullptr);
     residuals[0] = record_->residual()[sample_];
+    bool is_finite = std::isfinite(residuals[0]);
     for (std::size_t b = 0; jacobians != nullptr && b < record_->blocks().size(); ++b) {
-      if (jacobians[b] != nullptr) jacobians[b][0] = record_->Derivative(b)[sample_];
+      if (jacobians[b] == nullptr) continue;
+      jacobians[b][0] = record_->Derivative(b)[sample_];
+      is_finite = is_finite && std::isfinite(jacobians[b][0]);
     }
-    return std::isfinite(residuals[0]);
+    return is_finite;
   }
 
  private:
@@ -98,7 +111,11 @@ void UnprojectedRecord::MoveTo(double const* const* theta, bool with_jacobian) {
   }
   const std::span<const std::size_t> columns =
       with_jacobian ? std::span<const std::size_t>(own_) : std::span<const std::size_t>();
-  Differentiate(problem_, theta_, response_, columns, residual_, jacobian_);
+  try {
+    Differentiate(problem_, theta_, response_, columns, residual_, jacobian_);
+  } catch (const InvalidArgument&) {  // no law: exp(θ) is 0 or infinite
+    std::ranges::fill(residual_, std::numeric_limits<double>::quiet_NaN());
+  }
   for (double& value : residual_) value /= unit_;
   has_jacobian_ = with_jacobian;
   if (!with_jacobian) return;
