@@ -250,8 +250,8 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 void RequireRecommendOptions(const RecommendOptions& options) {
-  if (!(options.tolerance > 0 && options.tolerance < 1)) {
-    ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1)");
+  if (!(options.tolerance > 0 && options.tolerance <= 1)) {
+    ThrowInvalid("tolerance [-]", options.tolerance, "must be in (0, 1]");
   }
   if (options.largest_cost) RequirePositive("largest cost [ns/sample]", *options.largest_cost);
 }

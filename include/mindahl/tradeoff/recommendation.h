@@ -35,7 +35,7 @@ std::vector<Approximation> AllApproximationsAlong(const models::BranchLaw& law,
                                                   std::size_t first = 0);
 
 struct RecommendOptions {
-  double tolerance = 0.01;  ///< largest error by the criterion [–], in (0, 1)
+  double tolerance = 0.01;  ///< largest error by the criterion [–], in (0, 1]
   Criterion criterion = Criterion::kMaxForce;
   /// Largest cost [ns/sample], > 0: then the most precise within it is sought, and the tolerance
   /// is not looked at.
