@@ -23,9 +23,8 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
       {"from_fit", "-", "fraction of the variance from the fit", &Item::FitShare},
       {"from_inputs", "-", "fraction of the variance from the inputs", &Item::InputShare},
       {"largest_input", "", "the input that contributes most; absent where all are exact",
-       [](const Item& item) {
-         return item.largest_input.empty() ? Value{} : ToValue(item.largest_input);
-       }},
+       IfAny([](const Item& item) { return If(!item.largest_input.empty(), item); },
+             &Item::largest_input)},
   };
   return fields;
 }
@@ -37,8 +36,8 @@ Value PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
   return members;
 }
 
-Value Propagated(const std::optional<PropagatedValue>& value, std::string_view unit) {
-  return value ? PropagatedMembers(*value, unit) : Missing();
+Value ToMembers(const PropagatedQuantity& quantity) {
+  return quantity.value ? PropagatedMembers(*quantity.value, quantity.unit) : Missing();
 }
 
 namespace {
@@ -53,10 +52,15 @@ std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
   std::vector<Field<Report>> rows;
   const auto add = [&](const char* name, const char* row_label, auto number) {
     rows.push_back({fmt::format("slip_forces.{}.{}", sense, name), "N", row_label,
-                    [member, number](const Report& report) {  // absent of a fit that has one
-                      if (report.fit.Find("asymmetry") == nullptr) return Value{};
-                      return At(&Report::slip_forces, member, number)(report);
-                    },
+                    IfAny(
+                        [](const Report& report) {
+                          return If(report.fit.Find("asymmetry") != nullptr, report.slip_forces);
+                        },
+                        [member, number](const std::optional<SlipForces>& forces) {
+                          OrNull found;
+                          if (forces) found.number = std::invoke(number, (*forces).*member);
+                          return found;
+                        }),
                     WhySlipForceOpen});
   };
   add("value", label, &SlipForce::value);
@@ -162,7 +166,8 @@ std::string WhyNoRatio(const Report& report) {
 void AddMappingFields(FieldTable& table) {
   const auto ratio = [](double UncertainValue::*member) {
     return [member](const Report& report) {
-      return report.stiffness.empty() ? Missing() : ToValue(report.stiffness.front().ratio.*member);
+      return report.stiffness.empty() ? std::nullopt
+                                      : std::optional(report.stiffness.front().ratio.*member);
     };
   };
   table.Add({
@@ -302,7 +307,7 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
       {"sigma.value", "N/m", "σ at the reference load, with that p",
        At(&Item::stiffness, &UncertainValue::value)},
       {"sigma.standard_error", "N/m", "standard error",
-       At(&Item::stiffness, &UncertainValue::standard_error)},
+       At(&Item::stiffness, &UncertainValue::standard_error), "the series does not determine it"},
       {"sigma.ci95[0]", "N/m", "lower end of the interval",
        At(&Item::stiffness95, &Interval::lower), why_exact},
       {"sigma.ci95[1]", "N/m", "upper end of the interval",
@@ -320,23 +325,17 @@ void AddLoadSeriesFields(FieldTable& table) {
       {"load_series.reference_load", "N",
        "N₀, mean of the records' loads, at which σ and Tc of parameters are given; load_series is "
        "absent where the records have one load",
-       [](const Report& report) {
-         return report.load_series ? Number(report.fit.normal_load) : Value{};
-       }},
+       IfAny([](const Report& report) { return If(report.load_series.has_value(), report); },
+             [](const Report& report) { return report.fit.normal_load.value_or(NAN); })},
       {"load_series.records", "", "the contact at the load of each file",
-       [](const Report& report) {
-         return report.load_series ? List(ContactFieldsUnderLoad(), report.load_series->contacts)
-                                   : Value{};
-       }},
+       IfAny(&Report::load_series,
+             [](const auto& series) { return List(ContactFieldsUnderLoad(), series.contacts); })},
       {"load_series.hypotheses", "", "p of σ ∝ N^p compared with theories",
-       [](const Report& report) {
-         return report.load_series ? List(HypothesisFields(), report.load_series->hypotheses)
-                                   : Value{};
-       }},
+       IfAny(&Report::load_series,
+             [](const auto& series) { return List(HypothesisFields(), series.hypotheses); })},
       {"load_series.laws", "", "the tenable hypotheses, each assumed at all loads",
-       [](const Report& report) {
-         return report.load_series ? List(LoadLawFields(), report.load_series->laws) : Value{};
-       }},
+       IfAny(&Report::load_series,
+             [](const auto& series) { return List(LoadLawFields(), series.laws); })},
   });
   table.Describe("load_series.records[].", ContactFieldsUnderLoad());
   table.Describe("load_series.hypotheses[].", HypothesisFields());
@@ -374,8 +373,9 @@ const std::vector<Field<contact::HertzPrediction>>& HertzFields() {
     };
     const auto propagated = [&](const char* path, const char* unit, const char* label,
                                 PropagatedValue Item::*member) {
-      rows.push_back({path, unit, label,
-                      [member, unit](const Item& item) { return Propagated(item.*member, unit); }});
+      rows.push_back({path, unit, label, [member, unit](const Item& item) {
+                        return PropagatedQuantity{item.*member, unit};
+                      }});
     };
     of_inputs("contact_radius", "m", "a of Hertz", &Item::contact_radius);
     of_inputs("sigma", "N/m", "8a/G*", &Item::tangential_stiffness);
@@ -429,10 +429,12 @@ const std::vector<ContactField>& ContactFields() {
 void AddContactFields(FieldTable& table) {
   std::vector<Field<Report>> rows;
   for (const ContactField& field : ContactFields()) {
-    rows.push_back(
-        {fmt::format("contact.{}", field.key), std::string(field.unit), std::string(field.label),
-         [&field](const Report& report) { return Propagated(field.get(report), field.unit); },
-         field.why_null});
+    rows.push_back({fmt::format("contact.{}", field.key), std::string(field.unit),
+                    std::string(field.label),
+                    [&field](const Report& report) {
+                      return PropagatedQuantity{field.get(report), field.unit};
+                    },
+                    field.why_null});
     if (field.key != "compliance") continue;
     rows.push_back({"contact.compliance_definition", "", "definition of G*",
                     [](const Report&) { return "G* = (2-nu1)/G1 + (2-nu2)/G2"; }});
@@ -441,15 +443,15 @@ void AddContactFields(FieldTable& table) {
   }
   rows.push_back({"contact.normal_load", "N", "normal load, given or the mean of its column",
                   [](const Report& report) {
-                    return report.known.normal_load ? ToValue(report.known.normal_load->value)
-                                                    : Missing("not given, and no column has it");
+                    OrNull load{.why = "not given, and no column has it"};
+                    if (report.known.normal_load) load.number = report.known.normal_load->value;
+                    return load;
                   }});
   rows.push_back(
       {"contact.hertz_mindlin", "",
        "what Hertz and Mindlin predict; absent unless materials, radii and load are known",
-       [](const Report& report) {
-         return report.contact.hertz ? Render(HertzFields(), *report.contact.hertz) : Value{};
-       }});
+       IfAny(&Report::contact, &contact::IdentifiedContact::hertz,
+             [](const auto& hertz) { return Render(HertzFields(), hertz); })});
   table.Add(std::move(rows));
   table.Describe("contact.QUANTITY.", PropagatedFields());
   table.Describe("contact.hertz_mindlin.", HertzFields());

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,13 +17,33 @@
 
 namespace mindahl::report {
 
+/// A quantity of the contact: null, or a value with its error and where that comes from.
+struct PropagatedQuantity {
+  std::optional<contact::PropagatedValue> value;
+  std::string_view unit;
+};
+
+/// A number that may be null: in an object that may be absent, or for a reason of its own.
+struct OrNull {
+  std::optional<double> number = {};
+  std::string why = {};  ///< empty: that of the row
+};
+
+/// Returns the members of a quantity, or a null for which the row has the reason.
+Value ToMembers(const PropagatedQuantity& quantity);
+
 /// Returns a value of any of the types that reports have.
 template <typename Content>
 Value ToValue(const Content& content) {
   if constexpr (std::is_same_v<Content, Value>) {
     return content;
-  } else if constexpr (std::is_convertible_v<Content, std::optional<double>> &&
-                       !std::is_integral_v<Content>) {
+  } else if constexpr (std::is_same_v<Content, PropagatedQuantity>) {
+    return ToMembers(content);
+  } else if constexpr (std::is_same_v<Content, OrNull>) {
+    return content.number ? Number(content.number) : Missing(content.why);
+  } else if constexpr (requires { content.has_value(); }) {
+    return content ? ToValue(*content) : Missing();
+  } else if constexpr (std::is_floating_point_v<Content>) {
     return Number(content);
   } else if constexpr (std::is_enum_v<Content>) {
     return {.json = Name(content), .is_absent = false};
@@ -54,40 +75,135 @@ Value Follow(const Value& empty, const Item& item, Member member, More... more) 
   }
 }
 
+template <typename Content>
+struct WithoutOptional {
+  using Type = Content;
+  static constexpr bool kIsOptional = false;
+};
+template <typename Content>
+struct WithoutOptional<std::optional<Content>> {
+  using Type = Content;
+  static constexpr bool kIsOptional = true;
+};
+
+/// Tells what a getter returns of an item.
+template <typename Getter, typename Item>
+struct Result : WithoutOptional<std::remove_cvref_t<std::invoke_result_t<Getter, const Item&>>> {
+  static constexpr bool kMayBeAbsent = false;
+};
+
+/// Tells what Follow() ends at.
+template <typename Item, typename Member, typename... More>
+struct End : Result<Member, Item> {};
+template <typename Item, typename Member, typename Next, typename... More>
+struct End<Item, Member, Next, More...> : End<typename Result<Member, Item>::Type, Next, More...> {
+  static constexpr bool kIsOptional =
+      Result<Member, Item>::kIsOptional ||
+      End<typename Result<Member, Item>::Type, Next, More...>::kIsOptional;
+};
+
+/// A getter of a member of a member.
+template <bool kIsAbsent, typename... Members>
+struct MemberGetter {
+  std::tuple<Members...> members;
+
+  template <typename Item>
+  Value operator()(const Item& item) const {
+    return std::apply(
+        [&item](const auto&... member) {
+          return Follow(kIsAbsent ? Value{} : Missing(), item, member...);
+        },
+        members);
+  }
+};
+
+template <bool kIsAbsent, typename... Members, typename Item>
+struct Result<MemberGetter<kIsAbsent, Members...>, Item> : End<Item, Members...> {
+  static constexpr bool kMayBeAbsent = kIsAbsent && End<Item, Members...>::kIsOptional;
+};
+
 /// Makes a getter of a member of a member: null where one on the way is empty.
 template <typename... Members>
-auto At(Members... members) {
-  return [members...](const auto& item) { return Follow(Missing(), item, members...); };
+MemberGetter<false, Members...> At(Members... members) {
+  return {{members...}};
 }
 
 /// Makes the same, absent where one on the way is empty.
 template <typename... Members>
-auto IfAny(Members... members) {
-  return [members...](const auto& item) { return Follow(Value{}, item, members...); };
+MemberGetter<true, Members...> IfAny(Members... members) {
+  return {{members...}};
 }
 
-/// One row of a report: a new field is one of these.
+/// Returns the whole where a condition holds, for At() to go on from.
+template <typename Whole>
+std::optional<std::reference_wrapper<const Whole>> If(bool holds, const Whole& whole) {
+  return holds ? std::optional(std::cref(whole)) : std::nullopt;
+}
+
+/// Returns the JSON schema of a type of value, without its null.
+template <typename Content>
+Json SchemaOf() {
+  using Bare = WithoutOptional<Content>::Type;
+  if constexpr (std::is_same_v<Content, Value>) {
+    return Json::object();
+  } else if constexpr (std::is_same_v<Content, PropagatedQuantity>) {
+    return {{"type", "quantity"}};
+  } else if constexpr (std::is_same_v<Bare, bool>) {
+    return {{"type", "boolean"}};
+  } else if constexpr (std::is_unsigned_v<Bare>) {
+    return {{"type", "integer"}, {"minimum", 0}};
+  } else if constexpr (std::is_integral_v<Bare>) {
+    return {{"type", "integer"}};
+  } else if constexpr (std::is_enum_v<Bare>) {
+    return {{"enum", std::vector<std::string>(Names<Bare>().begin(), Names<Bare>().end())}};
+  } else if constexpr (std::is_convertible_v<Content, std::string_view>) {
+    return {{"type", "string"}};
+  } else if constexpr (requires(const Content& content) { content.begin(); }) {
+    using Element = Content::value_type;
+    Json schema = {{"type", "array"}, {"items", SchemaOf<Element>()}};
+    schema["items"]["null"] = WithoutOptional<Element>::kIsOptional;
+    if constexpr (requires { std::tuple_size<Content>::value; }) {
+      schema["minItems"] = schema["maxItems"] = std::tuple_size_v<Content>;
+    }
+    return schema;
+  } else {
+    return {{"type", "number"}};
+  }
+}
+
+/// Marks a row without a reason: its value is always there, unless the whole is not.
+struct NoReason {};
+
+/// One row of a report: a new field is one of these. Its type is that of what the getter returns;
+/// it may be null if that is optional or a reason is given, and absent if IfAny() gets it.
 template <typename Item>
-struct Field {
+struct Field : FieldDescription {
+  /// @param row_path  from the item: "loop.amplitude", "ci95[0]"
   /// @param getter  a member of the item, or a function of it that returns a value
   /// @param reason  why the value is null: a text, or a function of the item
-  template <typename Getter, typename Reason = const char*>
+  template <typename Getter, typename Reason = NoReason>
   Field(std::string row_path, std::string row_unit, std::string row_label, Getter getter,
-        Reason reason = "not a finite number")
-      : path(std::move(row_path)),
-        unit(std::move(row_unit)),
-        label(std::move(row_label)),
+        Reason reason = {})
+      : FieldDescription{.path = std::move(row_path),
+                         .unit = std::move(row_unit),
+                         .label = std::move(row_label),
+                         .type = SchemaOf<typename Result<Getter, Item>::Type>(),
+                         .may_be_null =
+                             !std::is_same_v<Reason, NoReason> ||
+                             std::is_same_v<typename Result<Getter, Item>::Type, OrNull> ||
+                             (Result<Getter, Item>::kIsOptional &&
+                              !Result<Getter, Item>::kMayBeAbsent),
+                         .may_be_absent = Result<Getter, Item>::kMayBeAbsent},
         get([getter](const Item& item) { return ToValue(std::invoke(getter, item)); }) {
-    if constexpr (std::is_convertible_v<Reason, std::string>) {
+    if constexpr (std::is_same_v<Reason, NoReason>) {
+      why_null = [](const Item&) { return std::string("not a finite number"); };
+    } else if constexpr (std::is_convertible_v<Reason, std::string>) {
       why_null = [why = std::string(reason)](const Item&) { return why; };
     } else {
       why_null = reason;
     }
   }
 
-  std::string path;   ///< from the item: "loop.amplitude", "ci95[0]"
-  std::string unit;   ///< "" for a text, "-" for a ratio
-  std::string label;  ///< description in words
   std::function<Value(const Item&)> get;
   std::function<std::string(const Item&)> why_null;  ///< asked where `get` gives a null
 };
@@ -124,8 +240,9 @@ struct FieldTable {
   }
   template <typename Item>
   void Describe(const std::string& prefix, const std::vector<Field<Item>>& fields) {
-    for (const Field<Item>& field : fields) {
-      items.push_back({prefix + field.path, field.unit, field.label});
+    for (const FieldDescription& field : fields) {
+      items.push_back(field);
+      items.back().path.insert(0, prefix);
     }
   }
 };
@@ -162,8 +279,5 @@ const std::vector<Field<contact::PropagatedValue>>& PropagatedFields();
 
 /// Returns those rows, with the unit of the quantity, which the table does not know.
 Value PropagatedMembers(const contact::PropagatedValue& value, std::string_view unit);
-
-/// Returns the same, or a null for which the row has the reason.
-Value Propagated(const std::optional<contact::PropagatedValue>& value, std::string_view unit);
 
 }  // namespace mindahl::report

@@ -29,22 +29,21 @@ std::function<std::size_t(const Report&)> Sum(Get get) {
 }
 
 template <typename Get>
-std::function<Value(const Report&)> OneARecord(Get get) {
+auto OneARecord(Get get) {
   return [get](const Report& report) {
-    Value list{.json = Json::array(), .is_absent = false};
-    for (const RecordFit& record : report.fit.records) list.Append(At(get)(record));
+    std::vector<std::optional<typename Result<Get, RecordFit>::Type>> list;
+    for (const RecordFit& record : report.fit.records) list.push_back(std::invoke(get, record));
     return list;
   };
 }
 
-/// Makes a getter of the reversal gate of the widest record.
-/// @param is_other  of the other gate: absent where the gate is certain
+const ReversalGate& GateOf(const Report& report) { return report.fit.WidestRecord().gate; }
+
+/// Makes a getter of the gate that competes, absent where the gate is certain.
 template <typename Member>
-std::function<Value(const Report&)> OfGate(Member member, bool is_other = false) {
-  return [member, is_other](const Report& report) {
-    const ReversalGate& gate = report.fit.WidestRecord().gate;
-    return is_other && gate.certain ? Value{} : ToValue(gate.*member);
-  };
+auto OfOtherGate(Member member) {
+  return IfAny([](const Report& report) { return If(!GateOf(report).certain, GateOf(report)); },
+               member);
 }
 
 struct LoadPieceItem {
@@ -53,7 +52,8 @@ struct LoadPieceItem {
   std::size_t samples;
 };
 
-std::vector<LoadPieceItem> LoadPieces(const Report& report) {
+/// Returns the pieces; empty where no record is one.
+std::optional<std::vector<LoadPieceItem>> LoadPieces(const Report& report) {
   std::vector<LoadPieceItem> pieces;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const io::RecordFile& record = report.records[r];
@@ -61,7 +61,7 @@ std::vector<LoadPieceItem> LoadPieces(const Report& report) {
     pieces.push_back(
         {.file = report.files[r], .piece = *record.piece, .samples = record.record.size()});
   }
-  return pieces;
+  return pieces.empty() ? std::nullopt : std::optional(std::move(pieces));
 }
 
 const std::vector<Field<LoadPieceItem>>& LoadPieceFields() {
@@ -105,22 +105,17 @@ void AddInputFields(FieldTable& table) {
       {"input.load_pieces", "",
        "pieces that were fitted as records of their own, of files whose load changes in steps, or "
        "ramps with --trim auto; absent where there are none",
-       [](const Report& report) {
-         const std::vector<LoadPieceItem> pieces = LoadPieces(report);
-         return pieces.empty() ? Value{} : List(LoadPieceFields(), pieces);
-       }},
+       IfAny(&LoadPieces, [](const auto& pieces) { return List(LoadPieceFields(), pieces); })},
       {"input.between_loads", "",
        "samples in none of the pieces, which do not count: the load changes, or fewer than two "
        "turning points have passed since; absent likewise",
-       [](const Report& report) {
-         return LoadPieces(report).empty() ? Value{} : ToValue(BetweenLoads(report));
-       }},
+       IfAny([](const Report& report) { return If(LoadPieces(report).has_value(), report); },
+             &BetweenLoads)},
       {"input.trimmed", "",
        "samples that --trim auto leaves out under the fitted load; may be empty, absent without "
        "--trim auto",
-       [](const Report& report) {
-         return report.trims.empty() ? Value{} : List(TrimmedFields(), TrimmedItems(report));
-       }},
+       IfAny([](const Report& report) { return If(!report.trims.empty(), report); },
+             [](const Report& report) { return List(TrimmedFields(), TrimmedItems(report)); })},
       {"input.cycles", "", "complete cycles, of all files",
        Sum([](const RecordFit& record) { return record.measures.cycles; })},
       {"input.reversals", "", "turning points of the motion, of all files",
@@ -159,13 +154,13 @@ void AddInputFields(FieldTable& table) {
       {"reversals.count", "", "turning points of the motion in the widest record",
        [](const Report& report) { return report.fit.WidestRecord().reversals.size(); }},
       {"reversals.gate", kOfExcitation, "excursions up to it are noise",
-       OfGate(&ReversalGate::gate)},
+       At(&GateOf, &ReversalGate::gate)},
       {"reversals.certain", "", "true if no other gate is as plausible",
-       OfGate(&ReversalGate::certain)},
+       At(&GateOf, &ReversalGate::certain)},
       {"reversals.other_count", "", "turning points under the other gate; absent where certain",
-       OfGate(&ReversalGate::other_count, /*is_other=*/true)},
+       OfOtherGate(&ReversalGate::other_count)},
       {"reversals.other_gate", kOfExcitation, "the other gate; absent where certain",
-       OfGate(&ReversalGate::other_gate, /*is_other=*/true)},
+       OfOtherGate(&ReversalGate::other_gate)},
   });
 }
 
@@ -229,9 +224,7 @@ std::string WhyFailed(const Report& report) {
 
 std::vector<FieldDescription> DescribeFields() {
   std::vector<FieldDescription> descriptions;
-  for (const Field<Report>& row : AllFields().rows) {
-    descriptions.push_back({row.path, row.unit, row.label});
-  }
+  for (const FieldDescription& row : AllFields().rows) descriptions.push_back(row);
   descriptions.insert(descriptions.end(), AllFields().items.begin(), AllFields().items.end());
   descriptions.push_back({"nulls[].path", "", "where the null is"});
   descriptions.push_back({"nulls[].why", "", "why it is one"});

@@ -51,11 +51,14 @@ struct ContactField {
 /// Returns them in the order of the reports.
 const std::vector<ContactField>& ContactFields();
 
-/// Describes a field for the documentation.
+/// Describes a field for the documentation and for the schema.
 struct FieldDescription {
-  std::string path;  ///< NAME and QUANTITY stand for what they are, [] for every place of a list
-  std::string unit;
-  std::string label;
+  std::string path;   ///< NAME and QUANTITY stand for what they are, [] for every place of a list
+  std::string unit;   ///< "" for a text, "-" for a ratio
+  std::string label;  ///< description in words
+  Json type = {{"type", "string"}};  ///< JSON schema; empty where its members are fields
+  bool may_be_null = false;
+  bool may_be_absent = false;
 };
 
 /// Returns every field that a report may have.

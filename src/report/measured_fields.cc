@@ -46,10 +46,8 @@ void AddLoopFields(FieldTable& table) {
        "W/(4XT*) of the fitted law where gross slip begins, X including the rig's deflection",
        At(&Report::loop, &LoopDescription::gross_slip_energy_ratio), WhyNoSlip},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
-       [](const Report& report) {
-         return report.loop && !report.is_torsional() ? ToValue(report.loop->stick_radius_ratio)
-                                                      : Missing();
-       },
+       At([](const Report& report) { return If(report.loop && !report.is_torsional(), report); },
+          &Report::loop, &LoopDescription::stick_radius_ratio),
        [](const Report& report) {
          return std::string(report.is_torsional() ? kWhyNoContact : kWhyNoRegime);
        }},
@@ -87,8 +85,11 @@ void AddBand(FieldTable& table, const std::string& path, const char* label,
 }  // namespace
 
 void AddBackboneFields(FieldTable& table) {
-  AddBand(table, "backbone.first_stiffness", "secant over the first hundredth of the displacement",
-          &BackboneEstimate::first_stiffness);
+  AddBand(
+      table, "backbone.first_stiffness",
+      "secant over the first hundredth of the displacement; absent, as is all of backbone, without "
+      "--backbone",
+      &BackboneEstimate::first_stiffness);
   AddBand(table, "backbone.elastic", "stiffness of the part that does not slip within the record",
           &BackboneEstimate::elastic);
   table.Add({
@@ -98,9 +99,8 @@ void AddBackboneFields(FieldTable& table) {
       {"backbone.rms", "N", "root mean square residual of the backbone",
        IfAny(&Report::backbone, &BackboneEstimate::rms)},
       {"backbone.points", "", "points from 0 to the largest displacement",
-       [](const Report& report) {
-         return report.backbone ? List(PointFields(), report.backbone->points) : Value{};
-       }},
+       IfAny(&Report::backbone,
+             [](const auto& backbone) { return List(PointFields(), backbone.points); })},
   });
   table.Describe("backbone.points[].", PointFields());
 }
@@ -120,7 +120,7 @@ template <typename Get>
 Field<LoopFacts> Fact(const std::string& path, const char* unit, const char* label, Get get,
                       const char* why = "not a finite number") {
   return {path, unit, label,
-          [get](const LoopFacts& facts) { return facts.closed ? At(get)(facts) : Missing(); },
+          At([](const LoopFacts& facts) { return If(facts.closed, facts); }, get),
           [why](const LoopFacts& facts) { return WhyNotMeasured(facts, why); }};
 }
 

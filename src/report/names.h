@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -8,18 +10,37 @@
 
 namespace mindahl::report {
 
-// How the reports call what the library has as enumerations.
-std::string_view Name(identification::ParameterStatus status);
-std::string_view Name(identification::Identifiability identifiability);
+/// Returns what the reports call the values of an enumeration, in their order.
+template <typename Enum>
+std::span<const std::string_view> Names();
+
+template <>
+std::span<const std::string_view> Names<identification::ParameterStatus>();
+template <>
+std::span<const std::string_view> Names<identification::Identifiability>();
+template <>
+std::span<const std::string_view> Names<identification::IntervalSource>();
+template <>
+std::span<const std::string_view> Names<models::InitialState>();
+template <>
+std::span<const std::string_view> Names<loop::Channel>();
+template <>
+std::span<const std::string_view> Names<SlipRegime>();
+template <>
+std::span<const std::string_view> Names<identification::AdequacyVerdict>();
+template <>
+std::span<const std::string_view> Names<identification::Use>();
+template <>
+std::span<const std::string_view> Names<identification::MemoryVerdict>();
+
+template <typename Enum>
+std::string_view Name(Enum value) {
+  const auto place = static_cast<std::size_t>(value);
+  return place < Names<Enum>().size() ? Names<Enum>()[place] : std::string_view();
+}
+
 /// Returns the name with blanks, for people.
 std::string Words(identification::Identifiability identifiability);
-std::string_view Name(identification::IntervalSource source);
-std::string_view Name(models::InitialState state);
-std::string_view Name(loop::Channel channel);
-std::string_view Name(SlipRegime regime);
-std::string_view Name(identification::AdequacyVerdict verdict);
-std::string_view Name(identification::Use use);
-std::string_view Name(identification::MemoryVerdict verdict);
 
 /// Returns the name of a parameter or of a key of the JSON for people: "slip force Tc", "half gap".
 std::string PlainName(std::string_view key);

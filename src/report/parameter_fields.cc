@@ -83,11 +83,8 @@ struct ReportedParameter {
   const ParameterEstimate& estimate;
 };
 
-/// Makes a getter of the estimate.
-template <typename Get>
-auto Of(Get get) {
-  return [get](const ReportedParameter& item) { return get(item.estimate); };
-}
+const ParameterEstimate& EstimateOf(const ReportedParameter& item) { return item.estimate; }
+constexpr auto kEstimate = &EstimateOf;
 
 std::string WhyNoError(const ReportedParameter& item) {
   if (item.report.failed()) return WhyFailed(item.report);
@@ -116,7 +113,7 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
       {"source", "",
        "origin of this part of ci95: parabola, profile, initial_state, other_minimum, "
        "omitted_terms, plateau, small_alpha, discrepancy or carried_force",
-       [](const Item& item) { return Name(item.source); }},
+       &Item::source},
       {"ci95[0]", "of the parameter", "lower end of the contribution", &Item::lower, why},
       {"ci95[1]", "of the parameter", "upper end of the contribution", &Item::upper, why},
   };
@@ -126,53 +123,50 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
 const std::vector<Field<ReportedParameter>>& ParameterFields() {
   using Item = ReportedParameter;
   static const std::vector<Field<Item>> fields = {
-      {"value", "of the parameter", "estimate", Of(At(&ParameterEstimate::value)),
+      {"value", "of the parameter", "estimate", At(kEstimate, &ParameterEstimate::value),
        [](const Item& item) { return WhyFailed(item.report); }},
-      {"unit", "", "unit of value, error and interval", Of(At(&ParameterEstimate::unit))},
+      {"unit", "", "unit of value, error and interval", At(kEstimate, &ParameterEstimate::unit)},
       {"standard_error", "of the parameter", "standard error",
-       Of(At(&ParameterEstimate::standard_error)), WhyNoError},
+       At(kEstimate, &ParameterEstimate::standard_error), WhyNoError},
       {"repeat_error", "of the parameter",
        "standard deviation that repeats of the test would have: standard_error of an adequate "
        "model, else from leaving out parts of the record's cycles",
-       Of(At(&ParameterEstimate::repeat_error)),
+       At(kEstimate, &ParameterEstimate::repeat_error),
        [](const Item& item) {
          return item.estimate.repeat_error || item.estimate.standard_error
                     ? std::string("fewer than three cycles")
                     : WhyNoError(item);
        }},
       {"ci95[0]", "of the parameter", "lower end of the interval",
-       Of(At(&ParameterEstimate::lower95)), WhyIntervalOpen},
+       At(kEstimate, &ParameterEstimate::lower95), WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the interval",
-       Of(At(&ParameterEstimate::upper95)), WhyIntervalOpen},
+       At(kEstimate, &ParameterEstimate::upper95), WhyIntervalOpen},
       {"ci95_parts", "", "contributions whose union is ci95",
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"prior.value", "of the parameter", "centre of its prior; absent without one",
-       Of(IfAny(&ParameterEstimate::prior, &identification::Prior::value))},
+       IfAny(kEstimate, &ParameterEstimate::prior, &identification::Prior::value)},
       {"prior.standard_uncertainty", "of the parameter", "standard uncertainty of the prior",
-       Of(IfAny(&ParameterEstimate::prior, &identification::Prior::standard_uncertainty))},
+       IfAny(kEstimate, &ParameterEstimate::prior, &identification::Prior::standard_uncertainty)},
       {"without_priors.value", "of the parameter",
        "estimate of a fit without any prior; absent without priors",
-       [](const Item& item) {
-         const auto& without = item.estimate.without_priors;
-         return without ? ToValue(without->value) : Value{};
-       }},
+       IfAny(kEstimate, &ParameterEstimate::without_priors, &identification::WithoutPriors::value)},
       {"without_priors.standard_error", "of the parameter", "its standard error",
-       [](const Item& item) {
-         const auto& without = item.estimate.without_priors;
-         return without ? ToValue(without->standard_error) : Value{};
-       },
+       IfAny(kEstimate, &ParameterEstimate::without_priors,
+             [](const auto& without) { return OrNull{without.standard_error}; }),
        "held, or not determined without the priors"},
       {"without_priors.moved", "-",
        "value minus the estimate without priors, over its standard error",
-       [](const Item& item) {
-         return item.estimate.without_priors ? Number(item.estimate.MovedByPriors()) : Value{};
-       },
+       IfAny(
+           [](const Item& item) {
+             return If(item.estimate.without_priors.has_value(), item.estimate);
+           },
+           [](const ParameterEstimate& estimate) { return OrNull{estimate.MovedByPriors()}; }),
        "held, or not determined without the priors"},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
-       Of(At(&ParameterEstimate::status))},
+       At(kEstimate, &ParameterEstimate::status)},
       {"identifiability", "",
        "identifiable, effective, extrapolated, bounded_below or not_identifiable",
-       Of(At(&ParameterEstimate::identifiability))},
+       At(kEstimate, &ParameterEstimate::identifiability)},
   };
   return fields;
 }
@@ -192,9 +186,8 @@ const std::vector<Field<identification::ConfidenceRegion>>& RegionFields() {
   return fields;
 }
 
-Value Regions(const Report& report) {
-  if (!report.fit.regions) return {};
-  return report.fit.regions->empty() ? Missing() : List(RegionFields(), *report.fit.regions);
+Value Regions(const std::vector<identification::ConfidenceRegion>& regions) {
+  return regions.empty() ? Missing() : List(RegionFields(), regions);
 }
 
 ParameterEstimate NotEstimated(const char* name, const char* unit) {
@@ -258,8 +251,8 @@ void AddParameterFields(FieldTable& table) {
        Correlations},
       {"regions", "",
        "joint confidence regions of sigma and alpha and of slip_force and alpha, of the noise "
-       "alone; only with --regions or --report",
-       Regions,
+       "alone; absent without --regions or --report",
+       IfAny(&Report::fit, &identification::FitResult::regions, &Regions),
        [](const Report& report) {
          return report.failed() ? WhyFailed(report)
                                 : std::string(
@@ -270,7 +263,11 @@ void AddParameterFields(FieldTable& table) {
   table.Describe("parameters.NAME.", ParameterFields());
   table.Describe("parameters.NAME.ci95_parts[].", IntervalFields());
   table.Describe("regions[].", RegionFields());
-  table.items.push_back({"correlation.NAME.NAME", "-", "of the errors of two free parameters"});
+  table.items.push_back({.path = "correlation.NAME.NAME",
+                         .unit = "-",
+                         .label = "of the errors of two free parameters",
+                         .type = SchemaOf<double>(),
+                         .may_be_null = true});
 }
 
 }  // namespace mindahl::report

@@ -17,17 +17,18 @@ const std::vector<Field<Cause>>& CauseFields() {
       {"code", "", "stable name, for scripts", &Item::code},
       {"try", "", "option of the command line that takes it into account",
        [](const Item& item) {
-         return item.option.empty() || item.has_known_factor() ? Missing() : ToValue(item.option);
+         const bool is_offered = !item.option.empty() && !item.has_known_factor();
+         return is_offered ? std::optional(item.option) : std::nullopt;
        },
        WhyNoOption},
       {"delta_aicc", "-", "AICc of the fit with it minus that without: negative where it helps",
        &Item::delta_aicc},
       {"explains", "-", "fraction of the residuals' variance that it explains", &Item::explains},
       {"size", "of the cause", "size of the cause; of several numbers the first",
-       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.size); },
+       At([](const Item& item) { return If(!item.unit.empty(), item); }, &Item::size),
        "it has several numbers, none of which is significant alone"},
       {"unit", "", "unit of the size",
-       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.unit); },
+       At([](const Item& item) { return If(!item.unit.empty(), item); }, &Item::unit),
        "it has no size"},
       {"moves", "-",
        "largest change of sigma, alpha or slip_force with it, in half widths of their intervals",
@@ -36,14 +37,14 @@ const std::vector<Field<Cause>>& CauseFields() {
   return fields;
 }
 
+std::optional<std::reference_wrapper<const Adequacy>> Judged(const Report& report) {
+  return If(IsJudged(report), report.fit.adequacy);
+}
+
 /// Makes a field of the adequacy, null where there is no verdict.
 template <typename Get>
 Field<Report> AdequacyRow(const char* path, const char* unit, const char* label, Get get) {
-  return {path, unit, label,
-          [get](const Report& report) {
-            return IsJudged(report) ? At(get)(report.fit.adequacy) : Missing();
-          },
-          kWhyNotJudged};
+  return {path, unit, label, At(&Judged, get), kWhyNotJudged};
 }
 
 }  // namespace
@@ -56,9 +57,7 @@ void AddAdequacyFields(FieldTable& table) {
                   &Adequacy::misfit_over_noise),
       {"adequacy.misfit_over_half_gap", "-",
        "rms of what the model misses over the half gap measured without a model",
-       [](const Report& report) {
-         return IsJudged(report) ? ToValue(report.fit.adequacy.misfit_over_half_gap) : Missing();
-       },
+       At(&Judged, &Adequacy::misfit_over_half_gap),
        [](const Report& report) {
          return IsJudged(report) ? std::string("no half gap was measured")
                                  : std::string(kWhyNotJudged);
@@ -131,11 +130,11 @@ namespace {
 Field<Report> Residual(const char* name, const char* unit, const char* label,
                        double ResidualStatistics::*member) {
   return {std::string("residuals.") + name, unit, label,
-          [member](const Report& report) {
-            const ResidualStatistics& residuals = report.fit.residuals;
-            return residuals.samples > 0 ? ToValue(residuals.*member) : Missing();
-          },
-          "not a finite number"};
+          At(
+              [](const Report& report) {
+                return If(report.fit.residuals.samples > 0, report.fit.residuals);
+              },
+              member)};
 }
 
 const std::vector<Field<StrokeBin>>& BinFields() {
@@ -197,12 +196,11 @@ void AddResidualFields(FieldTable& table) {
       Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
                &ResidualStatistics::degrees_of_freedom),
       {"residuals.channel", "", "the fitted channel, in whose unit the residuals are",
-       [](const Report& report) { return Name(report.fit.response); }},
+       [](const Report& report) { return report.fit.response; }},
       {"residuals.force_noise", "N",
        "standard deviation of the force, given or estimated; 0 where it is imposed",
-       [](const Report& report) {
-         return report.failed() ? Missing() : ToValue(report.fit.force_noise);
-       }},
+       At([](const Report& report) { return If(!report.failed(), report.fit); },
+          &identification::FitResult::force_noise)},
       {"residuals.outliers", "", "samples with less than half weight under the loss",
        [](const Report& report) { return report.fit.outliers; }},
       {"residual_structure", "", "the repeatable residual, one entry per file",

@@ -16,9 +16,8 @@ struct Alternative {
 };
 
 auto OfContact(std::optional<PropagatedValue> IdentifiedContact::*quantity) {
-  return [quantity](const Alternative& item) {
-    return IfAny(quantity, &PropagatedValue::value)(item.contact);
-  };
+  return IfAny([](const Alternative& item) -> const IdentifiedContact& { return item.contact; },
+               quantity, &PropagatedValue::value);
 }
 
 const std::vector<Field<Alternative>>& AlternativeFields() {
@@ -85,7 +84,8 @@ void AddLawFields(FieldTable& table) {
       LawRow(
           "law.preferred", "", "the law that the record follows, as --model takes it",
           [](const LawChoice& choice) {
-            return choice.preferred != nullptr ? ToValue(choice.preferred->name) : Missing();
+            return choice.preferred != nullptr ? std::optional(choice.preferred->name)
+                                               : std::nullopt;
           },
           WhyNotPreferred),
       LawRow("law.delta_aicc", "-", "AICc of the other law minus that of the fitted one",
@@ -192,13 +192,11 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
 void AddSelectionFields(FieldTable& table) {
   table.Add({
       {"model_selection", "", "comparison of models; absent without --model auto",
-       [](const Report& report) {
-         return report.selection ? Render(SelectionFields(), *report.selection) : Value{};
-       }},
+       IfAny(&Report::selection,
+             [](const auto& selection) { return Render(SelectionFields(), selection); })},
       {"terms", "", "selection of terms; absent where none was made",
-       [](const Report& report) {
-         return report.terms ? Render(TermSelectionFields(), *report.terms) : Value{};
-       }},
+       IfAny(&Report::terms,
+             [](const auto& terms) { return Render(TermSelectionFields(), terms); })},
   });
   table.Describe("terms.", TermSelectionFields());
   table.Describe("terms.considered[].", ConsideredTermFields());

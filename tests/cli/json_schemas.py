@@ -3,7 +3,6 @@
 
     json_schemas.py --program build/dev/src/mindahl outputs    runs a table of commands
     json_schemas.py refusals                                   each a document that is not valid
-    json_schemas.py contract                                   keys of fit.json and docs/contract.md
 """
 
 import argparse
@@ -37,6 +36,11 @@ MAKE = [
     "simulate --model dahl --sigma 4e7 --alpha 0.5 --slip-force 40 --lambda 2 --waveform growing-sine "
     "--cycles 4 -o dahl.csv",
     "simulate --sigma 4e7 --slip-force 40 --lambda 0.02 --cycles 2 --noise-force 2 -o hopeless.csv",
+    "simulate --sigma 4e7 --slip-force 40 --model mindlin-dahl --alpha 1.5 --amplitude 3e-6 --cycles 2.5 "
+    "--noise-force 0.05 -o exponential.csv",
+    "simulate --sigma 4e7 --slip-force 40 --model jenkins --lambda 3 --cycles 2.5 --noise-force 0.05 --seed 2 "
+    "-o slider.csv",
+    "simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 0.25 --noise-force 0.05 -o quarter.csv",
 ]
 STEEL = ("--radius-1 0.05 --radius-2 inf --youngs-modulus-1 210e9±1% --poisson-1 0.3 "
          "--youngs-modulus-2 210e9±1% --poisson-2 0.3")
@@ -72,6 +76,16 @@ COMMANDS = [
     ("fit noise.csv", 0),
     ("fit loaded.csv", 0),
     ("fit walk.csv", 0),
+    (f"fit {BALL} --force-sign opposite", 3),
+    (f"fit {BALL} --force-sign opposite --normal-load 50 {STEEL}", 3),
+    (f"fit {BALL} --fix sigma=4.8e7 --fix alpha=0.3 --fix slip_force=15", 0),
+    (f"fit {BALL} --fix sigma=4.8e7 --contact-radius 2.5e-4 --compliance 4.2e-11", 0),
+    (f"fit {BALL} --contact-radius 2.5e-4", 0),
+    (f"fit {BALL} --rig-stiffness fit --model mindlin", 0),
+    (f"fit {BALL} --initial-state steady", 0),
+    ("fit exponential.csv", 0),
+    ("fit slider.csv", 0),
+    ("fit quarter.csv", 0),
     (f"fit {BALL} loop.csv --normal-load 50", None),
     ("contact --friction 0.3 --normal-load 50±1% " + STEEL, 0),
     ("contact --friction 0.3 --normal-load 50 --contact-radius 3e-4 --compliance 4.2e-11", 0),
@@ -171,12 +185,17 @@ NEVER = {
 }
 
 
+def resolved(schema, root):
+    """What a reference in the same schema stands for, or null; empty of another's."""
+    while "$ref" in schema or "anyOf" in schema:
+        reference = schema.get("$ref") or schema["anyOf"][0].get("$ref", "")
+        schema = root["$defs"][reference.rpartition("/")[2]] if reference.startswith("#") else {}
+    return schema
+
+
 def keys_of(value, schema, root, path=""):
     """Every key of a document, as a schema knows it: by its place there."""
-    while "$ref" in schema:
-        if not schema["$ref"].startswith("#"):
-            return
-        schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
+    schema = resolved(schema, root)
     if isinstance(value, dict):
         for key, member in value.items():
             known = schema.get("properties", {}).get(key)
@@ -190,10 +209,7 @@ def keys_of(value, schema, root, path=""):
 
 
 def optional_keys(schema, root, path=""):
-    while "$ref" in schema:
-        if not schema["$ref"].startswith("#"):
-            return
-        schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
+    schema = resolved(schema, root)
     for key, member in schema.get("properties", {}).items():
         if key not in schema.get("required", []):
             yield f"{path}.{key}"
@@ -229,6 +245,7 @@ def check_outputs(program):
     problems = []
     seen = collections.Counter()
     keys = collections.defaultdict(set)
+    mutations = ContractMutations()
     with tempfile.TemporaryDirectory() as scratch:
         directory = pathlib.Path(scratch)
 
@@ -257,14 +274,73 @@ def check_outputs(program):
                 problems.append(f"{line}: schema {document['schema']}")
             problems += [f"{line}: {fault}" for fault in faults(document)]
             keys[name].update(keys_of(document, SCHEMAS[name], SCHEMAS[name]))
+            if name == "fit":
+                problems += mutations.faults(document)
     for name in SCHEMAS:
         if not seen[f"mindahl.{name}/1"]:
             problems.append(f"{name}.json: no command of the table writes it")
         for key in sorted(set(optional_keys(SCHEMAS[name], SCHEMAS[name])) - keys[name]):
             if f"{name}: {key[1:]}" not in NEVER:
                 problems.append(f"{name}.json: no command of the table writes {key[1:]}")
-    print(f"{sum(seen.values())} documents of {len(seen)} schemas")
+    print(f"{sum(seen.values())} documents of {len(seen)} schemas, {len(mutations.done)} made wrong")
     return problems
+
+
+# --- fit.json against the contract ---------------------------------------------------------------
+
+CONTRACT_ROW = re.compile(r"^\| `([a-zA-Z_.\[\]\d]+)` \| ([a-z, ]+) \| [^|]* \| (.*) \|$", re.MULTILINE)
+
+
+def objects_of(value, schema, root, path=""):
+    """Every object of a document with members of its own, as docs/contract.md names its place."""
+    if schema.get("$ref") == "#/$defs/quantity" or "anyOf" in schema:
+        path = "contact.QUANTITY"
+    schema = resolved(schema, root)
+    if isinstance(value, dict):
+        known = schema.get("properties")
+        if known:
+            yield path, value, schema
+        for key, member in value.items():
+            below = known[key] if known else schema["additionalProperties"]
+            name = key if known else "NAME"
+            yield from objects_of(member, below, root, f"{path}.{name}" if path else name)
+    elif isinstance(value, list) and "items" in schema:
+        for member in value:
+            yield from objects_of(member, schema["items"], root, f"{path}[]")
+
+
+class ContractMutations:
+    """Documents that the contract does not allow: without a key, with another one, with a null."""
+
+    def __init__(self):
+        self.rows = CONTRACT_ROW.findall((ROOT / "docs/contract.md").read_text())
+        self.done = set()
+
+    def may(self, path):
+        """Whether a key may be absent, and whether it may be null."""
+        for row, kind, label in self.rows:
+            if row == path or row.startswith((path + ".", path + "[")):
+                return "absent" in label, row == path and "null" in kind
+        raise AssertionError(f"{path} is not in docs/contract.md")
+
+    def faults(self, document):
+        """Of the first object of a kind; each is checked by the schema of its place alone."""
+        root = SCHEMAS["fit"]
+        for path, value, schema in objects_of(document, root, root):
+            check = jsonschema.Draft202012Validator({**schema, "$defs": root["$defs"]})
+            changed = [("another key", "", {**value, "other": 1})]
+            for key in value:
+                place = f"{path}.{key}" if path else key
+                may_be_absent, may_be_null = self.may(place)
+                if not may_be_absent:
+                    changed.append(("missing", key, {name: part for name, part in value.items() if name != key}))
+                if not may_be_null:
+                    changed.append(("null", key, {**value, key: None}))
+            for what, key, object_ in changed:
+                if (path, key, what) not in self.done:
+                    self.done.add((path, key, what))
+                    if check.is_valid(object_):
+                        yield f"fit.json lets pass: {path}.{key}: {what}"
 
 
 # --- documents that the schemas must refuse ----------------------------------------------------
@@ -298,12 +374,35 @@ def altered(document, value, *path):
     return changed
 
 
+def keys_in(schema):
+    for name, part in schema.items():
+        if name == "properties":
+            yield from part
+        for below in part if isinstance(part, list) else [part]:
+            if isinstance(below, dict):
+                yield from keys_in(below)
+
+
+def undocumented_keys():
+    """Of the other commands, whose keys docs/contract.md names in its text."""
+    pages = re.split(r"\n## mindahl (\w+)\n", (ROOT / "docs/contract.md").read_text())
+    sections = dict(zip(pages[1::2], pages[2::2]))
+    command = {"sweep": "fit", "track_separate": "track"}
+    for name, schema in SCHEMAS.items():
+        text = sections[command.get(name, name)]
+        if name == "recommend":  # "the keys of a point of `tradeoff`"
+            text += sections["tradeoff"]
+        for key in sorted(set(keys_in(schema)) - set(re.findall(r"`([a-z_0-9]+)`", text)) if name != "fit" else []):
+            yield f"{name}.json: {key} is not in docs/contract.md"
+
+
 def check_refusals():
     """A schema that lets anything pass is worth nothing."""
     for name, schema in SCHEMAS.items():
         jsonschema.Draft202012Validator.check_schema(schema)
         if validator(name).is_valid({"schema": f"mindahl.{name}/1", "version": "0.1.0"}):
             yield f"{name}.json lets a document pass that has nothing else than its name"
+    yield from undocumented_keys()
     check = validator("contact")
     if not check.is_valid(CONTACT):
         yield "contact.json refuses a document as it should be"
@@ -326,63 +425,15 @@ def check_refusals():
         yield "a reason without a null is not refused"
 
 
-# --- fit.json and the contract -----------------------------------------------------------------
-
-def schema_paths(schema, root, path=""):
-    """Every place of a schema, as docs/contract.md names it."""
-    definition = ""
-    while "$ref" in schema:
-        definition = schema["$ref"].rpartition("/")[2]
-        schema = root["$defs"][definition]
-    if path:
-        yield path
-    below = "contact.QUANTITY" if definition == "quantity" else path
-    for key, member in schema.get("properties", {}).items():
-        yield from schema_paths(member, root, f"{below}.{key}" if below else key)
-    if isinstance(schema.get("additionalProperties"), dict):
-        yield from schema_paths(schema["additionalProperties"], root, f"{path}.NAME")
-    if schema.get("type") in ("array", ["array", "null"]):
-        is_pair = schema.get("minItems") == schema.get("maxItems") == 2
-        if is_pair and path.endswith(("ci95", "parameters")):
-            yield from (f"{path}[{place}]" for place in (0, 1))
-        elif path.endswith("boundary"):
-            pass  # a list of points
-        elif schema["items"].get("type") not in ("string", "integer", "number", ["number", "null"],
-                                                ["string", "null"]):
-            yield from schema_paths(schema["items"], root, f"{path}[]")
-
-
-def check_contract():
-    """Keys of docs/contract.md and of fit.json, each with those on the way to it."""
-    text = (ROOT / "docs/contract.md").read_text()
-    section = text.partition("### JSON, schema `mindahl.fit/1`")[2].partition("\n## ")[0]
-    documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
-    paths = set(schema_paths(SCHEMAS["fit"], SCHEMAS["fit"]))
-    known = {part for path in documented for part in ways_to(path)}
-    for path in sorted(documented - paths):
-        yield f"{path}: in docs/contract.md, not in docs/schema/fit.json"
-    for path in sorted(paths - known):
-        yield f"{path}: in docs/schema/fit.json, not in docs/contract.md"
-    print(f"{len(documented)} keys of the contract, {len(paths)} places of the schema")
-
-
-def ways_to(path):
-    """The path, and every object or list that it lies in."""
-    yield path
-    while "." in path or path.endswith("]"):
-        path = path[:path.rindex("[")] if path.endswith("]") else path.rpartition(".")[0]
-        yield path
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["outputs", "refusals", "contract"])
+    parser.add_argument("what", choices=["outputs", "refusals"])
     parser.add_argument("--program", type=pathlib.Path)
     arguments = parser.parse_args()
     if arguments.what == "outputs":
         problems = check_outputs(arguments.program.resolve())
     else:
-        problems = list(check_refusals() if arguments.what == "refusals" else check_contract())
+        problems = list(check_refusals())
     for problem in problems:
         print(problem)
     return 1 if problems else 0

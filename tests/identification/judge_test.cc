@@ -37,6 +37,14 @@ constexpr auto kVerdicts = std::to_array<Verdict>({
     {"turning_points_between_samples", Identifiability::kIdentifiable},
 });
 
+TEST(Judge, VerdictsAreInTheOrderOfPrecedence) {
+  using enum Identifiability;
+  EXPECT_GT(kNotIdentifiable, kBoundedBelow);
+  EXPECT_GT(kBoundedBelow, kExtrapolated);
+  EXPECT_GT(kExtrapolated, kEffective);
+  EXPECT_GT(kEffective, kIdentifiable);
+}
+
 Identifiability JudgedWith(ParameterEstimate estimate, std::vector<Finding> findings) {
   Judge({&estimate, 1}, findings);
   return estimate.identifiability;

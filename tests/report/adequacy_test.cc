@@ -72,13 +72,6 @@ TEST(CauseSentence, ExistsForEveryTermThatIsTriedAndNoOther) {
   EXPECT_EQ(spoken, TriedCodes());
 }
 
-TEST(CauseSentence, HasALineInTheContractForEveryCode) {
-  const std::string contract = testing::PageText("docs/contract.md");
-  for (const std::string_view code : CauseCodes()) {
-    EXPECT_THAT(contract, HasSubstr("| `" + std::string(code) + "` |")) << code;
-  }
-}
-
 TEST(CauseSentence, OfAReadingThatLosesMoreThanThereIsSaysAll) {
   const Cause saturates{
       .code = "force_saturates", .explains = 0.7, .size = 4.09, .unit = "-", .option = ""};

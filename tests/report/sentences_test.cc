@@ -285,13 +285,5 @@ TEST(FindingCodes, AreThoseThatTheIdentificationFinds) {
   EXPECT_EQ(EmittedCodes(), codes);
 }
 
-TEST(FindingCodes, HaveALineInTheDocumentation) {
-  const std::string contract =
-      Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "docs" / "contract.md");
-  for (const FindingRow& row : kFindings) {
-    EXPECT_THAT(contract, HasSubstr("| `" + std::string(row.code) + "`")) << row.code;
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::report::sentences_test

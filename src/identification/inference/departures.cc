@@ -176,7 +176,9 @@ constexpr std::array<Departure, 24> kDepartures = {{
      .unit = "N/unit",
      .option = "--covariate COL"},
     {.code = "smoothing",
-     .meaning = "standard deviation of the time window over which the force is averaged",
+     .meaning =
+         "standard deviation of the time window over which the force is averaged; of that of "
+         "the displacement where negative",
      .unit = "s",
      .option = "",
      .unit_by_sample = "samples",

@@ -103,7 +103,7 @@ constexpr std::array kTerms = {
          .highest = kLargestLoadExponent},
     Term{.name = "asymmetry",
          .meaning = "A of slip forces Tc(1 + A) where the displacement grows and Tc(1 − A) where "
-                    "it falls",
+                    "it falls; slip_force is their mean",
          .lowest = -kLargestAsymmetry,
          .highest = kLargestAsymmetry,
          .option = "--asymmetry",
@@ -136,8 +136,8 @@ constexpr std::array kTerms = {
         .help = "viscous force C·dδ/dt, C [N s/m], or fit; needs a time column"},
     Term{.name = "speed_exponent",
          .meaning =
-             "m of a force C·v^m along the motion, v the speed in m/s, in place of the viscous "
-             "force",
+             "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
+             "the viscous force",
          .lowest = kLeastSpeedExponent,
          .highest = 1.0,
          .needs_time = true,
@@ -181,7 +181,7 @@ constexpr std::array kTerms = {
          .has_start = true},
     Term{.name = "slip_speed",
          .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
-                    "third of the strokes",
+                    "third of the strokes, at which Tc is that of the fit",
          .lowest = -kLargestSlipBySpeed,
          .highest = kLargestSlipBySpeed,
          .needs_time = true,
@@ -262,8 +262,8 @@ constexpr std::array kTerms = {
                    Regressor::kRippleSineDown),
     Term{.name = "lag",
          .unit = "s",
-         .meaning = "delay of the contact's force after the displacement; in samples where the "
-                    "record has no time",
+         .meaning = "delay of the contact's force after the displacement, negative if before it; "
+                    "in samples where the record has no time",
          .lowest = -kLongestLag,
          .highest = kLongestLag,
          .scale = [](const TermUnits& units) { return units.cycle; },
@@ -285,7 +285,9 @@ constexpr std::array kTerms = {
     Term{.name = "covariate",
          .unit = "N/unit",
          .meaning = "C of an additional force C·column, one for each named column: "
-                    "`covariate_COLUMN`",
+                    "`covariate_COLUMN`, with _ for blanks and signs; N/ the column's unit where "
+                    "the header has one. force_offset is then its value in the middle of the "
+                    "column's range",
          .entry = Entry::kLinear,
          .lowest = -kWidest,
          .highest = kWidest,

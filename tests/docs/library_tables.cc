@@ -1,0 +1,149 @@
+#include <array>
+#include <cstddef>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "identification/inference/departures.h"
+#include "identification/inference/irregularities.h"
+#include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/terms.h"
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/request/batch.h"
+#include "report/fields.h"
+#include "report/names.h"
+
+// Prints the library's tables as JSON, from which library_tables.py makes those of the pages and
+// the schema of the report.
+namespace mindahl {
+namespace {
+
+using report::Json;
+
+Json FieldsTable() {
+  Json rows = Json::array();
+  for (const report::FieldDescription& field : report::DescribeFields()) {
+    rows.push_back({{"path", field.path},
+                    {"unit", field.unit},
+                    {"label", field.label},
+                    {"type", field.type},
+                    {"may_be_null", field.may_be_null},
+                    {"may_be_absent", field.may_be_absent}});
+  }
+  return rows;
+}
+
+Json TermsTable() {
+  Json rows = Json::array();
+  const std::array presences = {"always",    "offsets",     "reported",
+                                "on_demand", "load_series", "never"};
+  for (const identification::Term& term : identification::Terms()) {
+    rows.push_back({{"name", term.name},
+                    {"unit", term.unit},
+                    {"meaning", term.meaning},
+                    {"is_of_record", term.scope == identification::Scope::kRecord},
+                    {"is_linear", term.entry == identification::Entry::kLinear},
+                    {"presence", presences.at(static_cast<std::size_t>(term.presence))},
+                    {"option", term.option},
+                    {"needs_time", term.needs_time}});
+  }
+  return rows;
+}
+
+Json ThresholdsTable() {
+  Json rows = Json::array();
+  const identification::Thresholds defaults;
+  for (const identification::ThresholdRow& row : identification::ThresholdTable()) {
+    rows.push_back({{"name", row.name},
+                    {"value", defaults.*row.value},
+                    {"unit", row.unit},
+                    {"meaning", row.meaning},
+                    {"reason", row.reason}});
+  }
+  return rows;
+}
+
+Json FindingsTable() {
+  Json rows = Json::array();
+  for (const identification::FindingRow& row : identification::kFindings) {
+    rows.push_back({{"code", row.code},
+                    {"verdict", report::Name(row.verdict)},
+                    {"is_note", row.severity == identification::Severity::kNote}});
+  }
+  return rows;
+}
+
+/// Causes in the order of the library: omitted terms, then structures of the residuals.
+Json CausesTable() {
+  Json rows = Json::array();
+  for (const identification::Departure& row : identification::Departures()) {
+    rows.push_back({{"code", row.code},
+                    {"unit", row.unit},
+                    {"unit_by_sample", row.unit_by_sample},
+                    {"meaning", row.meaning},
+                    {"option", row.option}});
+  }
+  for (const identification::Irregularity& row : identification::Irregularities()) {
+    rows.push_back({{"code", row.code},
+                    {"unit", row.unit},
+                    {"unit_by_sample", ""},
+                    {"meaning", row.meaning},
+                    {"option", row.option}});
+  }
+  return rows;
+}
+
+/// Models that a fit may have.
+Json ModelsTable() {
+  Json names = Json::array();
+  for (const models::FrictionModel& model : models::FrictionModels()) {
+    if (!model.scaled_by_peak) names.push_back(model.name);
+  }
+  return names;
+}
+
+Json ComparisonsTable() {
+  Json codes = Json::array();
+  for (const std::string_view code : identification::MemoryComparisonCodes()) codes.push_back(code);
+  return codes;
+}
+
+Json FlagsTable() {
+  Json rows = Json::array();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    rows.push_back({{"name", flag.name}, {"meaning", flag.meaning}});
+  }
+  return rows;
+}
+
+/// Columns of the tables that commands write, by command.
+Json Columns() {
+  Json columns = {{"track", Json::array()}, {"batch", Json::array()}};
+  std::istringstream header(campaign::CycleTableHeader(/*is_torsional=*/false));
+  for (std::string name; header >> std::ws && std::getline(header, name, ',');) {
+    columns["track"].push_back(name.substr(0, name.find('\n')));
+  }
+  for (const request::BatchColumn& column : request::TableOf({})) {
+    columns["batch"].push_back(column.name);
+  }
+  return columns;
+}
+
+}  // namespace
+}  // namespace mindahl
+
+int main() {
+  const mindahl::report::Json tables = {{"fields", mindahl::FieldsTable()},
+                                        {"terms", mindahl::TermsTable()},
+                                        {"thresholds", mindahl::ThresholdsTable()},
+                                        {"findings", mindahl::FindingsTable()},
+                                        {"causes", mindahl::CausesTable()},
+                                        {"models", mindahl::ModelsTable()},
+                                        {"comparisons", mindahl::ComparisonsTable()},
+                                        {"flags", mindahl::FlagsTable()},
+                                        {"columns", mindahl::Columns()}};
+  std::cout << tables.dump(1) << '\n';
+}
