@@ -15,6 +15,7 @@
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/report/units.h"
 #include "report/adequacy.h"
+#include "report/fields.h"
 #include "report/names.h"
 
 namespace mindahl::report {

@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "mindahl/report/report.h"
-#include "report/fields.h"
 
 // Makes the statements that text and page share, in words and without an end of line.
 namespace mindahl::report {
+
+struct ContactField;
 
 /// Names several files by the name of the first, without its directory: "loop.csv and 2 more".
 std::string NameOf(std::span<const std::string> files);

@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "report/field_table.h"
+
 namespace mindahl::report {
 
 using loop::Settling;

@@ -6,9 +6,11 @@
 
 #include "mindahl/loop/segments.h"
 #include "mindahl/report/report.h"
-#include "report/field_table.h"
 
 namespace mindahl::report {
+
+template <typename Item>
+struct Field;
 
 /// Returns a note for each part left out of the records as not of their test, and for why no more
 /// was; none where it was not requested.
