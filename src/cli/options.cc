@@ -118,16 +118,16 @@ template Option OptionGroup::AddShown(Text, std::uint64_t&, Text, Text) const;
 template Option OptionGroup::AddShown(Text, double&, Text, Text) const;
 template Option OptionGroup::AddShown(Text, std::string&, Text, Text) const;
 
-Option OptionGroup::AddRead(const std::string& option, std::function<void(const std::string&)> read,
+Option OptionGroup::AddRead(const std::string& option,
+                            const std::function<void(const std::string&)>& read,
                             const std::string& help, const std::string& type) const {
-  return Grouped(command_.add_option_function<std::string>(option, std::move(read), help), type);
+  return Grouped(command_.add_option_function<std::string>(option, read, help), type);
 }
 
 Option OptionGroup::AddReadAll(const std::string& option,
-                               std::function<void(const std::vector<std::string>&)> read,
+                               const std::function<void(const std::vector<std::string>&)>& read,
                                const std::string& help, const std::string& type) const {
-  return Grouped(
-      command_.add_option_function<std::vector<std::string>>(option, std::move(read), help), type);
+  return Grouped(command_.add_option_function<std::vector<std::string>>(option, read, help), type);
 }
 
 namespace {

@@ -64,10 +64,10 @@ class OptionGroup {
   Option AddShown(const std::string& option, Value& value, const std::string& help,
                   const std::string& type = "") const;
   /// Adds an option whose text, or whose texts, a function reads.
-  Option AddRead(const std::string& option, std::function<void(const std::string&)> read,
+  Option AddRead(const std::string& option, const std::function<void(const std::string&)>& read,
                  const std::string& help, const std::string& type) const;
   Option AddReadAll(const std::string& option,
-                    std::function<void(const std::vector<std::string>&)> read,
+                    const std::function<void(const std::vector<std::string>&)>& read,
                     const std::string& help, const std::string& type) const;
   Option AddFlag(const std::string& option, bool& value, const std::string& help) const;
   /// Adds a flag that may have a word of its own: "--strict{adequate}".

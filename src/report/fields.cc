@@ -32,6 +32,7 @@ template <typename Get>
 auto OneARecord(Get get) {
   return [get](const Report& report) {
     std::vector<std::optional<typename Result<Get, RecordFit>::Type>> list;
+    list.reserve(report.fit.records.size());
     for (const RecordFit& record : report.fit.records) list.push_back(std::invoke(get, record));
     return list;
   };
