@@ -83,8 +83,9 @@ struct ReportedParameter {
   const ParameterEstimate& estimate;
 };
 
-const ParameterEstimate& EstimateOf(const ReportedParameter& item) { return item.estimate; }
-constexpr auto kEstimate = &EstimateOf;
+constexpr auto kEstimate = [](const ReportedParameter& item) -> const ParameterEstimate& {
+  return item.estimate;
+};
 
 std::string WhyNoError(const ReportedParameter& item) {
   if (item.report.failed()) return WhyFailed(item.report);
