@@ -222,16 +222,5 @@ TEST(FitSweep, LeastTcOfForcesThatWereReachedIsALimitOfTheLaw) {
   EXPECT_GT(*alpha.lower95, 0.2);
 }
 
-TEST(FitSweep, NoShapeBelowNoughtIsALimitOfTheLaw) {
-  // A smaller Tc wants a smaller alpha, which 0 ends.
-  const SweepOptions options{.over_force = true};
-  const std::vector<double> forces = Forces(4.0, 50.0, 30);
-  const std::vector<double> responses = Noisy(Responses(options, 0.03, forces), 0.01 * kSigma, 9);
-  const SweepFit fit = FitSweep(forces, responses, options);
-  const ParameterEstimate& slip_force = fit.parameter("slip_force");
-  ASSERT_TRUE(slip_force.lower95);
-  EXPECT_GT(*slip_force.lower95, 50.0);
-}
-
 }  // namespace
 }  // namespace mindahl::identification::sweep_test
