@@ -465,6 +465,45 @@ TEST(ChangeThresholds, RunningInHasSettledAtAFifthOfItsSlope) {
   EXPECT_EQ(kind_of(0.3), ChangeKind::kBend);
 }
 
+TEST(ChangeThresholds, RunningInHasSettledAtAFifthOfItsFirstSlopeAfterOthers) {
+  // Slopes of 10, 5 and a sixth or a third of 10, in thousands of cycles.
+  const auto kinds_of = [](double share) {
+    const CourseDescription description = FindChanges(CourseOf(
+        3000, 1,
+        [share](std::size_t cycle) {
+          const double x = static_cast<double>(cycle) / 1000;
+          return kLevel + 10 * (std::min(x, 1.0) + 0.5 * std::clamp(x - 1, 0.0, 1.0) +
+                                share * std::max(x - 2, 0.0));
+        },
+        0.0, 0.1));
+    std::vector<ChangeKind> kinds;
+    for (const Change& change : description.changes) kinds.push_back(change.kind);
+    return kinds;
+  };
+  EXPECT_THAT(kinds_of(0.15), ElementsAre(ChangeKind::kBend, ChangeKind::kEndOfRunningIn));
+  EXPECT_THAT(kinds_of(0.3), ElementsAre(ChangeKind::kBend, ChangeKind::kBend));
+}
+
+TEST(Changes, DescribeWhatSettlesByItsWeights) {
+  // a + b·e^(−n/τ), τ of those that are tried, 1.2^k, and every third value far off but of next to
+  // no weight.
+  const double tau = std::pow(1.2, 16);
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 300; ++cycle) {
+    const double value = kLevel - 20 * std::exp(-static_cast<double>(cycle) / tau);
+    const bool is_off = cycle % 3 == 0;
+    course.Add(cycle, is_off ? value + (cycle % 2 == 0 ? 5 : -5) : value, is_off ? 1e-9 : 1.0);
+  }
+  const CourseDescription description = FindChanges(course);
+  ASSERT_FALSE(description.stretches.empty());
+  const Stretch& first = description.stretches.front();
+  ASSERT_TRUE(first.time_constant);
+  // Other time constants are a fifth away.
+  EXPECT_NEAR(*first.time_constant / tau, 1.0, 0.1);
+  EXPECT_NEAR(first.at_start, kLevel - 20 * std::exp(-1 / tau), 0.05 * 20);
+  EXPECT_NEAR(description.stretches.back().at_end, kLevel, 0.01 * 20);
+}
+
 TEST(ChangeThresholds, ChanceIsOneInAHundred) {
   // At ten times the chance, or ten times less, another share of courses has a change.
   const auto found = [](double chance) {

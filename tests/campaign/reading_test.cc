@@ -1,6 +1,8 @@
 
 
+#include "io/temporary_directory.h"
 #include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/loop/reversals.h"
 #include "support/prelude.h"
 
 namespace mindahl::campaign::reading_test {
@@ -27,6 +29,22 @@ TEST(Reading, ChoosesGateAndForceSignForAllCycles) {
   EXPECT_EQ(reading.samples, record.size());
   EXPECT_FALSE(reading.gate_is_given);
   EXPECT_FALSE(DoubtAbout(reading, "loop").has_value());
+}
+
+TEST(ReadHead, GoesOnUntilTheMotionHasTurnedEightTimes) {
+  // Cycles of 60,000 rows of 13 bytes, a hundred of which are alike: pieces of 128 KiB and then of
+  // 1 MiB have less than two each.
+  std::string rows = "x [m],F [N]\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double phase = 2 * std::numbers::pi * i / 600;
+    const std::string row = std::to_string(std::sin(phase)).substr(0, 7) + "," +
+                            std::to_string(std::sin(phase + 0.3)).substr(0, 4) + "\n";
+    for (int k = 0; k < 100; ++k) rows += row;
+  }
+  const TemporaryDirectory directory;
+  io::RecordStream stream(directory.Write("long.csv", rows), {}, io::BrokenRows::kRefuse);
+  const io::Samples head = ReadHead(stream);
+  EXPECT_GE(loop::ChooseReversalGate(head.displacement).count, 8U);
 }
 
 TEST(Reading, KeepsAGateThatIsGiven) {

@@ -1,5 +1,7 @@
 #include "core/platform.h"
 
+#include <cerrno>
+#include <filesystem>
 #include <fstream>
 
 #include "support/prelude.h"
@@ -25,6 +27,23 @@ TEST(PeakMemory, IsThatOfTheProcess) {
   const double ratio = static_cast<double>(PeakMemory()) / static_cast<double>(before);
   EXPECT_GT(ratio, 0.1);
   EXPECT_LT(ratio, 100.0);
+}
+
+TEST(RunProgram, SucceedsWhereItsStatusIsNought) {
+  const std::string messages = ::testing::TempDir() + "messages_of_a_program";
+  bool succeeded = false;
+  EXPECT_EQ(RunProgram({"true"}, messages, succeeded), 0);
+  EXPECT_TRUE(succeeded);
+  EXPECT_EQ(RunProgram({"sh", "-c", "echo cannot >&2; exit 3"}, messages, succeeded), 0);
+  EXPECT_FALSE(succeeded);
+  std::string line;
+  std::getline(std::ifstream(messages), line);
+  EXPECT_EQ(line, "cannot");
+  succeeded = true;
+  EXPECT_EQ(RunProgram({"sh", "-c", "kill $$"}, messages, succeeded), 0);
+  EXPECT_FALSE(succeeded);
+  EXPECT_EQ(RunProgram({"no such program"}, messages, succeeded), ENOENT);
+  std::filesystem::remove(messages);
 }
 
 }  // namespace

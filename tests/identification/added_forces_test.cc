@@ -285,6 +285,33 @@ std::vector<double> PointOf(const Problem& problem) {
 constexpr double kStepOfTheta = 1e-5;
 constexpr double kOfDifference = 1e-7;
 
+TEST(StartingPeriod, IsThatOfTheCountedSamplesOfTheStrokesSecondHalves) {
+  // Frequencies are tried at steps of 0.1: over half the range a period of 0.3 is known to a sixth
+  // of one of these.
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 4.0, 400);
+  const double kPeriod = 0.3;
+  std::vector<double> force;
+  for (const double x : displacement) force.push_back(std::cos(2 * std::numbers::pi * x / kPeriod));
+  testing::Stages stages(testing::MakeRecord(displacement, force));
+  ScaledRecord& record = stages.data.records.front();
+  const double period = kPeriod / record.units.length;
+  EXPECT_NEAR(1 / StartingPeriod(stages.data), 1 / period, 0.051);
+  // What does not count has another, larger one; so has what may stick.
+  std::size_t begin = 0;
+  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
+    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double x = record.displacement[i];
+      const bool may_stick = std::abs(x - record.displacement[begin]) <
+                             0.49 * std::abs(record.displacement[end] - record.displacement[begin]);
+      if (i % 3 == 1) record.counts[i] = 0;
+      if (may_stick || i % 3 == 1) record.force[i] = 5 * std::cos(4.1 * std::numbers::pi * x);
+    }
+    begin = end;
+  }
+  EXPECT_NEAR(1 / StartingPeriod(stages.data), 1 / period, 0.051);
+}
+
 TEST(AddedForces, DerivativesAreThoseOfCentralDifferences) {
   Stages stages(Loop(), AllOfThem());
   const auto& free = stages.problem.parameters.free();

@@ -3,6 +3,7 @@
 
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
+#include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
 
 namespace mindahl::identification::asymmetry_test {
@@ -152,6 +153,33 @@ TEST(Asymmetry, IsIdentifiedByEveryRecordWithKnownForceZero) {
   EXPECT_EQ(verdict("force_offset_1"), Identifiability::kIdentifiable);
   EXPECT_EQ(verdict("force_offset_2"), Identifiability::kNotIdentifiable);
   EXPECT_EQ(verdict("force_offset_1", "force_offset_2"), Identifiability::kNotIdentifiable);
+}
+
+TEST(Asymmetry, OfRecordsThatNeverSlipSaysHowFarTheFarthestStays) {
+  Generator generator(6);
+  FitOptions options = WithAsymmetry();
+  options.initial_state = InitialState::kSteady;
+  options.fixed = {{"force_offset_1", 0.0}, {"force_offset_2", 0.0}};
+  const auto never_slips = [&](std::initializer_list<double> lambdas) {
+    std::vector<Record> records;
+    for (const double lambda : lambdas) {
+      records.push_back(WithForceNoise(From(LoopOf(0.25, lambda, 3.25), 200), 0.05, generator));
+    }
+    const FitResult fit = identification::Fit(records, options);
+    const Finding* finding = fit.FindFinding("asymmetry_not_identifiable");
+    if (finding == nullptr) return 0.0;
+    EXPECT_THAT(finding->parameters, ElementsAre("asymmetry"));
+    const double number = finding->Number("never_slips").value();
+    double stays = 0.0;
+    for (const RecordFit& record : fit.records) {
+      const double peak = models::SteadyPeakForce(*fit.model, fit.law, record.measures.amplitude);
+      stays = std::max(stays, 1 - peak / fit.law.slip_force);
+    }
+    EXPECT_NEAR(number, stays, 1e-12);
+    return number;
+  };
+  EXPECT_GT(never_slips({0.6, 0.8}), 0.0);
+  EXPECT_GT(never_slips({0.8, 0.6}), 0.0);
 }
 
 TEST(Asymmetry, FixedValueIdentifiesForceOffsetOnlyIfLoopSlips) {

@@ -68,6 +68,26 @@ TEST(FollowBackbone, IsTheResponseOfALawWhoseBackboneItIsGiven) {
   }
 }
 
+TEST(EstimateBackbone, StandsBesideTheLawBehindItsRig) {
+  const models::BranchLaw law{4e7, 1.0 / 3, 40.0};
+  constexpr double kRig = 2e7;  // [N/m]
+  FitOptions options;
+  options.fixed["rig_stiffness"] = kRig;
+  const Estimated found = Estimate(testing::SprungLoop(law, kRig), options);
+  ASSERT_TRUE(found.fit.converged);
+  const models::BranchLaw& fitted = found.fit.law;
+  const double slip =
+      fitted.slip_force / (fitted.tangential_stiffness * (1 - fitted.shape_exponent));
+  for (const BackbonePoint& point : found.backbone.points) {
+    // What the rig does not take moves the contact: T = Tc(1 − (1 − δ/δc)^(1/(1−α))).
+    const double left = 1 - (point.displacement - point.law / kRig) / slip;
+    const double expected =
+        fitted.slip_force * (1 - std::pow(std::max(left, 0.0), 1 / (1 - fitted.shape_exponent)));
+    EXPECT_NEAR(point.law, expected, 1e-6 * fitted.slip_force);
+  }
+  EXPECT_GT(found.backbone.points.back().law, 0.9 * fitted.slip_force);
+}
+
 TEST(SolveNonnegative, IsTheMinimumWhereNoneWouldBeNegative) {
   const Eigen::MatrixXd product{{2.0, 1.0}, {1.0, 3.0}};
   const Eigen::VectorXd w = SolveNonnegative(product, product * Eigen::Vector2d(0.5, 2.0));

@@ -272,6 +272,32 @@ Record WithPressure() {
   return record;
 }
 
+TEST(Covariates, AreOneChannelWhereATenthIsTheirOwn) {
+  // Of columns x and a + b(x + c·y), y of x's variance and not correlated with it, the correlation
+  // is 1/√(1 + c²), which is to be √(1 − 0.1²): c = 0.1005.
+  const History displacement = Cycling(Wave::kSine, kReach, 3.0, 100);
+  const auto are_one = [&](std::initializer_list<double> own_parts) {
+    std::vector<Record> records;
+    for (const double own : own_parts) {
+      Record& record = records.emplace_back(testing::MakeRecord(
+          displacement, testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement)));
+      record.covariates = {{.name = "x", .unit = "bar", .values = {}},
+                           {.name = "y", .unit = "V", .values = {}}};
+      for (std::size_t i = 0; i < record.size(); ++i) {
+        const double phase = 0.07 * 2 * std::numbers::pi * static_cast<double>(i);
+        record.covariates[0].values.push_back(5 + std::sin(phase));
+        record.covariates[1].values.push_back(3 - 2 * (std::sin(phase) + own * std::cos(phase)));
+      }
+    }
+    const testing::Stages stages(records);
+    return AreOneChannel(stages.data, 0, 1);
+  };
+  EXPECT_TRUE(are_one({0.09}));
+  EXPECT_FALSE(are_one({0.112}));
+  EXPECT_TRUE(are_one({0.0, 0.09}));
+  EXPECT_FALSE(are_one({0.0, 0.112})) << "of each record";
+}
+
 TEST(Covariates, ThatAreOneChannelAreOneCauseByTheLastOfThem) {
   const FitResult fit = Fitted(WithPressure());
   EXPECT_EQ(FirstOf(fit), "covariate");

@@ -133,6 +133,15 @@ TEST(Estimates, HaveWiderErrorsUnderCorrelatedNoiseCorrectedForAbsorbedFraction)
           sandwich.covariance(place, place);
       EXPECT_NEAR(estimates.WhiteShare(free[j]) / white, 1.0, kDifferences);
     }
+    const auto covariances = estimates.CovariancesOf({free[2], free[0]});
+    ASSERT_TRUE(covariances);
+    const std::array<Eigen::Index, 2> places = {2, 0};
+    const Eigen::Matrix2d all = variance * sandwich.covariance(places, places);
+    const Eigen::Matrix2d white =
+        kVariance *
+        SandwichOf(stages.DifferencesAt(solution.theta), 0.0).covariance(places, places);
+    EXPECT_LT(((*covariances)[0] - all).norm(), kDifferences * all.norm());
+    EXPECT_LT(((*covariances)[1] - white).norm(), kDifferences * white.norm());
     EXPECT_NEAR(
         estimates.quantile(),
         StudentQuantile(

@@ -245,6 +245,12 @@ TEST(FitOptions, NumberOfStartsIsKeptAndEachSaysWhatItReached) {
   }
 }
 
+TEST(FitOptions, AsManyStartsAreMadeAsAreAskedFor) {
+  FitOptions options;
+  options.starts = 60;
+  EXPECT_EQ(FitOne(Loop(), options).starts.size(), 60U);
+}
+
 TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
   FitOptions options;
   options.max_iterations = 1;

@@ -251,17 +251,22 @@ TEST(Fitter, GoesOnOverAJumpOfTheFriction) {
 
 // There the likelihood has several minima, and where one begins decides which is found.
 TEST(Fitter, BeginsAnewWhereCyclesDoNotTellTheLaw) {
-  Fitter going(OfSteadyCycles());
-  Fitter fresh(OfSteadyCycles());
   constexpr double kPartial = 0.12;
-  for (std::uint64_t seed = 1; seed < 60; ++seed) {
-    Record cycle = testing::From(Loop(1.25), 30);
-    for (double& x : cycle.displacement) x *= kPartial;
-    cycle.force = testing::Respond(testing::Model("mindlin-dahl"), kLaw, cycle.displacement);
-    Generator generator(seed);
-    cycle = WithForceNoise(cycle, 0.01 * kLaw.slip_force, generator);
-    const FitResult expected = fresh.Fit(cycle, Depth::kErrors);
-    ExpectSame(going.Continue(cycle, Depth::kErrors), expected);
+  // With a given alpha they know sigma, and Tc no better.
+  for (const std::optional<double> alpha : {std::optional<double>(), {kLaw.shape_exponent}}) {
+    FitOptions options = OfSteadyCycles();
+    if (alpha) options.fixed["alpha"] = *alpha;
+    Fitter going(options);
+    Fitter fresh(options);
+    for (std::uint64_t seed = 1; seed < 60; ++seed) {
+      Record cycle = testing::From(Loop(1.25), 30);
+      for (double& x : cycle.displacement) x *= kPartial;
+      cycle.force = testing::Respond(testing::Model("mindlin-dahl"), kLaw, cycle.displacement);
+      Generator generator(seed);
+      cycle = WithForceNoise(cycle, 0.01 * kLaw.slip_force, generator);
+      const FitResult expected = fresh.Fit(cycle, Depth::kErrors);
+      ExpectSame(going.Continue(cycle, Depth::kErrors), expected);
+    }
   }
 }
 

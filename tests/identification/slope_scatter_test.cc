@@ -2,6 +2,7 @@
 
 #include "identification/inference/sampled_time.h"
 #include "identification/sample_loop.h"
+#include "identification/stages.h"
 #include "mindahl/identification/fit.h"
 #include "support/prelude.h"
 
@@ -38,6 +39,72 @@ TEST(SlopeScatter, DisplacementNoiseIsFoundAndTakenIntoAccount) {
   }
   EXPECT_GE(found, 18);
   EXPECT_GE(adequate, 18) << "not told, one loop in twenty or so was called adequate";
+}
+
+TEST(SlopeScatter, IsTheLikeliestDivisionOfSecondDifferences) {
+  testing::Stages stages(Noisy(kForceNoise, kDisplacementNoise, 4));
+  const std::vector<double> theta = stages.Solve().theta;
+  const Eigen::VectorXd residual = stages.ResidualsAt(theta);
+  const auto scatter = FindSlopeScatter(
+      stages.prepared, stages.problem, theta,
+      {residual.data(), static_cast<std::size_t>(residual.size())}, stages.buffers.response);
+  ASSERT_TRUE(scatter);
+  models::OriginSensitivity sensitivity;
+  stages.buffers.response.Bind(stages.problem);
+  stages.buffers.response.DifferentiateByOrigins(PointAt(stages.problem, theta), 0, sensitivity);
+  const double scale = std::exp(LogScaleAt(stages.problem, theta));
+  const ScaledRecord& record = stages.data.records.front();
+  // −2 ln L of normal differences over their number, of variances of force and displacement.
+  std::size_t count = 0;
+  const auto deviance = [&](double of_force, double of_displacement) {
+    double sum = 0.0;
+    count = 0;
+    for (std::size_t i = 1; i + 1 < record.size(); ++i) {
+      if (std::ranges::binary_search(record.reversals, i) ||
+          std::ranges::binary_search(record.reversals, i - 1)) {
+        continue;
+      }
+      const std::array<double, 3> weights = {1, -2, 1};
+      double difference = 0.0;
+      double variance = of_force;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double weight = weights[k] / std::sqrt(6.0);
+        const double slope = scale * sensitivity.sample_slope[i + k - 1];
+        difference += weight * residual[static_cast<Eigen::Index>(i + k - 1)];
+        variance += weight * weight * slope * slope * of_displacement;
+      }
+      sum += std::log(variance) + difference * difference / variance;
+      ++count;
+    }
+    return sum / static_cast<double>(count);
+  };
+  // The least on grids that close in.
+  const auto least_of = [&](double log_force, double log_displacement, bool has_displacement) {
+    double least = HUGE_VAL;
+    for (double step = 2.0; step > 1e-6; step *= 0.7) {
+      const double at_force = log_force;
+      const double at_displacement = log_displacement;
+      for (int i = -3; i <= 3; ++i) {
+        for (int j = has_displacement ? -3 : 0; j <= (has_displacement ? 3 : 0); ++j) {
+          const double x = at_force + i * step / 3;
+          const double y = at_displacement + j * step / 3;
+          const double value = deviance(std::exp(x), has_displacement ? std::exp(y) : 0.0);
+          if (!(value < least)) continue;
+          least = value;
+          log_force = x;
+          log_displacement = y;
+        }
+      }
+    }
+    return std::pair(least, std::exp(log_displacement));
+  };
+  const auto [with, variance] = least_of(-12.0, -12.0, true);
+  const auto [without, none] = least_of(-12.0, 0.0, false);
+  EXPECT_NEAR(scatter->deviation / (std::sqrt(variance) * stages.data.length), 1.0, 1e-3);
+  // Neighbours share samples: 1 + 2(4/9 + 1/36) of them are one.
+  const double ratio =
+      static_cast<double>(count) / (1 + 2 * (4.0 / 9 + 1.0 / 36)) * (without - with);
+  EXPECT_NEAR(scatter->p_value / (std::erfc(std::sqrt(ratio / 2)) / 2), 1.0, 1e-3);
 }
 
 TEST(SlopeScatter, NoiseIsTriedThatResidualsShowOrReadingsShowOfADoubtedModel) {

@@ -380,6 +380,7 @@ TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
 
 TEST(RecordReader, DoesNotTakeARadialForceForAnAngle) {
   EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.number, 2u);
+  EXPECT_EQ(Read("x,Fx_rad\n1,2\n", Choose({}, {"Fx_rad", ""})).force.unit, "N");
 }
 
 TEST(RecordReader, KnowsTheLineOfEverySample) {

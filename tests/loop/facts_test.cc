@@ -24,6 +24,7 @@ struct Parallelogram {
   double normal_load = 0.0;  // [N]; 0 where it is not known
   double curvature = 0.0;    // [N/m²] of a force in both strokes, about the centre
   double growth = 0.0;       // of the slip force, a cycle
+  double falling = 1.0;      // stiffness of the strokes that fall, over that of those that rise
   std::vector<double> amplitudes = {1.0, 1.0, 1.0, 1.0, 1.0};  // [m] of each cycle
 };
 
@@ -37,7 +38,8 @@ Record MakeRecord(const Parallelogram& loop) {
     const double from = last;
     for (std::size_t i = 1; i <= kStroke; ++i) {
       const double x = from + (to - from) * static_cast<double>(i) / kStroke;
-      force = std::clamp(force + loop.stiffness * (x - last), -slip_force, slip_force);
+      const double stiffness = (x < last ? loop.falling : 1.0) * loop.stiffness;
+      force = std::clamp(force + stiffness * (x - last), -slip_force, slip_force);
       last = x;
       record.displacement.push_back(loop.centre + x);
       record.force.push_back(loop.offset + force + loop.curvature * x * x);
@@ -66,6 +68,21 @@ TEST(SlidingFraction, IsFractionOfStrokeBeyondNineTenthsOfHalfGap) {
   ASSERT_TRUE(facts.sliding_fraction);
   EXPECT_NEAR(*facts.sliding_fraction, 1 - stick, 1.5 / kStroke);
   EXPECT_FALSE(facts.backlash);
+}
+
+TEST(LoopFacts, OfALoopThatIsSofterOneWayAreOfBothStrokes) {
+  Parallelogram loop;
+  loop.falling = 0.25;
+  const LoopFacts facts = FactsOf(MakeRecord(loop));
+  // Up at 20 N/m, down at 5 N/m between ∓2 N: over 0.2 m and 0.8 m of strokes of 2 m.
+  EXPECT_NEAR(*facts.sliding_fraction, 1 - 1.9 * (0.1 + 0.4) / 2 / 2, 1.5 / kStroke);
+  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
+  EXPECT_NEAR(facts.energy_per_cycle, 2 * (1.8 + 1.2), kRounding);
+  EXPECT_NEAR(facts.energy_ratio, 6.0 / 8.0, kRounding);
+  // The force passes nought at −0.9 m and at 0.6 m.
+  EXPECT_NEAR(*facts.sliding_amplitude, 0.75, kRounding);
+  EXPECT_NEAR(*facts.slope_after_reversal, (20.0 + 5.0) / 2, kRounding);
+  EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
 }
 
 TEST(Slides, FromAnEnergyRatioOfThreeQuartersOn) {

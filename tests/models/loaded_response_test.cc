@@ -172,6 +172,24 @@ TEST(NormalizedLoadedResponse, HasTheGradientOfTheBranchLawWhereTheLoadIsConstan
            .shape_exponent = columns[6],
            .unloaded_displacement = columns[7],
            .log_spring_travel = {}});
+      // Each column alone is the same.
+      for (std::size_t c = 1; c < 4; ++c) {
+        History t(samples);
+        History column(samples);
+        const NormalizedGradient alone{
+            .log_rate = c == 1 ? column : std::span<double>(),
+            .shape_exponent = c == 2 ? column : std::span<double>(),
+            .unloaded_displacement = c == 3 ? column : std::span<double>(),
+            .log_spring_travel = {}};
+        NormalizedLoadedResponse().Differentiate(law, HistoryOf(path, state), unloaded, t, alone);
+        EXPECT_EQ(column, columns[c]);
+        NormalizedResponse().Differentiate(
+            model, law,
+            testing::PathOf(model, path.displacement,
+                            {.state = state, .unloaded_displacement = unloaded}),
+            path.displacement, t, alone);
+        EXPECT_EQ(column, columns[c + 4]);
+      }
       for (std::size_t c = 0; c < 4; ++c) {
         for (std::size_t k = 0; k < samples; ++k) {
           ASSERT_NEAR(columns[c][k], columns[c + 4][k], kRounding)
@@ -201,8 +219,37 @@ TEST(LoadedHistory, OfASteadyContactIsThatOfOneThatHasCycledForLong) {
           ASSERT_NEAR(t[k], expected[k + static_cast<std::size_t>(begin)], kRounding)
               << "lambda " << lambda << ", swing " << swing << ", cut " << cut << ", sample " << k;
         }
+        // It turns twice in a cycle and a tenth.
+        constexpr std::ptrdiff_t kShort = 11 * kCycle / 10;
+        const Path turning_twice{{seen.displacement.begin(), seen.displacement.begin() + kShort},
+                                 {seen.load.begin(), seen.load.begin() + kShort}};
+        const History of_short =
+            Evaluate({.rate = kRate}, HistoryOf(turning_twice, InitialState::kSteady));
+        for (std::size_t k = 0; k < of_short.size(); ++k) ASSERT_NEAR(of_short[k], t[k], kRounding);
       }
     }
+  }
+}
+
+TEST(LoadedHistory, OfASteadyContactBeginsAtTheExtremesAndGoesRoundOnce) {
+  const auto before = [](History displacement, const std::vector<std::size_t>& reversals,
+                         double sign) {
+    for (double& x : displacement) x *= sign;
+    LoadedHistory history;
+    MakeLoadedHistory(displacement, History(displacement.size(), 1.0), reversals,
+                      InitialState::kSteady, history);
+    return history.before;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    // Back beyond its first sample at the seventh, and a later stroke that does not matter.
+    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, 0.25, 1, 1.5, 0}, {2, 5, 8}, sign),
+                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6));
+    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, 0.25, 1, 1.5}, {2, 5}, sign),
+                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6));
+    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, -0.5, 0.25, -0.5}, {2, 5, 7}, sign),
+                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6, 7));
+    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1}, {2}, sign), ElementsAre(2, 5));
+    EXPECT_THAT(before({0.5, 1, 2}, {}, sign), ElementsAre(2, 0));
   }
 }
 

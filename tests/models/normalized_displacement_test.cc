@@ -115,6 +115,18 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
         ASSERT_TRUE(displacement.Differentiate(
             model, {kSlipForce, alpha}, PathOfForces(model, force, initial), force, d,
             {gradient.log_slip_force, gradient.shape_exponent, gradient.unloaded_force}));
+        // Each column alone is the same.
+        Gradient alone(force.size());
+        const std::array<DisplacementGradient, 3> columns = {{{alone.log_slip_force, {}, {}},
+                                                              {{}, alone.shape_exponent, {}},
+                                                              {{}, {}, alone.unloaded_force}}};
+        for (const DisplacementGradient& column : columns) {
+          ASSERT_TRUE(displacement.Differentiate(
+              model, {kSlipForce, alpha}, PathOfForces(model, force, initial), force, d, column));
+        }
+        EXPECT_EQ(alone.log_slip_force, gradient.log_slip_force);
+        EXPECT_EQ(alone.shape_exponent, gradient.shape_exponent);
+        EXPECT_EQ(alone.unloaded_force, gradient.unloaded_force);
         const auto expect = [&](const History& derivative, const History& above,
                                 const History& below, double width, std::string_view by) {
           for (std::size_t i = 0; i < d.size(); ++i) {

@@ -150,3 +150,8 @@ def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
         tolerance = 1e-3 * expected.parameters[name].standard_error
         assert found.parameters[name].value == pytest.approx(expected.parameters[name].value,
                                                              abs=tolerance)
+    path = tmp_path / "of_a_zero_alone.csv"
+    np.savetxt(path, np.column_stack([time, displacement, force + 0.5]), delimiter=",", fmt="%.17g",
+               header="time [s],x [m],F [N]", comments="")
+    zeroed = mindahl.fit(path, force_zero=0.5, initial_state="virgin")
+    np.testing.assert_allclose(zeroed.records[0].force, force, rtol=0, atol=1e-12 * np.ptp(force))

@@ -178,7 +178,20 @@ TEST(Page, ComparesWithHertzOnlyAStiffnessThatIsKnown) {
     *body = {.youngs_modulus = 2e11, .poisson_ratio = 0.3, .radius = 0.1};
   }
   const auto table = HasSubstr("what Hertz and Mindlin predict from materials, radii and load");
-  EXPECT_THAT(PageOf(input), table);
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page, table);
+  // Of the stiffness and its contact radius the measured over the predicted is one ratio, of the
+  // displacement its inverse.
+  const auto last_cell = [&](std::string_view row) {
+    const std::size_t begin = page.find(row);
+    const std::size_t end = page.find("</td></tr>", begin);
+    const std::size_t cell = page.rfind('>', end - 1) + 1;
+    return page.substr(cell, end - cell);
+  };
+  const std::string ratio = last_cell("contact radius a</th>");
+  EXPECT_EQ(last_cell("tangential stiffness 8a/G*</th>"), ratio);
+  EXPECT_NEAR(std::stod(ratio) * std::stod(last_cell("gross slip at α = 1/3</th>")), 1, 0.05);
+  EXPECT_GT(std::abs(std::stod(ratio) - 1), 0.1) << "the case needs it";
   input.fit.parameters[0].identifiability = Identifiability::kNotIdentifiable;
   EXPECT_THAT(PageOf(std::move(input)), Not(table));
 }
@@ -263,6 +276,15 @@ TEST(Page, DistinguishesRecordsOfAJointFit) {
   const std::string loop = FigureOf(page, "loop");
   EXPECT_THAT(loop, HasSubstr("measured loop_1.csv"));
   EXPECT_THAT(loop, HasSubstr("measured loop_2.csv"));
+}
+
+TEST(Page, NamesTheFirstAndTheLastOfManyRecords) {
+  const std::string loop =
+      FigureOf(PageOf(MadeInput(std::vector<loop::Record>(10, MadeRecord(2e-6)), 2e-6)), "loop");
+  for (int r = 1; r <= 10; ++r) {
+    const std::string name = "measured loop_" + std::to_string(r) + ".csv";
+    EXPECT_EQ(loop.find(name) != std::string::npos, r == 1 || r == 10) << name;
+  }
 }
 
 TEST(Page, OfAFitThatFailedSaysWhy) {

@@ -22,6 +22,31 @@ TEST(ResidualTable, HasARowForEverySampleOfEveryFile) {
   EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 5 + 7);
 }
 
+TEST(ResidualTable, HasEachSampleInItsRow) {
+  report::ReportInput input = MadeInput({MadeRecord(1e-6, 3), MadeRecord(1e-6, 3)}, 1e-6);
+  double next = 1.5;
+  for (std::size_t r = 0; r < 2; ++r) {
+    loop::Record& record = input.records[r].record;
+    identification::RecordFit& fit = input.fit.records[r];
+    fit.fitted_displacement.resize(3);
+    for (auto* column : {&record.time, &record.displacement, &record.force, &fit.fitted_force,
+                         &fit.fitted_displacement, &fit.residual}) {
+      for (double& value : *column) value = next++;
+    }
+  }
+  const std::string head = "file,time [s],displacement [m],force [N],";
+  EXPECT_EQ(ResidualsCsv(report::MakeReport(input)),
+            head +
+                "fitted_force [N],residual [N]\n"
+                "1,1.5,4.5,7.5,10.5,16.5\n1,2.5,5.5,8.5,11.5,17.5\n"
+                "1,3.5,6.5,9.5,12.5,18.5\n2,19.5,22.5,25.5,28.5,34.5\n"
+                "2,20.5,23.5,26.5,29.5,35.5\n2,21.5,24.5,27.5,30.5,36.5\n");
+  input.fit.response = loop::Channel::kDisplacement;
+  EXPECT_THAT(ResidualsCsv(report::MakeReport(input)),
+              AllOf(StartsWith(head + "fitted_displacement [m]"),
+                    HasSubstr("\n1,1.5,4.5,7.5,13.5,"), HasSubstr("\n2,21.5,24.5,27.5,33.5,")));
+}
+
 TEST(ResidualTable, HasTimeOnlyWhereEveryRecordHasIt) {
   const Record timed = MadeRecord(1e-6);
   Record untimed = timed;

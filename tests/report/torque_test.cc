@@ -1,8 +1,10 @@
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "mindahl/report/report.h"
+#include "report/fields.h"
 #include "report/made_report.h"
 #include "support/prelude.h"
 
@@ -39,6 +41,20 @@ TEST(Torque, HasItsUnitsInTheJson) {
   EXPECT_EQ(json["parameters"]["covariate_3"]["unit"], "N m/m") << "the column's own metres";
   EXPECT_EQ(json["input"]["units"]["displacement"], "deg");
   EXPECT_EQ(json["input"]["units"]["force"], "N m");
+}
+
+TEST(Torque, HasItsUnitsInWhatIsDescribed) {
+  const Report report = TorqueReport();
+  const std::map<std::string, std::string> units = {
+      {"loop.amplitude", "rad"},          {"loop.peak_force", "N m"},
+      {"measured.half_gap.value", "N m"}, {"measured.slope_after_reversal", "N m/rad"},
+      {"measured.energy_per_cycle", "J"}, {"residuals.rms", "N m"},
+      {"residuals.r_squared", "-"}};
+  for (const auto& [path, unit] : units) {
+    const std::vector<DescribedValue> values = ValuesUnder(report, path);
+    ASSERT_EQ(values.size(), 1U) << path;
+    EXPECT_EQ(values[0].field.unit, unit) << path;
+  }
 }
 
 TEST(Torque, HasNoContactAndSaysWhy) {

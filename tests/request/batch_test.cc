@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/histories.h"
+#include "support/page_text.h"
 #include "support/prelude.h"
 
 namespace mindahl::request::batch_test {
@@ -26,6 +27,20 @@ TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
                 [](const report::Report&) -> std::string { throw InputError("the disk is full"); });
   EXPECT_FALSE(entry.done);
   EXPECT_EQ(entry.fault, "the disk is full");
+}
+
+TEST(FitFiles, CountsTheFilesThatAreDone) {
+  FitRequest request;
+  request.files = {"none_1.csv", "none_2.csv", "none_3.csv", "none_4.csv"};
+  std::vector<std::size_t> done;
+  const std::vector<BatchEntry> entries = FitFiles(
+      request, Strictness::kNone, 2, {}, [&](std::size_t files) { done.push_back(files); });
+  EXPECT_THAT(done, ElementsAre(1, 2, 3, 4));
+  ASSERT_EQ(entries.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(entries[k].file, request.files[k]);
+    EXPECT_THAT(entries[k].fault, HasSubstr(request.files[k]));
+  }
 }
 
 /// A fit of which only Tc and the half gap are known.
@@ -170,6 +185,29 @@ TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
   EXPECT_THAT(page, HasSubstr("d.csv:2:1: no number"));
   EXPECT_THAT(page, HasSubstr("more than the errors"));
   EXPECT_THAT(page, Not(HasSubstr("figure id")));  // of one file there is nothing to compare
+}
+
+TEST(BatchIndex, DrawsEachQuantityThatTwoFilesIdentifyUnderItsName) {
+  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}, {80, 1, 2}});
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    for (const char* name : {"sigma", "slip_force"}) {
+      if (k == 0 && std::string_view(name) == "sigma") continue;
+      identification::ParameterEstimate estimate;
+      estimate.name = name;
+      estimate.unit = "N";
+      estimate.value = 40;
+      estimate.lower95 = 39;
+      estimate.upper95 = 41;
+      estimate.status = identification::ParameterStatus::kFree;
+      estimate.identifiability = identification::Identifiability::kIdentifiable;
+      entries[k].parameters.push_back(estimate);
+    }
+  }
+  const std::string page = testing::Unbroken(IndexPage(entries));
+  for (const char* name : {"sigma", "slip_force"}) {
+    EXPECT_THAT(page, HasSubstr(std::string("-title\">") + name + "</h3>"));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("-title\">alpha</h3>")));
 }
 
 }  // namespace

@@ -79,10 +79,15 @@ TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   io::RecordFile wider = LoopFile();
   for (double& x : wider.record.displacement) x *= 1.1;
   EXPECT_THAT(RefusalOf({LoopFile(), wider}, request), Not(HasSubstr("--reversal-gate")));
+  EXPECT_THAT(RefusalOf({wider, LoopFile()}, request), Not(HasSubstr("--reversal-gate")));
+  io::RecordFile turning = LoopFile();
+  turning.is_torsional = true;
+  EXPECT_THAT(RefusalOf({turning}, request), HasSubstr("ranges over 4e-06 rad only"));
   request.noise_in = "displacement";
   request.reversal_gate = 1000.0;
   EXPECT_THAT(RefusalOf({LoopFile()}, request),
               HasSubstr("--reversal-gate 1000: the force ranges over"));
+  EXPECT_THAT(RefusalOf({turning}, request), EndsWith("give a smaller gate, in N m"));
 }
 
 TEST(FitRecords, RefusesAForceBesideATorque) {

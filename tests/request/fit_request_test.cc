@@ -38,6 +38,22 @@ TEST(FitRequest, RefusesAValueThatIsHeldOutsideItsBound) {
   }
 }
 
+TEST(FitRequest, RefusesAWindowThatEndsBeforeItBegins) {
+  for (auto [option, window] : {std::pair("--load-window", &FitRequest::load_window),
+                                {"--time-window", &FitRequest::time_window}}) {
+    FitRequest request;
+    request.*window = {1.0, 2.0};
+    EXPECT_NO_THROW(MakeFitOptions(request));
+    request.*window = {2.0, 1.0};
+    try {
+      MakeFitOptions(request);
+      FAIL() << option;
+    } catch (const std::exception& error) {
+      EXPECT_THAT(error.what(), HasSubstr(option));
+    }
+  }
+}
+
 TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
   for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     FitRequest request;

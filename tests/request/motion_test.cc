@@ -63,6 +63,31 @@ TEST(MakeMotion, OfAFileHasARowASampleAndItsLoad) {
   EXPECT_THAT(MakeMotion(request, kLaw).normal_load, IsEmpty());
 }
 
+TEST(Simulate, AJointUnderAColumnOfLoadHasForcesInProportionToIt) {
+  const TemporaryDirectory directory;
+  SimulationRequest request;
+  request.model = "coulomb-viscous";
+  for (const models::FrictionModel& model : models::FrictionModels()) {
+    if (model.memory == models::Memory::kNone && !model.scaled_by_peak) request.model = model.name;
+  }
+  request.law.sigma = 4e7;
+  request.law.slip_force = 40.0;
+  request.law.alpha = 1.0;
+  request.method = "exact";
+  request.drive.path =
+      directory.Write("path.csv", "x [um],N [N]\n0,50\n1,50\n2,100\n1,100\n0,25\n").string();
+  const std::vector<double> constant = Simulate(request).force;
+  request.drive.load_column = "N";
+  request.law.contact.known.normal_load = 50.0;
+  const Simulation loaded = Simulate(request);
+  ASSERT_EQ(loaded.force.size(), 5U);
+  const std::array<double, 5> over_reference = {1, 1, 2, 2, 0.5};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(loaded.force[i], over_reference[i] * constant[i], 1e-12) << i;
+  }
+  EXPECT_GT(std::abs(constant[2]), 0.0);
+}
+
 std::string RefusalOf(const std::string& rows) {
   const TemporaryDirectory directory;
   DriveRequest request;

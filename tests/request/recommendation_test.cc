@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/histories.h"
+#include "support/page_text.h"
 #include "support/prelude.h"
 
 // These tests concern the model recommended for a motion or a record, and the stated reason.
@@ -135,6 +136,40 @@ TEST(RecommendForRecord, IsTheCheapestOfThoseThatTheRecordDoesNotDistinguish) {
     EXPECT_EQ(row["sigma"].is_null(), score.model == "coulomb");
     EXPECT_EQ(row["slip_force"].is_null(), score.model == "spring");
   }
+}
+
+TEST(RecommendForRecord, SaysInWhatTheChoiceDiffersFromTheBest) {
+  RecordRecommendation priced;
+  priced.record = "r.csv";
+  priced.laws.scores = {{.model = "jenkins",
+                         .law = {4e7, 0.0, 30.0},
+                         .free_parameters = 2,
+                         .converged = true,
+                         .rms = 1.25,
+                         .misfit = 0.75,
+                         .delta_aicc = 1.5,
+                         .likelihood_ratio = 3.5,
+                         .p_value = 0.0625,
+                         .told_apart = false},
+                        {.model = "dahl",
+                         .exponent_is_one = true,
+                         .law = {4e7, 1.0, 40.0},
+                         .free_parameters = 3,
+                         .converged = true,
+                         .rms = 0.5,
+                         .p_value = {},
+                         .told_apart = false}};
+  priced.laws.best = 1;
+  priced.laws.samples = 181;
+  priced.laws.peak_force = 25.0;
+  priced.laws.describes_record = true;
+  priced.cost = {3.0, 12.0};
+  const auto said = [&] { return testing::Unbroken(ToText(priced)); };
+  EXPECT_THAT(said(), HasSubstr("jenkins: the record does not distinguish it from dahl with alpha "
+                                "= 1, the best (dAICc = 1.5); it differs from it by 0.75 N rms, 3 "
+                                "% of the peak force, against noise of 0.5 N"));
+  priced.choice = 1;
+  EXPECT_THAT(said(), HasSubstr("dahl with alpha = 1: the best, and nothing cheaper is as good"));
 }
 
 }  // namespace

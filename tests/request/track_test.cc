@@ -77,6 +77,24 @@ TEST(TrackedTest, StatesWhatItsCyclesLoseAndWhichOfThemCount) {
   EXPECT_THAT(text, HasSubstr("2 cycles have a flag:"));
 }
 
+TEST(TrackedTest, HasEverySegmentAndChangeOfAQuantity) {
+  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
+  std::vector<campaign::CourseDescription> courses(tracked.size());
+  const auto sigma = std::ranges::find(tracked, "sigma", &campaign::TrackedQuantity::name);
+  courses[static_cast<std::size_t>(sigma - tracked.begin())] = {
+      .stretches = {{1, 20, 1.5, 2.5, 3.5, 0.125, true, 4.5}, {21, 60, 5.5, 6.5, 7.5, 0.25}},
+      .changes = {{campaign::ChangeKind::kTransition, 21, 19, 24, 8.5, 9.5, 0.375}}};
+  const TrackedTest test = Lossy({Losing(1.0)}, 1);
+  const auto json = nlohmann::json::parse(ToJson(test, courses));
+  EXPECT_EQ(json["quantities"], nlohmann::json::parse(R"({"sigma": {"unit": "N/m",
+      "stretches": [{"first_cycle": 1, "last_cycle": 20, "at_start": 1.5, "at_end": 2.5,
+                     "slope": 3.5, "slope_p_value": 0.125, "trends": true, "time_constant": 4.5},
+                    {"first_cycle": 21, "last_cycle": 60, "at_start": 5.5, "at_end": 6.5,
+                     "slope": 7.5, "slope_p_value": 0.25, "trends": false, "time_constant": null}],
+      "changes": [{"kind": "transition", "cycle": 21, "ci95": [19, 24], "before": 8.5,
+                   "after": 9.5, "p_value": 0.375}]}})"));
+}
+
 TEST(TrackedTest, IsEstablishedUnlessNoFitConverged) {
   EXPECT_TRUE(Lossy({Losing(1.0), Losing(1.0, {"not_converged"})}, 1).established());
   EXPECT_FALSE(

@@ -80,6 +80,32 @@ TEST(TradeoffText, SaysRangesByTheirEndsWithinWhatWasStudied) {
   EXPECT_LT(rows[0].find("1.25"), rows[0].find("0.25"));  // in the order of the tolerances
 }
 
+TEST(TradeoffText, LeavesOutACycleLikeTheOneBeforeOfTheSameModelAndCriterion) {
+  Tradeoff study = Study();
+  study.regions.clear();
+  // Each row is that of the criterion before it, or of the model before it.
+  const auto add = [&](const char* model, std::size_t cycle, Criterion criterion, double from) {
+    for (const double tolerance : study.studied.tolerances) {
+      study.regions.push_back({model, cycle, criterion, tolerance, {{from, 0.5}}});
+    }
+  };
+  for (const char* model : {"jenkins", "masing"}) {
+    for (const std::size_t cycle : {1U, 2U, 3U}) {
+      for (const Criterion criterion : {Criterion::kMaxForce, Criterion::kEnergy}) {
+        add(model, cycle, criterion, cycle == 3 ? 0.25 : 0.125);
+      }
+    }
+  }
+  for (const char* model : {"  jenkins   ", "  masing   "}) {
+    const std::vector<std::string> rows = LinesWith(ToText(study), model);
+    ASSERT_EQ(rows.size(), 4U) << model;
+    EXPECT_THAT(rows[0], AllOf(HasSubstr(" 1 force"), HasSubstr("0.125 … 0.5")));
+    EXPECT_THAT(rows[1], AllOf(HasSubstr(" 1 energy"), HasSubstr("0.125 … 0.5")));
+    EXPECT_THAT(rows[2], AllOf(HasSubstr(" 3 force"), HasSubstr("0.25 … 0.5")));
+    EXPECT_THAT(rows[3], AllOf(HasSubstr(" 3 energy"), HasSubstr("0.25 … 0.5")));
+  }
+}
+
 TEST(TradeoffText, StatesThePointsWithTheirCostOverTheFloor) {
   const std::string text = ToText(Study());
   EXPECT_THAT(text, AllOf(HasSubstr("sigma = 4e+07 N/m, alpha = 0.333333, Tc = 40 N"),
