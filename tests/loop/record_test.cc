@@ -28,6 +28,14 @@ TEST(Record, NamesColumnsOfDifferentLengths) {
             "displacement has 2 values and normal load has 3: must be equal");
 }
 
+TEST(Record, NamesACovariateOfAnotherLengthOrThatIsNotFinite) {
+  Record record{{1, 2}, {3, 4}, {}, {}};
+  record.covariates = {{"pressure", "bar", {1}}};
+  EXPECT_EQ(MessageOf(record), "displacement has 2 values and pressure has 1: must be equal");
+  record.covariates = {{"pressure", "bar", {1, std::nan("")}}};
+  EXPECT_EQ(MessageOf(record), "pressure of sample 1 = nan is invalid: must be finite");
+}
+
 TEST(Record, NamesTheSampleThatIsNotFinite) {
   EXPECT_EQ(MessageOf({{1, 2}, {3, std::numeric_limits<double>::infinity()}, {}, {}}),
             "force [N] of sample 1 = inf is invalid: must be finite");
