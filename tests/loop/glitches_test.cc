@@ -333,6 +333,21 @@ TEST(FindGlitches, RejectsInvalidRecord) {
   EXPECT_TRUE(FindGlitches(Record{{0, 0}, {0, 0}, {}, {}}).empty());
 }
 
+TEST(FindAndMend, KeepsItsSpikesWhereTooManyHeldValuesAreTakenBack) {
+  Record record = Noisy();
+  for (std::size_t k = 1; k < 12; ++k) record.force[146 + k] = record.force[146];
+  record.force[300] = 50;
+  GlitchRules rules;
+  rules.most = 5.0 / static_cast<double>(record.size());  // fewer than are held, more than spikes
+  const Mended mended = FindAndMend(record, rules, std::pmr::get_default_resource());
+  ASSERT_EQ(mended.force.size(), record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double expected =
+        i == 300 ? (record.force[299] + record.force[301]) / 2 : record.force[i];
+    EXPECT_DOUBLE_EQ(mended.force[i], expected) << i;
+  }
+}
+
 TEST(FindAndMend, InterpolatesLinearlyInChannelsWithGlitches) {
   Record record = Noisy();
   record.force[300] = 50;

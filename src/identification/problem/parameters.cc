@@ -69,14 +69,15 @@ std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
 
 double StartingPeriod(const ScaledRecords& data) {
   constexpr double kLongest = 1.0;
-  constexpr double kHighestFrequency = 40.0;
   constexpr double kStep = 0.1;  // of the frequency: a fifth of what a stroke resolves
+  constexpr int kSteps = 390;    // to a frequency of 40
   constexpr std::size_t kMostSamples = 500;
   const std::vector<PlacedForce> directions[] = {SlidingForces(data, true),
                                                  SlidingForces(data, false)};
   double best = 0.0;
   double period = kLongest;
-  for (double frequency = 1 / kLongest; frequency <= kHighestFrequency; frequency += kStep) {
+  for (int step = 0; step <= kSteps; ++step) {
+    const double frequency = 1 / kLongest + kStep * step;
     double power = 0.0;
     for (const std::vector<PlacedForce>& forces : directions) {
       const std::size_t every = 1 + forces.size() / kMostSamples;
