@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -20,13 +18,6 @@ namespace mindahl::cli {
 namespace {
 
 constexpr const char* kFilesGroup = "Files";
-
-std::optional<std::uint64_t> WholeNumberOf(std::string_view text) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 /// Returns K and N.
 std::pair<std::uint64_t, std::uint64_t> ShardOf(const std::string& text) {

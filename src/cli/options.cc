@@ -48,10 +48,8 @@ const Option& Option::OneOf(std::span<const std::string_view> words) const {
 
 const Option& Option::WholeNumber(std::uint64_t least, std::uint64_t most) const {
   const auto check = [least, most](const std::string& text) -> std::string {
-    std::uint64_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    if (whole && number >= least && number <= most) return {};
+    const std::optional<std::uint64_t> number = WholeNumberOf(text);
+    if (number && *number >= least && *number <= most) return {};
     return fmt::format("'{}' is invalid: must be a whole number from {} to {}", text, least, most);
   };
   option_->check(CLI::Validator(check, ""));
@@ -185,6 +183,13 @@ std::vector<OptionState> OptionsOf(const CLI::App& command) {
 std::optional<double> NumberOf(std::string_view text) {
   double number = 0.0;
   if (!CLI::detail::lexical_cast(std::string(Trimmed(text)), number)) return std::nullopt;
+  return number;
+}
+
+std::optional<std::uint64_t> WholeNumberOf(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return number;
 }
 
