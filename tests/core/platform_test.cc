@@ -22,10 +22,11 @@ std::uintmax_t PeakOfStatus() {
 TEST(PeakMemory, IsThatOfTheProcess) {
   const std::uintmax_t before = PeakOfStatus();
   if (before == 0) GTEST_SKIP() << "no /proc/self/status";
-  // The kernel adds up what the processors count now and then, and counts the peak of the program
-  // that started this one, too. Another unit is off by a factor of 1000 or more.
+  // The kernel adds the counts of the processors from time to time, so that the peak may lag by a
+  // tenth. It also counts the peak of the program that started this one, which may be far larger;
+  // an error of the unit would be a factor of 1000 or more.
   const double ratio = static_cast<double>(PeakMemory()) / static_cast<double>(before);
-  EXPECT_GT(ratio, 0.1);
+  EXPECT_GT(ratio, 0.9);
   EXPECT_LT(ratio, 100.0);
 }
 

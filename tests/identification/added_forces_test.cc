@@ -296,7 +296,8 @@ TEST(StartingPeriod, IsThatOfTheCountedSamplesOfTheStrokesSecondHalves) {
   ScaledRecord& record = stages.data.records.front();
   const double period = kPeriod / record.units.length;
   EXPECT_NEAR(1 / StartingPeriod(stages.data), 1 / period, 0.051);
-  // What does not count has another, larger one; so has what may stick.
+  // Samples that do not count, and those of a contact that may stick, have a larger ripple of
+  // another period.
   std::size_t begin = 0;
   for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
     const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;

@@ -79,7 +79,8 @@ TEST(EstimateBackbone, StandsBesideTheLawBehindItsRig) {
   const double slip =
       fitted.slip_force / (fitted.tangential_stiffness * (1 - fitted.shape_exponent));
   for (const BackbonePoint& point : found.backbone.points) {
-    // What the rig does not take moves the contact: T = Tc(1 − (1 − δ/δc)^(1/(1−α))).
+    // The contact moves by the displacement less the deflection of the rig, and
+    // T = Tc(1 − (1 − δ/δc)^(1/(1−α))).
     const double left = 1 - (point.displacement - point.law / kRig) / slip;
     const double expected =
         fitted.slip_force * (1 - std::pow(std::max(left, 0.0), 1 / (1 - fitted.shape_exponent)));

@@ -273,8 +273,8 @@ Record WithPressure() {
 }
 
 TEST(Covariates, AreOneChannelWhereATenthIsTheirOwn) {
-  // Of columns x and a + b(x + c·y), y of x's variance and not correlated with it, the correlation
-  // is 1/√(1 + c²), which is to be √(1 − 0.1²): c = 0.1005.
+  // If y has the variance of x and is not correlated with it, the columns x and a + b(x + c·y) have
+  // the correlation 1/√(1 + c²). It equals √(1 − 0.1²) at c = 0.1005.
   const History displacement = Cycling(Wave::kSine, kReach, 3.0, 100);
   const auto are_one = [&](std::initializer_list<double> own_parts) {
     std::vector<Record> records;

@@ -180,8 +180,8 @@ TEST(Page, ComparesWithHertzOnlyAStiffnessThatIsKnown) {
   const auto table = HasSubstr("what Hertz and Mindlin predict from materials, radii and load");
   const std::string page = PageOf(input);
   EXPECT_THAT(page, table);
-  // Of the stiffness and its contact radius the measured over the predicted is one ratio, of the
-  // displacement its inverse.
+  // The stiffness and its contact radius have one ratio of measured to predicted value; the
+  // displacement has its inverse.
   const auto last_cell = [&](std::string_view row) {
     const std::size_t begin = page.find(row);
     const std::size_t end = page.find("</td></tr>", begin);
