@@ -25,6 +25,8 @@ Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b) {
 Eigen::MatrixXd SolveLeastSquares(const MatrixView& a, const MatrixView& b, Eigen::Index* rank) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(a);
   if (rank != nullptr) *rank = factors.rank();
+  // Eigen divides by the pivots of a matrix of zeros.
+  if (factors.rank() == 0) return Eigen::MatrixXd::Zero(a.cols(), b.cols());
   return factors.solve(b);
 }
 

@@ -486,7 +486,9 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 
 std::optional<double> EnergyOverEvenGap(const LoopFacts& facts) {
   if (!facts.half_gap) return std::nullopt;
-  return facts.energy_per_cycle / (4 * facts.amplitude * std::abs(*facts.half_gap));
+  const double even = 4 * facts.amplitude * std::abs(*facts.half_gap);
+  if (!(even > 0)) return std::nullopt;
+  return facts.energy_per_cycle / even;
 }
 
 bool Slides(const LoopFacts& facts) {
@@ -497,7 +499,8 @@ bool Slides(const LoopFacts& facts) {
   constexpr double kSameGap = 0.1;  // off the energy of a gap that is the same over the stroke
   constexpr double kOfPeak = 0.5;
   if (!facts.half_gap || !(*facts.half_gap > kOfPeak * facts.peak_force)) return false;
-  return std::abs(*EnergyOverEvenGap(facts) - 1) < kSameGap;
+  const std::optional<double> ratio = EnergyOverEvenGap(facts);
+  return ratio && std::abs(*ratio - 1) < kSameGap;
 }
 
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {

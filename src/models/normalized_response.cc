@@ -291,6 +291,7 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
                     "imposed",
                     model.name));
   }
+  if (!(law.slip_force > 0)) return false;  // the exponential of its logarithm may underflow
   const bool with_gradient = !gradient.log_slip_force.empty() || !gradient.shape_exponent.empty() ||
                              !gradient.unloaded_force.empty();
   const double zero = UnloadedAt(path);

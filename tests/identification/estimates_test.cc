@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "core/probability.h"
+#include "identification/dense.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
@@ -321,6 +322,14 @@ TEST(Estimates, OfADirectionWithoutEffectAreNone) {
   ASSERT_EQ(local.null.size(), 1U);
   // 2·δθ₁ + δθ₀ = 0
   EXPECT_NEAR(local.null[0][0] + 2 * local.null[0][1], 0.0, 1e-9 * std::abs(local.null[0][0]));
+}
+
+TEST(SolveLeastSquares, OfAMatrixOfZerosIsZero) {
+  Eigen::Index rank = 1;
+  const Eigen::MatrixXd solved =
+      SolveLeastSquares(Eigen::MatrixXd::Zero(3, 2), Eigen::MatrixXd::Ones(3, 4), &rank);
+  EXPECT_EQ(rank, 0);
+  EXPECT_EQ(solved, Eigen::MatrixXd::Zero(2, 4));
 }
 
 }  // namespace

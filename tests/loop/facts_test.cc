@@ -95,6 +95,18 @@ TEST(Slides, FromAnEnergyRatioOfThreeQuartersOn) {
   EXPECT_FALSE(Slides(LoopFacts()));
 }
 
+TEST(EnergyOverEvenGap, HasNoValueWhereThereIsNoStrokeOrNoGap) {
+  LoopFacts facts;
+  EXPECT_FALSE(EnergyOverEvenGap(facts));
+  facts.half_gap = 2;
+  facts.energy_per_cycle = 12;
+  EXPECT_FALSE(EnergyOverEvenGap(facts));
+  facts.amplitude = 3;
+  EXPECT_DOUBLE_EQ(EnergyOverEvenGap(facts).value_or(0), 0.5);
+  facts.half_gap = 0;
+  EXPECT_FALSE(EnergyOverEvenGap(facts));
+}
+
 TEST(Slides, BesideASpringThatRaisesThePeakForce) {
   Parallelogram loop;
   loop.stiffness = loop.slip_force / 0.05;  // slides over 95 % of the stroke

@@ -58,7 +58,8 @@ TEST(Refit, DahlsLawFollowsASteadyLoopExactly) {
   constexpr std::size_t kSettled = 24 * kPerCycle;
   for (const double lambda : {0.8, 1.2}) {
     const std::vector<double> displacement = Sine(lambda, 28);
-    const Approximation& dahl = Find(RefitAlong(displacement, kSettled), "dahl");
+    const auto refitted = RefitAlong(displacement, kSettled);
+    const Approximation& dahl = Find(refitted, "dahl");
     const methods::Drive drive{.displacement = displacement};
     std::vector<double> force(displacement.size());
     Prepare(dahl, kMindlin)(drive, force);

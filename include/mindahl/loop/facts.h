@@ -83,8 +83,8 @@ struct LoopFacts {
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 
-/// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty without
-/// a half gap.
+/// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty where
+/// the amplitude or the half gap is zero or not known.
 std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
 
 /// True if the measured loop slides: if its energy ratio is above 0.75, where Masing's loop reaches
