@@ -158,39 +158,34 @@ namespace {
 
 using OptionalNumber = std::optional<double>;
 
+/// Returns a member of a fit, or a member of that.
+template <auto... kMembers>
+OptionalNumber& Of(CycleFit& fit) {
+  return (fit.*....*kMembers);
+}
+
 constexpr std::array kNumbers = {
-    CycleNumber{"start_time", "s", [](CycleFit& fit) -> OptionalNumber& { return fit.start_time; }},
-    CycleNumber{"amplitude", "m", [](CycleFit& fit) -> OptionalNumber& { return fit.amplitude; }},
-    CycleNumber{"peak_force", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.peak_force; }},
-    CycleNumber{"sliding_amplitude", "m",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.sliding_amplitude; }},
-    CycleNumber{"half_gap", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.half_gap; }},
-    CycleNumber{"energy", "J", [](CycleFit& fit) -> OptionalNumber& { return fit.energy; }},
-    CycleNumber{"energy_ratio", "",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.energy_ratio; }},
-    CycleNumber{"energy_friction_coefficient", "",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.energy_friction_coefficient; }},
-    CycleNumber{"slope_after_reversal", "N/m",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.slope_after_reversal; }},
-    CycleNumber{"normal_load", "N",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.normal_load; }},
-    CycleNumber{"sigma", "N/m", [](CycleFit& fit) -> OptionalNumber& { return fit.sigma.value; }},
-    CycleNumber{"sigma_error", "N/m",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.sigma.standard_error; }},
-    CycleNumber{"alpha", "", [](CycleFit& fit) -> OptionalNumber& { return fit.alpha.value; }},
-    CycleNumber{"alpha_error", "",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.alpha.standard_error; }},
-    CycleNumber{"slip_force", "N",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.slip_force.value; }},
-    CycleNumber{"slip_force_error", "N",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.slip_force.standard_error; }},
-    CycleNumber{"force_offset", "N",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.force_offset.value; }},
+    CycleNumber{"start_time", "s", Of<&CycleFit::start_time>},
+    CycleNumber{"amplitude", "m", Of<&CycleFit::amplitude>},
+    CycleNumber{"peak_force", "N", Of<&CycleFit::peak_force>},
+    CycleNumber{"sliding_amplitude", "m", Of<&CycleFit::sliding_amplitude>},
+    CycleNumber{"half_gap", "N", Of<&CycleFit::half_gap>},
+    CycleNumber{"energy", "J", Of<&CycleFit::energy>},
+    CycleNumber{"energy_ratio", "", Of<&CycleFit::energy_ratio>},
+    CycleNumber{"energy_friction_coefficient", "", Of<&CycleFit::energy_friction_coefficient>},
+    CycleNumber{"slope_after_reversal", "N/m", Of<&CycleFit::slope_after_reversal>},
+    CycleNumber{"normal_load", "N", Of<&CycleFit::normal_load>},
+    CycleNumber{"sigma", "N/m", Of<&CycleFit::sigma, &FittedValue::value>},
+    CycleNumber{"sigma_error", "N/m", Of<&CycleFit::sigma, &FittedValue::standard_error>},
+    CycleNumber{"alpha", "", Of<&CycleFit::alpha, &FittedValue::value>},
+    CycleNumber{"alpha_error", "", Of<&CycleFit::alpha, &FittedValue::standard_error>},
+    CycleNumber{"slip_force", "N", Of<&CycleFit::slip_force, &FittedValue::value>},
+    CycleNumber{"slip_force_error", "N", Of<&CycleFit::slip_force, &FittedValue::standard_error>},
+    CycleNumber{"force_offset", "N", Of<&CycleFit::force_offset, &FittedValue::value>},
     CycleNumber{"force_offset_error", "N",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.force_offset.standard_error; }},
-    CycleNumber{"rms", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.rms; }},
-    CycleNumber{"friction_coefficient", "",
-                [](CycleFit& fit) -> OptionalNumber& { return fit.friction_coefficient; }},
+                Of<&CycleFit::force_offset, &FittedValue::standard_error>},
+    CycleNumber{"rms", "N", Of<&CycleFit::rms>},
+    CycleNumber{"friction_coefficient", "", Of<&CycleFit::friction_coefficient>},
 };
 
 constexpr std::string_view kPartial = "partial";
@@ -211,12 +206,8 @@ std::vector<std::string_view> CellsOf(std::string_view line) {
 
 template <typename Value>
 Value CellValue(std::string_view cell) {
-  Value value{};
-  const auto [end, error] = FromChars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) {
-    throw InputError(fmt::format("'{}' is not a number", cell));
-  }
-  return value;
+  if (const auto value = NumberIn<Value>(cell)) return *value;
+  throw InputError(fmt::format("'{}' is not a number", cell));
 }
 
 }  // namespace

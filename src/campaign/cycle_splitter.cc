@@ -14,8 +14,8 @@ namespace mindahl::campaign {
 
 namespace {
 
-template <typename Value>
-void AppendColumn(std::span<const Value> from, std::vector<Value>& to) {
+template <typename Column, typename Value>
+void AppendColumn(const Column& from, std::vector<Value>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -127,14 +127,11 @@ using identification::FitOptions;
 namespace {
 
 void AppendSamples(const io::Samples& from, io::Samples& to) {
-  const auto append = [](const auto& source, auto& target) {
-    target.insert(target.end(), source.begin(), source.end());
-  };
-  append(from.displacement, to.displacement);
-  append(from.force, to.force);
-  append(from.time, to.time);
-  append(from.normal_load, to.normal_load);
-  append(from.lines, to.lines);
+  AppendColumn(from.displacement, to.displacement);
+  AppendColumn(from.force, to.force);
+  AppendColumn(from.time, to.time);
+  AppendColumn(from.normal_load, to.normal_load);
+  AppendColumn(from.lines, to.lines);
 }
 
 }  // namespace

@@ -35,13 +35,11 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   double largest = 0.0;
   for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
   const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
-  io::PlotPanel panel{
-      .x_label = "cycle", .y_label = report::WithUnit(evolution.name, unit.name), .series = {}};
-  io::PlotSeries course{evolution.has_errors ? "cycles, 95 % of one" : "cycles, least and greatest",
-                        {},
-                        {},
-                        io::PlotStyle::kBand};
-  course.shade = kShade;
+  io::PlotPanel panel{.x_label = "cycle", .y_label = report::WithUnit(evolution.name, unit.name)};
+  io::PlotSeries course{
+      .label = evolution.has_errors ? "cycles, 95 % of one" : "cycles, least and greatest",
+      .style = io::PlotStyle::kBand,
+      .shade = kShade};
   for (const Course::Bin& bin : bins) {
     const double error =
         kNormalQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.factor;
@@ -54,7 +52,7 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   panel.series.push_back(std::move(course));
   for (std::size_t k = 0; k < evolution.description.stretches.size(); ++k) {
     const Stretch& stretch = evolution.description.stretches[k];
-    io::PlotSeries line{k == 0 ? "stretches" : "", {}, {}, io::PlotStyle::kLine};
+    io::PlotSeries line{.label = k == 0 ? "stretches" : ""};
     constexpr int kStepsOfCurve = 40;
     const int steps = stretch.time_constant ? kStepsOfCurve : 1;
     const auto first = static_cast<double>(stretch.first_cycle);

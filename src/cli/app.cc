@@ -226,6 +226,10 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
         OneLine(*unknown), DidYouMean(*unknown, commands), fmt::join(commands, ", "));
     return kBadInput;
   }
+  const auto refuse = [&](std::string_view why) {
+    err << fmt::format("{}: {}\n", CommandName(app), why);
+    return kBadInput;
+  };
   try {
     app.parse(argc, argv);
     return Print(results.view(), CommandName(app), console.exit_status, out, err);
@@ -237,24 +241,17 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
     const std::string fault = unknown ? fmt::format("there is no option '{}'{}", OneLine(*unknown),
                                                     DidYouMean(*unknown, OptionNames(app)))
                                       : OneLine(error.what()) + ";";
-    err << fmt::format("{}: {} see {} --help\n", CommandName(app), fault, CommandName(app));
-    return kBadInput;
+    return refuse(fmt::format("{} see {} --help", fault, CommandName(app)));
   } catch (const InputError& error) {
-    err << fmt::format("{}: {}\n", CommandName(app), OneLine(error.what()));
-    return kBadInput;
+    return refuse(OneLine(error.what()));
   } catch (const InvalidArgument& error) {
-    err << fmt::format("{}: {}\n", CommandName(app), WithOption(app, OneLine(error.what())));
-    return kBadInput;
+    return refuse(WithOption(app, OneLine(error.what())));
   } catch (const std::length_error&) {  // more elements than any memory holds
-    err << fmt::format("{}: more is asked for than memory can hold\n", CommandName(app));
-    return kBadInput;
+    return refuse("more is asked for than memory can hold");
   } catch (const std::bad_alloc&) {
-    err << fmt::format("{}: {}\n", CommandName(app),
-                       OutOfMemoryText() + ": ask for less, or allow more");
-    return kBadInput;
+    return refuse(OutOfMemoryText() + ": ask for less, or allow more");
   } catch (const std::system_error& error) {  // no thread or no directory for temporary files
-    err << fmt::format("{}: the system refuses: {}\n", CommandName(app), OneLine(error.what()));
-    return kBadInput;
+    return refuse("the system refuses: " + OneLine(error.what()));
   } catch (const std::exception& error) {
     err << fmt::format("{}: internal error: {}\n", CommandName(app), OneLine(error.what()));
     return kInternalError;

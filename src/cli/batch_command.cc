@@ -111,10 +111,9 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
-  std::vector<std::string> read = console.inputs;
-  read.insert(read.end(), request.files.begin(), request.files.end());
   RequireOutputPaths(
-      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
+      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}},
+      console, request.files);
   if (!options.overwrite) RequireNotThere({"--output", options.output}, "--overwrite");
   MakeFitOptions(request);  // before a directory is made
   RequireReportDirectory(options);
@@ -130,9 +129,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
     io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
                             IndexPage(fits, ProvenanceOf(command, console, request.files)));
   }
-  if (!options.json_path.empty())
-    WriteText(ToJson(fits, options.output), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(fits, options.output);
+  WriteAnswer(options.json_path, console, fits, options.output);
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
 }
 

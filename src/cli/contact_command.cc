@@ -18,11 +18,10 @@ struct ContactCommandOptions {
 
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
   const request::ContactParameters contact = ResolveContact(options.contact);
   WarnOfDoubts(options.contact, "contact", console);
-  if (!options.json_path.empty()) WriteText(ToJson(contact), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(contact);
+  WriteAnswer(options.json_path, console, contact);
 }
 
 }  // namespace

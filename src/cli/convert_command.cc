@@ -28,7 +28,7 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
   }
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
-                     console.inputs);
+                     console);
   request::ConversionRequest asked = options.asked;
   asked.options.tolerance = ParseTolerance(options.tolerance);
   const request::ConvertedContact converted = request::MakeConversion(asked);

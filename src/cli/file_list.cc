@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cli/options.h"
+#include "core/from_chars.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -24,8 +25,8 @@ std::pair<std::uint64_t, std::uint64_t> ShardOf(const std::string& text) {
   constexpr std::uint64_t kMost = 1'000'000;  // so that no product overflows
   const std::size_t slash = text.find('/');
   if (slash != std::string::npos) {
-    const auto part = WholeNumberOf(std::string_view(text).substr(0, slash));
-    const auto parts = WholeNumberOf(std::string_view(text).substr(slash + 1));
+    const auto part = NumberIn<std::uint64_t>(std::string_view(text).substr(0, slash));
+    const auto parts = NumberIn<std::uint64_t>(std::string_view(text).substr(slash + 1));
     if (part && parts && *part >= 1 && *part <= *parts && *parts <= kMost) return {*part, *parts};
   }
   throw InputError(fmt::format(

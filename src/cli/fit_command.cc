@@ -75,44 +75,27 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
 
 /// Refuses what has no meaning for a sweep, which is no record.
 void RequireSweepOptions(const CLI::App& command) {
-  constexpr std::array<std::string_view, 18> kOfSweeps = {"strict",
-                                                          "help",
-                                                          "sweep",
-                                                          "response",
-                                                          "response-unit",
-                                                          "response-noise",
-                                                          "displacement",
-                                                          "force",
-                                                          "displacement-unit",
-                                                          "force-unit",
-                                                          "encoding",
-                                                          "displacement-gain",
-                                                          "displacement-zero",
-                                                          "force-gain",
-                                                          "force-zero",
-                                                          "fix",
-                                                          "model",
-                                                          "confidence"};
+  constexpr auto kOfSweeps = std::to_array<std::string_view>(
+      {"strict", "help", "sweep", "json", "response", "response-unit", "response-noise",
+       "displacement", "force", "displacement-unit", "force-unit", "encoding", "displacement-gain",
+       "displacement-zero", "force-gain", "force-zero", "fix", "model", "confidence"});
   for (const OptionState& option : OptionsOf(command)) {
-    if (!option.is_given || option.name == "json" ||
-        std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end()) {
-      continue;
-    }
+    const bool is_of_sweeps = std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end();
+    if (!option.is_given || is_of_sweeps) continue;
     throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", option.name));
   }
 }
 
 void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console& console) {
   RequireSweepOptions(command);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}},
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console,
                      options.request.files);
   const Messages messages{console.err, "fit"};
   const request::FittedSweep fitted = request::FitSweepFile(
       options.request, options.sweep, options.response, options.response_noise,
       [&](std::string_view note) { messages.Note(note); });
   console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
-  if (!options.json_path.empty()) WriteText(ToJson(fitted), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(fitted);
+  WriteAnswer(options.json_path, console, fitted);
 }
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
@@ -125,14 +108,12 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   request.regions = request.regions || !options.report_path.empty();  // which the page draws
   Validate(request.contact);
   RequireDistinctFiles(request.files);
-  std::vector<std::string> read = console.inputs;
-  read.insert(read.end(), request.files.begin(), request.files.end());
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--residuals", options.residuals_path},
                       {"--backbone", options.backbone_path},
                       {"--plot", options.plot_path},
                       {"--report", options.report_path}},
-                     read);
+                     console, request.files);
   const Messages messages{console.err, "fit"};
   report::Report report = FitRecords(request, messages);
   if (!options.backbone_path.empty() && !report.failed()) request::AddBackbone(request, report);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <limits>
 #include <map>
 #include <optional>
@@ -33,13 +32,9 @@ namespace {
 using request::kFitIt;
 
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
-  double value = 0.0;
-  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
-  const auto [end, error] = FromChars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
-  }
-  return value;
+  const auto value = NumberIn<double>(text.starts_with('+') ? text.substr(1) : text);
+  if (value) return *value;
+  throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
 }
 
 /// Returns "left<separator>right".
@@ -78,9 +73,8 @@ loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
                                  std::string_view form) {
   const auto [first, last] = Split(text, ':', option, form);
   const auto count = [&](std::string_view digits) {
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error == std::errc() && end == digits.data() + digits.size() && number >= 1) return number;
+    const auto number = NumberIn<std::size_t>(digits);
+    if (number && *number >= 1) return *number;
     throw InputError(
         fmt::format("{}: '{}' is not a whole number from 1 on: write {}", option, digits, form));
   };
@@ -94,7 +88,7 @@ request::CovariateRequest ParseCovariate(const std::string& text) {
   if (text.empty() || at == 0 || at + 1 == text.size()) {
     throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
   }
-  request::CovariateRequest choice{.column = text.substr(0, at), .coefficient = {}};
+  request::CovariateRequest choice{.column = text.substr(0, at)};
   if (at != std::string::npos && text.substr(at + 1) != kFitIt) {
     choice.coefficient = ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm);
   }
@@ -103,7 +97,7 @@ request::CovariateRequest ParseCovariate(const std::string& text) {
 
 /// Reads fit, a number, or the form of a slip position.
 request::TermRequest ParseTerm(const std::string& text, const Term& term) {
-  if (term.option == "--slip-position") return {.value = {}, .form = text};
+  if (term.option == "--slip-position") return {.form = text};
   if (text == kFitIt) return {};
   const auto has = [&](std::string_view separator) {
     return text.find(separator) != std::string::npos;
@@ -112,12 +106,12 @@ request::TermRequest ParseTerm(const std::string& text, const Term& term) {
     const contact::UncertainValue stated = ParseUncertainValue(text, term.option);
     RequirePositive(fmt::format("{}: standard uncertainty [{}]", term.option, term.unit),
                     stated.standard_error);
-    return {.value = stated.value, .standard_uncertainty = stated.standard_error, .form = {}};
+    return {.value = stated.value, .standard_uncertainty = stated.standard_error};
   }
-  return {.value = ParseNumber(text, term.option,
-                               term.unit == "-" ? std::string("a number, or fit")
-                                                : fmt::format("a number in {}, or fit", term.unit)),
-          .form = {}};
+  return {.value =
+              ParseNumber(text, term.option,
+                          term.unit == "-" ? std::string("a number, or fit")
+                                           : fmt::format("a number in {}, or fit", term.unit))};
 }
 
 /// Adds an option that is read into an optional range.

@@ -5,10 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "core/from_chars.h"
@@ -48,7 +46,7 @@ const Option& Option::OneOf(std::span<const std::string_view> words) const {
 
 const Option& Option::WholeNumber(std::uint64_t least, std::uint64_t most) const {
   const auto check = [least, most](const std::string& text) -> std::string {
-    const std::optional<std::uint64_t> number = WholeNumberOf(text);
+    const auto number = NumberIn<std::uint64_t>(text);
     if (number && *number >= least && *number <= most) return {};
     return fmt::format("'{}' is invalid: must be a whole number from {} to {}", text, least, most);
   };
@@ -186,23 +184,15 @@ std::optional<double> NumberOf(std::string_view text) {
   return number;
 }
 
-std::optional<std::uint64_t> WholeNumberOf(std::string_view text) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 double ParseTolerance(const std::string& text) {
   const bool percent = text.ends_with('%');
-  const char* end = text.data() + text.size() - (percent ? 1 : 0);
-  double number = 0.0;
-  const auto [rest, error] = FromChars(text.data(), end, number);
-  if (error != std::errc() || rest != end || !(number > 0) || !std::isfinite(number)) {
+  const std::optional<double> number =
+      NumberIn<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
+  if (!number || !(*number > 0) || !std::isfinite(*number)) {
     throw InputError(
         fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
   }
-  return percent ? number / 100 : number;
+  return percent ? *number / 100 : *number;
 }
 
 }  // namespace mindahl::cli

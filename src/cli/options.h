@@ -107,9 +107,6 @@ std::vector<OptionState> OptionsOf(const CLI::App& command);
 /// Returns a number, as it is read for every option; nothing where the text is none.
 std::optional<double> NumberOf(std::string_view text);
 
-/// Returns a whole number >= 0; nothing where the text is none, or has a sign.
-std::optional<std::uint64_t> WholeNumberOf(std::string_view text);
-
 /// A text without blanks and ends of lines around it.
 inline std::string_view Trimmed(std::string_view text) {
   constexpr std::string_view kSpace = " \t\r\n";

@@ -70,9 +70,11 @@ void RequireWritable(const OutputPath& output) {
 
 }  // namespace
 
-void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
-                        std::span<const std::string> inputs) {
-  std::vector<OutputPath> files;
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs, const Console& console,
+                        const std::vector<std::string>& files) {
+  std::vector<std::string> inputs = console.inputs;
+  inputs.insert(inputs.end(), files.begin(), files.end());
+  std::vector<OutputPath> checked;
   for (const OutputPath& output : outputs) {
     if (output.path.empty() || (output.dash_is_stdout && output.path == "-")) continue;
     RequireWritable(output);
@@ -82,8 +84,8 @@ void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
           fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
                       output.option, output.path, input));
     }
-    for (const OutputPath& other : files) RequireDistinctOutputs(other, output);
-    files.push_back(output);
+    for (const OutputPath& other : checked) RequireDistinctOutputs(other, output);
+    checked.push_back(output);
   }
 }
 

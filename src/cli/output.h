@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "cli/app.h"
 
@@ -23,6 +24,15 @@ bool HasColours(const std::ostream& results);
 /// @throws InputError when the file cannot be written
 void WriteText(std::string_view text, const std::string& path, Console& console);
 
+/// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
+/// JSON goes there.
+/// @param answer  as ToJson() and ToText() take it
+template <typename... Answer>
+void WriteAnswer(const std::string& json_path, Console& console, const Answer&... answer) {
+  if (!json_path.empty()) WriteText(ToJson(answer...), json_path, console);
+  if (json_path != "-") console.out << ToText(answer...);
+}
+
 /// Names the output of an option; an empty path is an output that was not requested.
 struct OutputPath {
   std::string_view option;
@@ -32,10 +42,10 @@ struct OutputPath {
 
 /// Refuses before the work what could not be written after it: a run with several outputs leaves
 /// none behind, takes none for another and none for what it reads.
-/// @param inputs  files that the run reads
+/// @param files  that the run reads besides those of the console
 /// @throws InputError naming the option and the path
-void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
-                        std::span<const std::string> inputs = {});
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs, const Console& console,
+                        const std::vector<std::string>& files = {});
 
 /// @throws InputError where two outputs are one file; an empty path is none
 void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second);

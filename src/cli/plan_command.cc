@@ -67,10 +67,8 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 }
 
 void RunPlan(const PlanOptions& options, Console& console) {
-  std::vector<std::string> inputs = console.inputs;
-  inputs.push_back(options.record);
   RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}, {"--plot", options.plot}},
-                     inputs);
+                     console, {options.record});
   const Messages messages{console.err, "plan"};
   request::PlanRequest asked = options.plan;
   asked.wanted = ParseWanted(options.want);
@@ -93,8 +91,7 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const request::Plan plan =
       request::MakePlan(asked, [&](std::string_view warning) { messages.Warn(warning); });
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
-  if (options.json != "-") console.out << ToText(plan);
-  if (!options.json.empty()) WriteText(ToJson(plan), options.json, console);
+  WriteAnswer(options.json, console, plan);
   if (!plan.established()) console.exit_status = kNotEstablished;
 }
 

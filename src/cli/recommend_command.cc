@@ -29,8 +29,7 @@ struct RecommendCommandOptions {
 
 template <typename Recommendation>
 void Write(const Recommendation& recommendation, const std::string& json, Console& console) {
-  if (json != "-") console.out << ToText(recommendation);
-  if (!json.empty()) WriteText(ToJson(recommendation), json, console);
+  WriteAnswer(json, console, recommendation);
   if (!recommendation.established()) console.exit_status = kNotEstablished;
 }
 
@@ -44,9 +43,8 @@ void RunForRecord(const RecommendCommandOptions& options, const CLI::App& comman
         fmt::format("--record excludes --{}: the record determines contact, motion and tolerance",
                     option.name));
   }
-  std::vector<std::string> inputs = console.inputs;
-  inputs.push_back(options.record);
-  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
+  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, console,
+                     {options.record});
   const Messages messages{console.err, "recommend"};
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
   for (const std::string& note : file.notes) messages.Note(note);
@@ -60,9 +58,8 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
   request::RecommendationRequest request = options.asked;
   request.asked.tolerance = ParseTolerance(options.tolerance);
   request.asked.criterion = request::FindCriterion(options.criterion);
-  std::vector<std::string> inputs = console.inputs;
-  inputs.push_back(request.drive.path);
-  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
+  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, console,
+                     {request.drive.path});
   const Messages messages{console.err, "recommend"};
   Write(request::MakeRecommendation(request,
                                     [&](std::string_view warning) { messages.Warn(warning); }),

@@ -11,7 +11,6 @@
 #include "cli/drive_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "mindahl/io/output_file.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/request/motion.h"
 
@@ -71,18 +70,11 @@ std::string MethodHelp() {
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
   const request::SimulationRequest& asked = options.simulation;
-  std::vector<std::string> inputs = console.inputs;
-  inputs.push_back(asked.drive.path);
-  inputs.push_back(asked.drive.force_path);
-  RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, inputs);
+  RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, console,
+                     {asked.drive.path, asked.drive.force_path});
   const request::Simulation simulation = request::Simulate(asked);
   WarnOfDoubts(asked.law.contact, "simulate", console);
-  const std::string text = ToCsv(simulation);
-  if (options.output.empty() || options.output == "-") {
-    console.out << text;
-  } else {
-    io::WriteFileAtomically(options.output, text);
-  }
+  WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
 }
 
 }  // namespace

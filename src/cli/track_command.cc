@@ -340,10 +340,7 @@ void TrackRun::Go() {
   console_.exit_status = test().established() ? kDone : kNotEstablished;
   const std::vector<campaign::CourseDescription> described = test().courses.Describe();
   Draw(described);
-  if (!options_.json_path.empty()) {
-    WriteText(ToJson(test(), described), options_.json_path, console_);
-  }
-  if (options_.json_path != "-") console_.out << ToText(test(), described);
+  WriteAnswer(options_.json_path, console_, test(), described);
 }
 
 void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
@@ -566,13 +563,11 @@ void SeparateRuns::Go() {
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
   RequireDistinctFiles(options.track.fit.files);
-  std::vector<std::string> read = console.inputs;
-  read.insert(read.end(), options.track.fit.files.begin(), options.track.fit.files.end());
   RequireOutputPaths({{"--output", options.output},
                       {"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--plot", options.plot_path},
                       {"--report", options.report_path}},
-                     read);
+                     console, options.track.fit.files);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
   // Pieces of one test, whose cycles and energy count on from file to file, have no shards.
   const bool is_separate = options.separate || !options.list.shard.empty();

@@ -27,17 +27,12 @@ struct TradeoffOptions {
   std::string json;
 };
 
-void RequireOutputs(const TradeoffOptions& options, std::vector<std::string> inputs) {
-  inputs.push_back(options.path);
+void RunTradeoff(const TradeoffOptions& options, Console& console) {
   RequireOutputPaths({{"--csv", options.csv},
                       {"--regions-csv", options.regions_csv},
                       {"--plot", options.plot},
                       {"--json", options.json, /*dash_is_stdout=*/true}},
-                     inputs);
-}
-
-void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  RequireOutputs(options, console.inputs);
+                     console, {options.path});
   request::TradeoffRequest asked = options.study;
   if (!options.path.empty()) {
     asked.path_name = options.path;
@@ -60,8 +55,7 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   if (!options.regions_csv.empty()) {
     io::WriteFileAtomically(options.regions_csv, RegionsCsv(study));
   }
-  if (options.json != "-") console.out << ToText(study);
-  if (!options.json.empty()) WriteText(ToJson(study), options.json, console);
+  WriteAnswer(options.json, console, study);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct ValidateOptions {
 };
 
 void RunValidate(const ValidateOptions& options, Console& console) {
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
   request::Validation validation{.options = options.validation, .report = {}};
   const identification::ValidationReport& report = validation.report;
   {
@@ -30,8 +30,7 @@ void RunValidate(const ValidateOptions& options, Console& console) {
       progress.Say(fmt::format("{} of {} contacts", done, validation.options.cases));
     });
   }
-  if (!options.json_path.empty()) WriteText(ToJson(validation), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(validation);
+  WriteAnswer(options.json_path, console, validation);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';
   console.exit_status = report.passed() ? kDone : kNotEstablished;

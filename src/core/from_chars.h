@@ -1,13 +1,15 @@
 #pragma once
 
 #include <charconv>
+#include <optional>
+#include <string_view>
+#include <system_error>
 #include <type_traits>
 
 #ifndef __cpp_lib_to_chars
 #include <fast_float/fast_float.h>
 
 #include <cmath>
-#include <system_error>
 #endif
 
 namespace mindahl {
@@ -29,6 +31,15 @@ std::from_chars_result FromChars(const char* begin, const char* end, Value& valu
     return std::from_chars(begin, end, value);
   }
 #endif
+}
+
+/// Returns the number that a whole text is; empty where it is none, or beyond what the type holds.
+template <typename Value>
+std::optional<Value> NumberIn(std::string_view text) {
+  Value value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = FromChars(text.data(), end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace mindahl

@@ -4,20 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "core/text.h"
+
 namespace mindahl {
 namespace {
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 /// Edits from one text to the other, in which no part is edited twice.
 std::size_t EditDistance(std::string_view from, std::string_view to) {

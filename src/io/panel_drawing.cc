@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "core/text.h"
 #include "io/html.h"
 #include "mindahl/core/error.h"
 
@@ -107,12 +108,6 @@ std::string PowerOfTen(int exponent) {
   return text;
 }
 
-/// Returns the number of characters of a text in UTF-8.
-std::size_t Characters(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
-}
-
 /// One axis: data to pixels, and where its tics are.
 class Axis {
  public:
@@ -144,7 +139,7 @@ class Axis {
   [[nodiscard]] std::string Label(double tic) const;
   [[nodiscard]] std::size_t LongestLabel() const {
     std::size_t longest = 1;
-    for (const double tic : tics_) longest = std::max(longest, Characters(Label(tic)));
+    for (const double tic : tics_) longest = std::max(longest, CharactersIn(Label(tic)));
     return longest;
   }
 
@@ -319,7 +314,7 @@ class Drawing {
     double last_end = -width_;
     for (const double tic : frame_.x.tics()) {
       const std::string label = frame_.x.Label(tic);
-      const double half = kTicCharacter * static_cast<double>(Characters(label)) / 2;
+      const double half = kTicCharacter * static_cast<double>(CharactersIn(label)) / 2;
       const double at = frame_.x.Pixel(tic);
       if (at - half < last_end || at + half > width_) continue;
       last_end = at + half;
@@ -417,7 +412,7 @@ class Drawing {
       Add("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at), Coordinate(frame_.top),
           Coordinate(frame_.bottom));
       if (mark.label.empty()) continue;
-      const double width = kTicCharacter * static_cast<double>(Characters(mark.label));
+      const double width = kTicCharacter * static_cast<double>(CharactersIn(mark.label));
       line = at < last_end ? line + kLine : 0;
       const bool is_left = at + width > width_;
       last_end = at + (is_left ? 0 : width);
@@ -522,8 +517,7 @@ PageDrawing DrawForPage(const PlotPanel& panel, std::string_view name) {
   const double axes_height = std::round(kWidth / 2.0 * panel.height);
   PageDrawing drawing{.width = kWidth,
                       .height = static_cast<int>(kAboveAxes + axes_height + kBelowAxes),
-                      .elements = DrawPanel(panel, kWidth, axes_height, kMostPoints),
-                      .legend = {}};
+                      .elements = DrawPanel(panel, kWidth, axes_height, kMostPoints)};
   const std::vector<SeriesLook> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const PlotSeries& series = panel.series[k];

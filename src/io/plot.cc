@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <string_view>
 
 #include "core/platform.h"
+#include "core/text.h"
 #include "io/html.h"
 #include "io/panel_drawing.h"
 #include "io/unfinished_output.h"
@@ -82,10 +82,7 @@ std::string StyleOfPlot() {
 
 /// About how wide a text is [px].
 double TextWidth(std::string_view text) {
-  const auto characters = std::ranges::count_if(text, [](char byte) {
-    return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
-  });
-  return kCharacter * static_cast<double>(characters);
+  return kCharacter * static_cast<double>(CharactersIn(text));
 }
 
 /// Legend entries of a panel.
@@ -290,10 +287,7 @@ std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
 enum class Format { kSvg, kPng };
 
 Format FormatOf(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char character) {
-    return static_cast<char>(std::tolower(character));
-  });
+  const std::string extension = LowerCase(path.extension().string());
   if (extension == ".svg") return Format::kSvg;
   if (extension == ".png") return Format::kPng;
   throw InputError(

@@ -9,47 +9,47 @@
 
 namespace mindahl::io {
 
+namespace {
+
+/// Reduces every column that a record has, and its lines, to a part of it.
+template <typename Reduce>
+void ReduceColumns(RecordFile& file, const Reduce& reduce) {
+  loop::Record& record = file.record;
+  for (std::vector<double>* const column :
+       {&record.displacement, &record.force, &record.time, &record.normal_load}) {
+    if (!column->empty()) reduce(*column);
+  }
+  for (loop::Covariate& covariate : record.covariates) reduce(covariate.values);
+  if (!file.lines.empty()) reduce(file.lines);
+}
+
+}  // namespace
+
 void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last) {
-  loop::Record& record = input.record;
-  if (record.time.empty()) {
+  const std::vector<double>& time = input.record.time;
+  if (time.empty()) {
     throw InputError(
         fmt::format("{}: --time-window needs a time column: name it with --time", file));
   }
-  loop::Record kept;
-  std::vector<std::size_t> lines;
-  for (const loop::Covariate& covariate : record.covariates) {
-    kept.covariates.push_back({.name = covariate.name, .unit = covariate.unit, .values = {}});
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (time[i] >= first && time[i] <= last) kept.push_back(i);
   }
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (record.time[i] < first || record.time[i] > last) continue;
-    if (!input.lines.empty()) lines.push_back(input.lines[i]);
-    kept.displacement.push_back(record.displacement[i]);
-    kept.force.push_back(record.force[i]);
-    kept.time.push_back(record.time[i]);
-    if (!record.normal_load.empty()) kept.normal_load.push_back(record.normal_load[i]);
-    for (std::size_t c = 0; c < kept.covariates.size(); ++c) {
-      kept.covariates[c].values.push_back(record.covariates[c].values[i]);
-    }
-  }
-  if (kept.size() == 0) {
-    const auto [begin, end] = std::ranges::minmax(record.time);
+  if (kept.empty()) {
+    const auto [begin, end] = std::ranges::minmax(time);
     throw InputError(
         fmt::format("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s",
                     file, first, last, begin, end));
   }
   input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
-                                    kept.size(), record.size(), first, last));
-  record = std::move(kept);
-  input.lines = std::move(lines);
+                                    kept.size(), time.size(), first, last));
+  ReduceColumns(input, [&kept](auto& column) {
+    for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
+    column.resize(kept.size());
+  });
 }
 
 namespace {
-
-std::vector<double> Part(const std::vector<double>& column, const loop::ConstantLoad& piece) {
-  if (column.empty()) return {};
-  return {column.begin() + static_cast<std::ptrdiff_t>(piece.first),
-          column.begin() + static_cast<std::ptrdiff_t>(piece.last)};
-}
 
 LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
   const auto line = [&](std::size_t sample) {
@@ -63,19 +63,11 @@ LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
 NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
                          const LoadPiece& description, const std::string& file) {
   RecordFile part = input;
-  loop::Record& record = part.record;
-  record.displacement = Part(input.record.displacement, piece);
-  record.force = Part(input.record.force, piece);
-  record.time = Part(input.record.time, piece);
-  record.normal_load = Part(input.record.normal_load, piece);
-  for (loop::Covariate& covariate : record.covariates) {
-    covariate.values = Part(covariate.values, piece);
-  }
+  ReduceColumns(part, [&piece](auto& column) {
+    column.resize(piece.last);
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(piece.first));
+  });
   part.notes.clear();
-  part.lines.clear();
-  for (std::size_t i = piece.first; i < piece.last && i < input.lines.size(); ++i) {
-    part.lines.push_back(input.lines[i]);
-  }
   part.piece = description;
   std::string name = fmt::format("{}:{}-{}", file, description.first_line, description.last_line);
   return {.name = std::move(name), .file = std::move(part)};

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -13,7 +11,9 @@
 #include <string_view>
 #include <utility>
 
+#include "core/from_chars.h"
 #include "core/nearest_name.h"
+#include "core/text.h"
 #include "io/column_name.h"
 #include "io/csv_tokenizer.h"
 #include "mindahl/core/error.h"
@@ -23,84 +23,48 @@
 namespace mindahl::io {
 namespace {
 
-struct Alias {
-  std::string_view name;
-  int rank;  ///< the lower is the better match
-};
+/// Names by which a column is recognised, those of one rank in a row, the best first; "" is none.
+using NamesOfRank = std::array<std::string_view, 11>;
 
-constexpr std::array kDisplacementAliases = {
-    Alias{"tangential displacement", 0},
-    Alias{"relative displacement", 0},
-    Alias{"displacement", 1},
-    Alias{"disp", 1},
-    Alias{"position", 2},
-    Alias{"pos", 2},
-    Alias{"travel", 2},
-    Alias{"stroke", 2},
-    Alias{"extension", 2},
-    Alias{"x", 3},
-    Alias{"X", 3},
-    Alias{"d", 3},
-    Alias{"delta", 3},
-    Alias{"δ", 3},
-    Alias{"angle", 4},
-    Alias{"rotation", 4},
-    Alias{"twist", 4},
-    Alias{"weg", 2},
-    Alias{"verschiebung", 1},
-    Alias{"verfahrweg", 2},
-    Alias{"auslenkung", 2},
-    Alias{"déplacement", 1},
-    Alias{"deplacement", 1},
-    Alias{"変位", 1},
-};
-constexpr std::array kForceAliases = {
-    Alias{"tangential force", 0},
-    Alias{"friction force", 0},
-    Alias{"lateral force", 0},
-    Alias{"shear force", 0},
-    Alias{"force", 1},
-    Alias{"friction", 1},
-    Alias{"torque", 2},
-    Alias{"ft", 3},
-    Alias{"f t", 3},
-    Alias{"F", 4},
-    Alias{"f", 4},
-    Alias{"Q", 4},
-    Alias{"T", 5},    // t is the time
-    Alias{"f n", 6},  // a force in newton, unless there is a better one
-    Alias{"tangentialkraft", 0},
-    Alias{"reibkraft", 0},
-    Alias{"reibungskraft", 0},
-    Alias{"querkraft", 0},
-    Alias{"kraft", 1},
-    Alias{"force tangentielle", 0},
-    Alias{"effort tangentiel", 0},
-    Alias{"effort", 1},
-    Alias{"摩擦力", 0},
-    Alias{"荷重", 1},
-};
-constexpr std::array kTimeAliases = {
-    Alias{"time", 0},      Alias{"time stamp", 0}, Alias{"timestamp", 0}, Alias{"elapsed time", 0},
-    Alias{"date/time", 0}, Alias{"date time", 0},  Alias{"datetime", 0},  Alias{"t", 1},
-    Alias{"zeit", 0},      Alias{"temps", 0},      Alias{"時間", 0},
-};
-constexpr std::array kNormalLoadAliases = {
-    Alias{"normal load", 0},
-    Alias{"normal force", 0},
-    Alias{"normal", 1},
-    Alias{"n load", 1},
-    Alias{"fn", 2},
-    Alias{"f n", 2},
-    Alias{"N", 2},  // n counts the samples
-    Alias{"normalkraft", 0},
-    Alias{"charge normale", 0},
-    Alias{"force normale", 0},
-};
+constexpr std::array<NamesOfRank, 5> kDisplacementNames = {{
+    {"tangential displacement", "relative displacement"},
+    {"displacement", "disp", "verschiebung", "déplacement", "deplacement", "変位"},
+    {"position", "pos", "travel", "stroke", "extension", "weg", "verfahrweg", "auslenkung"},
+    {"x", "X", "d", "delta", "δ"},
+    {"angle", "rotation", "twist"},
+}};
+constexpr std::size_t kRankOfAngles = 4;
+
+constexpr std::array<NamesOfRank, 7> kForceNames = {{
+    {"tangential force", "friction force", "lateral force", "shear force", "tangentialkraft",
+     "reibkraft", "reibungskraft", "querkraft", "force tangentielle", "effort tangentiel",
+     "摩擦力"},
+    {"force", "friction", "kraft", "effort", "荷重"},
+    {"torque"},
+    {"ft", "f t"},
+    {"F", "f", "Q"},
+    {"T"},    // t is the time
+    {"f n"},  // a force in newton, unless there is a better one
+}};
+constexpr std::array<NamesOfRank, 2> kTimeNames = {{
+    {"time", "time stamp", "timestamp", "elapsed time", "date/time", "date time", "datetime",
+     "zeit", "temps", "時間"},
+    {"t"},
+}};
+constexpr std::array<NamesOfRank, 3> kNormalLoadNames = {{
+    {"normal load", "normal force", "normalkraft", "charge normale", "force normale"},
+    {"normal", "n load"},
+    {"fn", "f n", "N"},  // n counts the samples
+}};
+constexpr std::array<NamesOfRank, 2> kResponseNames = {{
+    {"stiffness", "tangential stiffness", "contact stiffness", "secant stiffness",
+     "tangent stiffness", "compliance", "contact compliance"},
+    {"kt", "k", "K"},
+}};
 
 struct Role {
   std::string_view name;
-  std::span<const Alias> aliases;
+  std::span<const NamesOfRank> names;  ///< of its column
   std::optional<Unit> (*find_unit)(std::string_view);
   std::string (*unit_symbols)();
   std::string_view si_unit;
@@ -109,18 +73,18 @@ struct Role {
 };
 
 constexpr Role kDisplacement{
-    "displacement",   kDisplacementAliases, LengthUnit, LengthUnitSymbols, "m",
+    "displacement",   kDisplacementNames,   LengthUnit, LengthUnitSymbols, "m",
     "--displacement", "--displacement-unit"};
-constexpr Role kForce{"force", kForceAliases, ForceUnit,     ForceUnitSymbols,
-                      "N",     "--force",     "--force-unit"};
-constexpr Role kAngle{"displacement",   kDisplacementAliases, AngleUnit, AngleUnitSymbols, "rad",
+constexpr Role kForce{"force", kForceNames, ForceUnit,     ForceUnitSymbols,
+                      "N",     "--force",   "--force-unit"};
+constexpr Role kAngle{"displacement",   kDisplacementNames,   AngleUnit, AngleUnitSymbols, "rad",
                       "--displacement", "--displacement-unit"};
-constexpr Role kTorque{"force", kForceAliases, TorqueUnit,    TorqueUnitSymbols,
-                       "N m",   "--force",     "--force-unit"};
-constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s", "--time", "--time-unit"};
+constexpr Role kTorque{"force", kForceNames, TorqueUnit,    TorqueUnitSymbols,
+                       "N m",   "--force",   "--force-unit"};
+constexpr Role kTime{"time", kTimeNames, TimeUnit, TimeUnitSymbols, "s", "--time", "--time-unit"};
 constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, "", "--covariate", ""};
 constexpr Role kNormalLoad{
-    "normal load", kNormalLoadAliases,     ForceUnit,           ForceUnitSymbols,
+    "normal load", kNormalLoadNames,       ForceUnit,           ForceUnitSymbols,
     "N",           "--normal-load-column", "--normal-load-unit"};
 
 std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
@@ -132,12 +96,12 @@ std::optional<Unit> LengthOrAngleUnit(std::string_view symbol) {
 
 /// A joint carries a torque, a twisted contact a normal load.
 constexpr Role kLoadOfTorsion{
-    "normal load", kNormalLoadAliases,     ForceOrTorqueUnit,   ForceOrTorqueUnitSymbols,
+    "normal load", kNormalLoadNames,       ForceOrTorqueUnit,   ForceOrTorqueUnitSymbols,
     "N",           "--normal-load-column", "--normal-load-unit"};
 
 /// Column of the motion that drives a simulated contact or joint.
 constexpr Role kDrive{
-    "displacement",   kDisplacementAliases, LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
+    "displacement",   kDisplacementNames,   LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
     "--displacement", "--displacement-unit"};
 
 /// Returns the unit of one quantity over another, "N/um".
@@ -154,21 +118,9 @@ std::optional<Unit> RatioUnit(std::string_view symbol,
               .denominator = numerator->denominator * denominator->numerator};
 }
 
-constexpr std::array kResponseAliases = {
-    Alias{"stiffness", 0},
-    Alias{"tangential stiffness", 0},
-    Alias{"contact stiffness", 0},
-    Alias{"secant stiffness", 0},
-    Alias{"tangent stiffness", 0},
-    Alias{"compliance", 0},
-    Alias{"contact compliance", 0},
-    Alias{"kt", 1},
-    Alias{"k", 1},
-    Alias{"K", 1},
-};
 constexpr Role kStiffness{
     "stiffness",
-    kResponseAliases,
+    kResponseNames,
     [](std::string_view symbol) { return RatioUnit(symbol, ForceUnit, LengthUnit); },
     [] { return std::string("a force over a length, as N/um"); },
     "N/m",
@@ -176,20 +128,12 @@ constexpr Role kStiffness{
     "--response-unit"};
 constexpr Role kCompliance{
     "compliance",
-    kResponseAliases,
+    kResponseNames,
     [](std::string_view symbol) { return RatioUnit(symbol, LengthUnit, ForceUnit); },
     [] { return std::string("a length over a force, as um/N"); },
     "m/N",
     "--response",
     "--response-unit"};
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char character) {
-    return static_cast<char>(std::tolower(character));
-  });
-  return lower;
-}
 
 /// Lower case, with '_' and '-' as blanks; a name of one letter stays as it is.
 std::string Normalized(std::string_view name) {
@@ -200,10 +144,14 @@ std::string Normalized(std::string_view name) {
   return normalized;
 }
 
-std::optional<int> Rank(std::span<const Alias> aliases, std::string_view name) {
-  const auto alias = std::ranges::find(aliases, Normalized(name), &Alias::name);
-  if (alias == aliases.end()) return std::nullopt;
-  return alias->rank;
+/// Returns the row of a name; empty where it is in none.
+std::optional<std::size_t> Rank(std::span<const NamesOfRank> ranks, std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  const std::string normalized = Normalized(name);
+  for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
+    if (std::ranges::find(ranks[rank], normalized) != ranks[rank].end()) return rank;
+  }
+  return std::nullopt;
 }
 
 bool IsVelocity(const ColumnName& column) {
@@ -224,7 +172,7 @@ class ColumnFinder {
 
   /// The column, from 0, that the user calls `choice`.
   std::size_t Chosen(std::string_view choice, const Role& role) const {
-    if (const auto number = WholeNumber(choice)) {
+    if (const auto number = NumberIn<std::size_t>(choice)) {
       if (*number >= 1 && *number <= table_.columns()) return *number - 1;
       throw InputError(fmt::format("{}: there is no column {} for the {}: the file has {} column{}",
                                    table_.file(), choice, role.name, table_.columns(),
@@ -253,11 +201,11 @@ class ColumnFinder {
   /// The best match for a role among the columns that are not `taken`.
   std::optional<std::size_t> Recognized(const Role& role, const std::vector<bool>& taken) const {
     std::vector<std::size_t> best;
-    std::optional<int> best_rank;
+    std::optional<std::size_t> best_rank;
     for (std::size_t column = 0; column < split_.size(); ++column) {
       if (taken[column]) continue;
-      std::optional<int> rank = Rank(role.aliases, table_.names()[column]);
-      if (!rank) rank = Rank(role.aliases, split_[column].name);
+      std::optional<std::size_t> rank = Rank(role.names, table_.names()[column]);
+      if (!rank) rank = Rank(role.names, split_[column].name);
       if (!rank || (best_rank && *rank > *best_rank)) continue;
       if (rank != best_rank) best.clear();
       best_rank = rank;
@@ -297,10 +245,7 @@ class ColumnFinder {
   }
 
   [[nodiscard]] bool IsAngle(std::size_t column) const {
-    constexpr int kRankOfAngles = 4;
-    if (split_.empty()) return false;
-    const std::optional<int> rank = Rank(kDisplacementAliases, split_[column].name);
-    return rank == kRankOfAngles;
+    return !split_.empty() && Rank(kDisplacementNames, split_[column].name) == kRankOfAngles;
   }
 
   [[nodiscard]] bool IsVelocity(std::size_t column) const {
@@ -344,13 +289,6 @@ class ColumnFinder {
   }
   [[nodiscard]] std::string UnitOfRow(std::size_t column) const {
     return table_.units().empty() ? "" : std::string(WithoutBrackets(table_.units()[column]));
-  }
-
-  static std::optional<std::size_t> WholeNumber(std::string_view text) {
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-    return number;
   }
 
   [[noreturn]] void ThrowAmbiguous(const Role& role, std::span<const std::size_t> found) const {

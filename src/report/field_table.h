@@ -155,7 +155,7 @@ Json SchemaOf() {
   } else if constexpr (std::is_integral_v<Bare>) {
     return {{"type", "integer"}};
   } else if constexpr (std::is_enum_v<Bare>) {
-    return {{"enum", std::vector<std::string>(Names<Bare>().begin(), Names<Bare>().end())}};
+    return {{"enum", kNamesOf<Bare>}};
   } else if constexpr (std::is_convertible_v<Content, std::string_view>) {
     return {{"type", "string"}};
   } else if constexpr (requires(const Content& content) { content.begin(); }) {

@@ -200,23 +200,6 @@ const FieldTable& AllFields() {
   return table;
 }
 
-/// Fields of a value and of its members, lists and nulls aside.
-void Describe(const Report& report, const Json& value, const std::string& path,
-              const std::vector<FieldDescription>& descriptions,
-              std::vector<DescribedValue>& described) {
-  if (value.is_object()) {
-    for (const auto& [key, member] : value.items()) {
-      Describe(report, member, fmt::format("{}.{}", path, key), descriptions, described);
-    }
-    return;
-  }
-  const auto found = std::ranges::find(descriptions, path, &FieldDescription::path);
-  if (value.is_array() || value.is_null() || found == descriptions.end()) return;
-  FieldDescription field = *found;
-  field.unit = UnitIn(report.units, field.unit);
-  described.push_back({.field = std::move(field), .value = value});
-}
-
 }  // namespace
 
 std::string WhyFailed(const Report& report) {
@@ -236,17 +219,20 @@ std::vector<FieldDescription> DescribeFields() {
   return descriptions;
 }
 
-std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix) {
+std::vector<DescribedValue> ValuesUnder(const Report& report, const Json& document,
+                                        std::string_view prefix) {
   static const std::vector<FieldDescription> descriptions = DescribeFields();
   std::vector<DescribedValue> described;
-  const std::string_view subject = prefix.substr(0, prefix.find('.'));
-  for (const Field<Report>& row : AllFields().rows) {
-    if (row.path.substr(0, row.path.find('.')) != subject) continue;
-    Describe(report, row.get(report).json, row.path, descriptions, described);
+  for (const FieldDescription& field : descriptions) {
+    const bool is_in_list = field.path.find("[]") != std::string::npos;
+    if (is_in_list || !field.path.starts_with(prefix)) continue;
+    const Json::json_pointer place = PointerTo(field.path);
+    if (!document.contains(place)) continue;
+    const Json& value = document.at(place);
+    if (value.is_structured() || value.is_null()) continue;
+    described.push_back({.field = field, .value = value});
+    described.back().field.unit = UnitIn(report.units, field.unit);
   }
-  std::erase_if(described, [prefix](const DescribedValue& item) {
-    return !item.field.path.starts_with(prefix);
-  });
   return described;
 }
 

@@ -34,6 +34,9 @@ struct Value {
   void Append(Value value);
 };
 
+/// Returns the place in a document that a path leads to: "/alpha/ci95/1" of "alpha.ci95[1]".
+[[nodiscard]] Json::json_pointer PointerTo(std::string_view path);
+
 /// Returns a number; of one that is missing or not finite a null, whose reason the row has.
 [[nodiscard]] Value Number(std::optional<double> number);
 [[nodiscard]] Value Missing(std::string why = {});
@@ -70,11 +73,13 @@ struct DescribedValue {
   Json value;
 };
 
-/// Returns the fields of one subject, without its lists: those whose path begins with `prefix`,
-/// such as "measured.", with their units in the report.
-std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix);
-
 /// Returns the document that ToJson() writes.
 Json JsonDocument(const Report& report);
+
+/// Returns the fields of one subject, without its lists: those whose path begins with `prefix`,
+/// such as "measured.", with their units in the report.
+/// @param document  JsonDocument() of the report
+std::vector<DescribedValue> ValuesUnder(const Report& report, const Json& document,
+                                        std::string_view prefix);
 
 }  // namespace mindahl::report

@@ -27,12 +27,16 @@ Value Number(std::optional<double> number) {
 
 Value Missing(std::string why) { return {.nulls = {{"", std::move(why)}}, .is_absent = false}; }
 
-void Value::Place(std::string_view path, Value value) {
+Json::json_pointer PointerTo(std::string_view path) {
   std::string pointer = "/";
   for (const char character : path) {
     if (character != ']') pointer += character == '.' || character == '[' ? '/' : character;
   }
-  json[Json::json_pointer(pointer)] = std::move(value.json);
+  return Json::json_pointer(pointer);
+}
+
+void Value::Place(std::string_view path, Value value) {
+  json[PointerTo(path)] = std::move(value.json);
   AddNulls(nulls, path, std::move(value.nulls));
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <span>
-#include <string>
 #include <string_view>
 
 #include "mindahl/identification/fit.h"
@@ -10,42 +9,42 @@
 
 namespace mindahl::report {
 
-/// Returns what the reports call the values of an enumeration, in their order.
+/// Lists what the reports call the values of an enumeration, in their order.
 template <typename Enum>
-std::span<const std::string_view> Names();
+inline constexpr std::array<std::string_view, 0> kNamesOf{};
 
 template <>
-std::span<const std::string_view> Names<identification::ParameterStatus>();
+inline constexpr auto kNamesOf<identification::ParameterStatus> =
+    std::to_array<std::string_view>({"free", "fixed", "at_lower_bound", "at_upper_bound"});
 template <>
-std::span<const std::string_view> Names<identification::Identifiability>();
+inline constexpr auto kNamesOf<identification::Identifiability> = std::to_array<std::string_view>(
+    {"identifiable", "effective", "extrapolated", "bounded_below", "not_identifiable"});
 template <>
-std::span<const std::string_view> Names<identification::IntervalSource>();
+inline constexpr auto kNamesOf<identification::IntervalSource> = std::to_array<std::string_view>(
+    {"parabola", "profile", "initial_state", "other_minimum", "omitted_terms", "plateau",
+     "small_alpha", "discrepancy", "carried_force"});
 template <>
-std::span<const std::string_view> Names<models::InitialState>();
+inline constexpr auto kNamesOf<models::InitialState> = std::to_array<std::string_view>({"virgin",
+                                                                                        "steady"});
 template <>
-std::span<const std::string_view> Names<loop::Channel>();
+inline constexpr auto kNamesOf<loop::Channel> = std::to_array<std::string_view>({"displacement",
+                                                                                 "force"});
 template <>
-std::span<const std::string_view> Names<SlipRegime>();
+inline constexpr auto kNamesOf<SlipRegime> = std::to_array<std::string_view>({"partial", "gross"});
 template <>
-std::span<const std::string_view> Names<identification::AdequacyVerdict>();
+inline constexpr auto kNamesOf<identification::AdequacyVerdict> =
+    std::to_array<std::string_view>({"adequate", "doubtful", "inadequate"});
 template <>
-std::span<const std::string_view> Names<identification::Use>();
+inline constexpr auto kNamesOf<identification::Use> =
+    std::to_array<std::string_view>({"quantitative", "indicative", "none"});
 template <>
-std::span<const std::string_view> Names<identification::MemoryVerdict>();
+inline constexpr auto kNamesOf<identification::MemoryVerdict> =
+    std::to_array<std::string_view>({"masing", "dahl", "neither", "undecided"});
 
 template <typename Enum>
-std::string_view Name(Enum value) {
+constexpr std::string_view Name(Enum value) {
   const auto place = static_cast<std::size_t>(value);
-  return place < Names<Enum>().size() ? Names<Enum>()[place] : std::string_view();
+  return place < kNamesOf<Enum>.size() ? kNamesOf<Enum>[place] : std::string_view();
 }
-
-/// Returns the name with blanks, for people.
-std::string Words(identification::Identifiability identifiability);
-
-/// Returns the name of a parameter or of a key of the JSON for people: "slip force Tc", "half gap".
-std::string PlainName(std::string_view key);
-
-/// Returns the confidence of a fit's intervals for people: "95 %".
-std::string ConfidenceWords(const identification::FitResult& fit);
 
 }  // namespace mindahl::report

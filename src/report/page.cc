@@ -174,9 +174,10 @@ std::string TextOf(const DescribedValue& item) {
 }
 
 /// Lists the report's fields of one subject.
-Json Fields(const Report& report, std::string_view prefix, std::string_view without = {}) {
+Json Fields(const Report& report, const Json& document, std::string_view prefix,
+            std::string_view without = {}) {
   Json rows = Json::array();
-  for (const DescribedValue& item : ValuesUnder(report, prefix)) {
+  for (const DescribedValue& item : ValuesUnder(report, document, prefix)) {
     const std::string text = TextOf(item);
     if (text.empty() || item.field.path == without) continue;
     // "half_gap.value" of "measured.": what follows a subject is name enough in its table.
@@ -355,6 +356,10 @@ Json Fitted(const Report& report, const Provenance& provenance) {
   const PanelUnits units = PrefixedUnits(report);
   const loop::LoopFacts& facts = fit.WidestRecord().facts;
   const bool inadequate = IsInadequate(report);
+  const Json document = JsonDocument(report);
+  const auto fields = [&](std::string_view prefix, std::string_view without = {}) {
+    return Fields(report, document, prefix, without);
+  };
   const bool has_contact = !inadequate && !report.is_torsional();
   return {
       {"next", IsUnexplained(report) ? NextStep(report) : ""},
@@ -369,8 +374,8 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"other_causes", OtherCauses(report)},
       {"commands", Commands(report, provenance)},
       {"notes", MessagesOf(report.notes)},
-      {"measured", Joined(Fields(report, "loop.amplitude"), Fields(report, "loop.peak_force"),
-                          Fields(report, "measured.", "measured.closed"))},
+      {"measured", Joined(fields("loop.amplitude"), fields("loop.peak_force"),
+                          fields("measured.", "measured.closed"))},
       {"closed", facts.closed},
       {"trends", TrendStatements(facts)},
       {"memory", MemoryStatement(report)},
@@ -382,7 +387,7 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"residual-autocorrelation",
        FigureData(ResidualAutocorrelation(report), "residual-autocorrelation")},
       {"residuals",
-       Fields(report, "residuals.", IsShown(fit, "slip_force") ? "" : "residuals.normalized_rms")},
+       fields("residuals.", IsShown(fit, "slip_force") ? "" : "residuals.normalized_rms")},
       {"inadequate", inadequate},
       {"likelihoods", inadequate ? Json() : Likelihoods(report)},
       {"model_loop", inadequate ? Json() : ModelLoop(report)},
@@ -391,7 +396,7 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"selection", Selection(report)},
       {"loads", Loads(report)},
       {"backbone", FigureData(BackbonePanel(report, units), "backbone")},
-      {"record", Joined(Fields(report, "input."), Fields(report, "reversals."))}};
+      {"record", Joined(fields("input."), fields("reversals."))}};
 }
 
 }  // namespace

@@ -131,8 +131,7 @@ std::vector<Group> GroupsOf(const Report& report, const std::string& what, LoopC
 
 PlotSeries Range(const Group& group, const std::vector<double>& x, double per_x,
                  const std::vector<double>& y, double per_y) {
-  PlotSeries series{.label = group.label, .x = {}, .y = {}, .style = PlotStyle::kPoints};
-  series.shade = group.shade;
+  PlotSeries series{.label = group.label, .style = PlotStyle::kPoints, .shade = group.shade};
   for (std::size_t i = group.begin; i < group.end; ++i) {
     series.x.push_back(per_x * x[i]);
     series.y.push_back(per_y * y[i]);
@@ -169,10 +168,9 @@ PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& uni
 PlotPanel Residuals(
     const Report& report, const PanelUnits& units, std::string x_label, LoopColours colours,
     const std::function<std::optional<double>(std::size_t record, std::size_t sample)>& place) {
-  PlotPanel panel{.x_label = std::move(x_label), .y_label = ResidualLabel(units), .series = {}};
+  PlotPanel panel{.x_label = std::move(x_label), .y_label = ResidualLabel(units)};
   for (const Group& group : GroupsOf(report, "", colours)) {
-    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
-    shown.shade = group.shade;
+    PlotSeries shown{.label = "", .style = PlotStyle::kPoints, .shade = group.shade};
     for (std::size_t i = group.begin; i < group.end; ++i) {
       const std::optional<double> x = place(group.record, i);
       if (!x) continue;
@@ -227,7 +225,6 @@ PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours c
   const bool by_cycle = colours == LoopColours::kByCycle;
   PlotPanel panel{.x_label = by_cycle ? DisplacementLabel(report, units) : "",
                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.name),
-                  .series = {},
                   .height = by_cycle ? 1.3 : 2.5};
   const double per_displacement = Per(units.displacement);
   const double per_force = Per(units.force);
@@ -247,7 +244,7 @@ PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours c
     panel.series.push_back(FittedLine(report, r, units, most));
     if (r > 0) panel.series.back().label.clear();
   }
-  PlotSeries reversals{"reversals", {}, {}, PlotStyle::kMarkers};
+  PlotSeries reversals{.label = "reversals", .style = PlotStyle::kMarkers};
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const loop::Record& record = report.records[r].record;
     for (const std::size_t sample : report.fit.records[r].reversals) {
@@ -288,7 +285,7 @@ PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
   double squares = 0.0;
   for (const double residual : residuals) squares += (residual - mean) * (residual - mean);
   const double deviation = std::sqrt(squares / std::max(n - 1, 1.0));
-  PlotPanel panel{.x_label = ResidualLabel(units), .y_label = "samples", .series = {}};
+  PlotPanel panel{.x_label = ResidualLabel(units), .y_label = "samples"};
   if (!(deviation > 0)) {
     panel.series.push_back({"residuals", {mean}, {n}, PlotStyle::kBars});
     return panel;
@@ -302,8 +299,10 @@ PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
   const double wanted = quartiles > 0 ? 2 * quartiles / std::cbrt(n) : (to - from) / 10;
   const auto bins = static_cast<std::size_t>(std::clamp((to - from) / wanted, 10.0, 60.0));
   const double width = (to - from) / static_cast<double>(bins);
-  PlotSeries bars{"residuals", {}, std::vector<double>(bins, 0.0), PlotStyle::kBars};
-  bars.shade = kDataShade;
+  PlotSeries bars{.label = "residuals",
+                  .y = std::vector<double>(bins, 0.0),
+                  .style = PlotStyle::kBars,
+                  .shade = kDataShade};
   std::size_t beyond = 0;
   for (const double residual : residuals) {
     if (residual < from || residual > to) {
@@ -317,7 +316,7 @@ PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
     bars.x.push_back(from + (static_cast<double>(k) + 0.5) * width);
   }
   if (beyond > 0) bars.label += fmt::format(", {} more beyond the axis", beyond);
-  PlotSeries curve{"normal distribution of the same standard deviation", {}, {}, PlotStyle::kLine};
+  PlotSeries curve{.label = "normal distribution of the same standard deviation"};
   constexpr int kSteps = 120;
   for (int i = 0; i <= kSteps; ++i) {
     const double at = from + (to - from) * i / kSteps;
@@ -350,8 +349,7 @@ std::optional<PlotPanel> ResidualAutocorrelation(const Report& report) {
   if (samples < kLeastSamples || !(squares > 0)) return std::nullopt;
   std::size_t lags = std::min({std::max(kLeastLags, cycle + cycle / 4), longest / 2, kMostLags});
   lags = std::min(lags, static_cast<std::size_t>(kMostProducts / static_cast<double>(samples)) + 1);
-  PlotSeries correlation{"residuals", {}, {}, PlotStyle::kLine};
-  correlation.shade = kDataShade;
+  PlotSeries correlation{.label = "residuals", .shade = kDataShade};
   for (std::size_t lag = 0; lag <= lags; ++lag) {
     double products = 0.0;
     for (const std::vector<double>& residuals : records) {
@@ -364,9 +362,12 @@ std::optional<PlotPanel> ResidualAutocorrelation(const Report& report) {
   }
   const double limit = kNormalQuantile95 / std::sqrt(static_cast<double>(samples));
   const std::vector<double> ends = {0.0, static_cast<double>(lags)};
-  PlotSeries white{"white noise, 95 %", ends, {0.0, 0.0}, PlotStyle::kBand};
-  white.lower = {-limit, -limit};
-  white.upper = {limit, limit};
+  PlotSeries white{.label = "white noise, 95 %",
+                   .x = ends,
+                   .y = {0.0, 0.0},
+                   .style = PlotStyle::kBand,
+                   .lower = {-limit, -limit},
+                   .upper = {limit, limit}};
   return PlotPanel{.x_label = "samples apart",
                    .y_label = "autocorrelation of the residuals",
                    .series = {std::move(correlation), std::move(white)}};
@@ -389,8 +390,9 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
     if (is_near) shown.push_back(points[k]);
   }
   const ScaledUnit unit = UnitFor(report.units.force, report.fit.law.slip_force);
-  PlotSeries curve{"refitted with Tc fixed at each point", {}, {}, PlotStyle::kLineAndPoints};
-  curve.shade = kDataShade;
+  PlotSeries curve{.label = "refitted with Tc fixed at each point",
+                   .style = PlotStyle::kLineAndPoints,
+                   .shade = kDataShade};
   for (const identification::ProfilePoint& point : shown) {
     curve.x.push_back(point.law.slip_force / unit.factor);
     curve.y.push_back(std::min(point.statistic, ceiling));
@@ -399,11 +401,10 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
                       {curve.x.front(), curve.x.back()},
                       {profile->critical, profile->critical},
                       PlotStyle::kLine};
-  PlotPanel panel{.x_label = fmt::format("slip force Tc, fixed [{}]", unit.name),
-                  .y_label = "F against the best fit",
-                  .series = {std::move(curve), std::move(critical)}};
-  panel.log_x = true;
-  return panel;
+  return PlotPanel{.x_label = fmt::format("slip force Tc, fixed [{}]", unit.name),
+                   .y_label = "F against the best fit",
+                   .series = {std::move(curve), std::move(critical)},
+                   .log_x = true};
 }
 
 std::optional<PlotPanel> RegionPanel(const Report& report, std::string_view first) {
@@ -417,12 +418,9 @@ std::optional<PlotPanel> RegionPanel(const Report& report, std::string_view firs
     return std::nullopt;
   }
   const ScaledUnit unit = UnitFor(estimate->unit, estimate->value);
-  PlotSeries boundary{fmt::format("{} region{}", ConfidenceWords(report.fit),
-                                  region->closed ? "" : ", open where it ends"),
-                      {},
-                      {},
-                      PlotStyle::kLine};
-  boundary.shade = kDataShade;
+  PlotSeries boundary{.label = fmt::format("{} region{}", ConfidenceWords(report.fit),
+                                           region->closed ? "" : ", open where it ends"),
+                      .shade = kDataShade};
   for (std::size_t i = 0; i <= region->boundary.size(); ++i) {
     const auto& [x, y] = region->boundary[i % region->boundary.size()];
     boundary.x.push_back(x / unit.factor);
@@ -450,13 +448,11 @@ std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units
                   .y_label = is_stiffness ? fmt::format("σ [{}/{}]", report.units.force,
                                                         units.displacement.name)
                                           : fmt::format("Tc [{}]", report.units.force),
-                  .series = {},
                   .height = 1.2};
   double least = report.load_series->contacts.front().normal_load;
   double greatest = least;
-  PlotSeries alone;
-  alone.label = "each file alone, " + ConfidenceWords(report.fit);
-  alone.style = PlotStyle::kIntervals;
+  PlotSeries alone{.label = "each file alone, " + ConfidenceWords(report.fit),
+                   .style = PlotStyle::kIntervals};
   for (const ContactUnderLoad& contact : report.load_series->contacts) {
     least = std::min(least, contact.normal_load);
     greatest = std::max(greatest, contact.normal_load);
@@ -479,9 +475,9 @@ std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units
       is_stiffness ? is_known("sigma") && is_known("load_exponent") : is_known("slip_force");
   if (has_line) {
     constexpr int kSteps = 60;
-    PlotSeries line;
-    line.label = is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
-                              : std::string("Tc = μN, the series");
+    PlotSeries line{.label = is_stiffness
+                                 ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
+                                 : std::string("Tc = μN, the series")};
     for (int i = 0; i <= kSteps; ++i) {
       const double load = least + (greatest - least) * i / kSteps;
       const double ratio = load / *fit.normal_load;
@@ -498,9 +494,10 @@ std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units
 
 std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
   if (!report.backbone || report.backbone->points.empty()) return std::nullopt;
-  PlotSeries band{"free of any law, " + ConfidenceWords(report.fit), {}, {}, PlotStyle::kBand};
-  band.shade = kDataShade;
-  PlotSeries law{"the fitted law", {}, {}, PlotStyle::kLine};
+  PlotSeries band{.label = "free of any law, " + ConfidenceWords(report.fit),
+                  .style = PlotStyle::kBand,
+                  .shade = kDataShade};
+  PlotSeries law{.label = "the fitted law"};
   for (const identification::BackbonePoint& point : report.backbone->points) {
     band.x.push_back(Per(units.displacement) * point.displacement);
     band.y.push_back(Per(units.force) * point.force.value);

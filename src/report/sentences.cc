@@ -13,6 +13,7 @@
 #include "mindahl/report/report.h"
 #include "mindahl/report/units.h"
 #include "report/names.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 

@@ -100,6 +100,29 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
   return Shown::kValue;
 }
 
+std::string Words(Identifiability identifiability) {
+  std::string words(Name(identifiability));
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+std::string PlainName(std::string_view key) {
+  if (key == "sigma") return "stiffness σ";
+  if (key == "alpha") return "shape exponent α";
+  if (key == "slip_force") return "slip force Tc";
+  if (key.ends_with(".value")) key.remove_suffix(std::string_view(".value").size());
+  std::string name;
+  for (const char character : key) {
+    if (character == '.') name += ',';
+    name += character == '_' || character == '.' ? ' ' : character;
+  }
+  return name;
+}
+
+std::string ConfidenceWords(const FitResult& fit) {
+  return fmt::format("{:g} %", 100 * fit.confidence);
+}
+
 std::string VerdictWords(const ParameterEstimate& estimate) {
   if (estimate.status == ParameterStatus::kFixed) return "fixed";
   const bool is_free = estimate.status == ParameterStatus::kFree;

@@ -37,6 +37,15 @@ enum class Shown {
 };
 Shown WhatIsShown(const identification::ParameterEstimate& estimate);
 
+/// Returns the name with blanks, for people.
+std::string Words(identification::Identifiability identifiability);
+
+/// Returns the name of a parameter or of a key of the JSON for people: "slip force Tc", "half gap".
+std::string PlainName(std::string_view key);
+
+/// Returns the confidence of a fit's intervals for people: "95 %".
+std::string ConfidenceWords(const identification::FitResult& fit);
+
 /// Returns "identifiable, at bound", "fixed" …
 std::string VerdictWords(const identification::ParameterEstimate& estimate);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/text.h"
+
 namespace mindahl::report {
 
 namespace {
@@ -16,12 +18,8 @@ bool IsNumber(std::string_view word) {
 }  // namespace
 
 std::string Wrapped(std::string_view text, std::size_t indent) {
+  if (text.empty()) return "";
   constexpr std::size_t kColumns = 100;
-  const auto width = [](std::string_view part) {
-    return static_cast<std::size_t>(std::ranges::count_if(part, [](char byte) {
-      return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
-    }));
-  };
   std::string wrapped;
   std::size_t column = 0;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -36,12 +34,12 @@ std::string Wrapped(std::string_view text, std::size_t indent) {
       end = std::min(text.find(' ', last), text.size());
     }
     const std::string_view word = text.substr(begin, end - begin);
-    if (column > indent && column + width(word) > kColumns) {
+    if (column > indent && column + CharactersIn(word) > kColumns) {
       wrapped += '\n' + std::string(indent, ' ') + std::string(text.substr(letter, end - letter));
-      column = indent + width(text.substr(letter, end - letter));
+      column = indent + CharactersIn(text.substr(letter, end - letter));
     } else {
       wrapped += word;
-      column += width(word);
+      column += CharactersIn(word);
     }
     begin = end;
   }

@@ -35,7 +35,7 @@ class Style {
 };
 
 /// Breaks a sentence between words at 100 columns, with a line feed at its end; lines after the
-/// first are indented. A number stays with its error and its unit.
+/// first are indented. A number stays with its error and its unit. No sentence has no line.
 std::string Wrapped(std::string_view text, std::size_t indent);
 
 }  // namespace mindahl::report

@@ -26,6 +26,12 @@ using identification::FitResult;
 
 namespace {
 
+/// Breaks a statement with its label before it, below which its other lines begin; nothing of an
+/// empty one.
+std::string Labelled(std::string_view label, std::string_view statement) {
+  return statement.empty() ? "" : Wrapped(fmt::format("{}{}", label, statement), label.size());
+}
+
 std::string ValueAndError(const UncertainValue& value, std::string_view unit) {
   return QuantityWithError(value.value, value.standard_error, unit);
 }
@@ -219,7 +225,7 @@ ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
 /// The table of the parameters: what belongs on the first screen, and what follows.
 struct ParameterTables {
   std::string first;
-  std::string rest;
+  std::string rest = {};
 };
 
 /// Tabulates the parameters of the contact first, and the others with them where these are few.
@@ -253,7 +259,7 @@ ParameterTables TabulateParameters(const FitResult& fit, const Style& style) {
                     style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
     ++rows;
   }
-  ParameterTables tables{.first = head + of_contact, .rest = {}};
+  ParameterTables tables{.first = head + of_contact};
   if (rows <= kFew) {
     tables.first += others;
   } else {
@@ -353,7 +359,7 @@ std::string MeasuredText(const Report& report) {
   };
   if (!facts.closed) {
     parts.emplace_back("no closed cycle");
-    return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
+    return Labelled("measured: ", fmt::format("{}", fmt::join(parts, ", ")));
   }
   if (facts.half_gap && facts.half_gap_standard_deviation) {
     parts.push_back(fmt::format(
@@ -379,7 +385,7 @@ std::string MeasuredText(const Report& report) {
   add("plateau slope", facts.plateau_slope, units.stiffness);
   add("asymmetry", facts.asymmetry, "-");
   for (const std::string& trend : TrendStatements(facts)) parts.push_back(trend);
-  return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
+  return Labelled("measured: ", fmt::format("{}", fmt::join(parts, ", ")));
 }
 
 /// Returns the verdict's own word at the start of its sentence.
@@ -391,9 +397,8 @@ std::string Coloured(const std::string& sentence, const Report& report, const St
 
 /// Returns the verdict, and what to do next.
 std::string AdequacyText(const Report& report, const Style& style) {
-  std::string text = Coloured(Wrapped(VerdictSentence(report), 2), report, style);
-  const std::string next = NextStep(report);
-  return next.empty() ? text : text + Wrapped("next: " + next, 6);
+  return Coloured(Wrapped(VerdictSentence(report), 2), report, style) +
+         Labelled("next: ", NextStep(report));
 }
 
 /// Returns the other causes, which the next step may leave.
@@ -402,24 +407,14 @@ std::string OtherCausesText(const Report& report) {
   constexpr std::size_t kMost = 3;
   std::string text;
   for (std::size_t i = 1; i < std::min(kMost, causes.size()); ++i) {
-    text += Wrapped("or like " + Sentence(causes[i], report.fit.response), 8);
+    text += Labelled("or like ", Sentence(causes[i], report.fit.response));
   }
   return text.empty() ? text : "\n" + text;
 }
 
-std::string LawText(const Report& report) {
-  const std::string statement = LawStatement(report);
-  return statement.empty() ? "" : Wrapped("law:  " + statement, 6);
-}
-
-std::string MemoryText(const Report& report) {
-  const std::string statement = MemoryStatement(report);
-  return statement.empty() ? "" : Wrapped("memory: " + statement, 8);
-}
-
 std::string NotesText(const Report& report) {
   std::string text;
-  for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
+  for (const Warning& note : report.notes) text += Labelled("note: ", note.message);
   return text.empty() ? text : "\n" + text;
 }
 
@@ -478,7 +473,7 @@ std::string FitText(const Report& report) {
 /// Describes a fit that is not usable in ten lines: the verdict, the next step, and what stands.
 std::string UnusableText(const Report& report, const Style& style) {
   std::string text = AdequacyText(report, style) + MeasuredText(report) +
-                     Wrapped("reversals: " + SamplesText(report), 11);
+                     Labelled("reversals: ", SamplesText(report));
   for (const Warning& note : report.notes) {
     // This text prints no parameters, so a note on one has nothing to refer to.
     const bool is_of_parameters =
@@ -486,7 +481,7 @@ std::string UnusableText(const Report& report, const Style& style) {
           return std::string_view(finding.code) == note.code && !finding.parameters.empty();
         });
     if (is_of_parameters) continue;
-    text += Wrapped("note: " + note.message, 6);
+    text += Labelled("note: ", note.message);
   }
   return text;
 }
@@ -550,27 +545,20 @@ std::string ToText(const Report& report, const TextOptions& options) {
                             : unusable;
   }
   std::string text = AdequacyText(report, style);
-  if (report.terms) {
-    const std::string terms = TermsText(*report.terms);
-    if (!terms.empty()) text += Wrapped(terms, 2);
-  }
+  if (report.terms) text += Wrapped(TermsText(*report.terms), 2);
   const ParameterTables tables = TabulateParameters(fit, style);
-  text += "\n" + tables.first;
-  const std::string slip_forces = SlipForcesStatement(report);
-  if (!slip_forces.empty()) text += Wrapped(slip_forces, 13);
-  const std::string priors = PriorStatement(fit);
-  if (!priors.empty()) text += Wrapped(priors, 7);
-  std::string rest = tables.rest;
-  const std::string wide = WideIntervalStatement(fit, report.units);
-  if (!wide.empty()) rest += Wrapped(wide, 2);
-  rest += OtherCausesText(report);
+  text += "\n" + tables.first + Wrapped(SlipForcesStatement(report), 13) +
+          Wrapped(PriorStatement(fit), 7);
+  std::string rest =
+      tables.rest + Wrapped(WideIntervalStatement(fit, report.units), 2) + OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
-  rest += "\n" + FitText(report) + MeasuredText(report) + MemoryText(report) + ResidualText(report);
+  rest += "\n" + FitText(report) + MeasuredText(report) +
+          Labelled("memory: ", MemoryStatement(report)) + ResidualText(report);
   // For an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return text + rest + NotesText(report);
   }
-  const std::string loop = "\n" + LoopText(report) + LawText(report);
+  const std::string loop = "\n" + LoopText(report) + Labelled("law:  ", LawStatement(report));
   if (report.is_torsional()) {
     return text + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) + loop + rest +
            NotesText(report);

@@ -212,8 +212,7 @@ std::string ParameterText(const BatchEntry& entry, std::string_view name) {
 /// Draws a parameter of every file that identifies it, with its interval, over the file's place.
 std::optional<io::PlotPanel> QuantityPanel(std::span<const BatchEntry> entries,
                                            std::string_view name) {
-  io::PlotSeries series{"interval", {}, {}, io::PlotStyle::kIntervals};
-  series.shade = 0.3;
+  io::PlotSeries series{.label = "interval", .style = io::PlotStyle::kIntervals, .shade = 0.3};
   std::string_view unit;
   double largest = 0.0;
   for (std::size_t k = 0; k < entries.size(); ++k) {

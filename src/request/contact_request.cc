@@ -120,8 +120,7 @@ ContactParameters ResolveContact(const ContactOptions& options) {
       contact::PredictContact(known, *options.friction_coefficient);
   ContactParameters result{.law = {.tangential_stiffness = predicted.tangential_stiffness.value,
                                    .shape_exponent = contact::kMindlinShapeExponent,
-                                   .slip_force = predicted.slip_force.value},
-                           .quantities = {}};
+                                   .slip_force = predicted.slip_force.value}};
   const auto add = [&](const char* section, const char* name,
                        const std::optional<contact::UncertainValue>& value, const char* unit,
                        const char* meaning) {

@@ -48,7 +48,7 @@ ConvertedContact MakeConversion(const ConversionRequest& request) {
   RequireOneOf("--from", request.from, kLawsToConvert);
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   Validate(request.normal, target.target);
-  ConvertedContact made{.request = request, .target = target, .conversion = {}, .parameters = {}};
+  ConvertedContact made{.request = request, .target = target};
   ConversionOptions& options = made.request.options;
   if (request.least_amplitude || request.largest_amplitude) {
     options.range = AmplitudeRange{request.least_amplitude.value_or(options.amplitude),

@@ -74,7 +74,7 @@ ImposedMotion MotionFromWaveform(const DriveRequest& request, const models::Bran
     excitation.amplitude = *request.amplitude;
   }
   models::Excitation made = models::MakeExcitation(excitation);
-  ImposedMotion motion{std::move(made.time), std::move(made.displacement), {}, {}};
+  ImposedMotion motion{std::move(made.time), std::move(made.displacement)};
   if (excitation.waveform == models::Waveform::kGrowingSine)
     motion.envelope = std::move(made.envelope);
   return motion;
@@ -281,9 +281,7 @@ ImposedMotion FollowForce(const SimulationRequest& options, std::vector<double>&
   const models::BranchLaw law = ResolveLaw(options.law, options.model, model->shape_exponent);
   ImposedForce imposed = ReadImposedForce(options.drive, law);
   ImposedMotion motion{.time = std::move(imposed.time),
-                       .displacement = std::vector<double>(imposed.force.size()),
-                       .envelope = {},
-                       .normal_load = {}};
+                       .displacement = std::vector<double>(imposed.force.size())};
   force = std::move(imposed.force);
   models::EvaluateDisplacement(*model, law, force, motion.displacement);
   return motion;

@@ -226,8 +226,7 @@ bool Plan::established() const {
 
 Plan MakePlan(const PlanRequest& request, const Tell& warn) {
   RequireNamesOfParameters(request.wanted);
-  Plan plan{
-      .request = request, .expected = ExpectationOf(request, warn), .slip = 0.0, .columns = {}};
+  Plan plan{.request = request, .expected = ExpectationOf(request, warn)};
   plan.slip = SlipReach(plan.expected);
   if (!request.record) {
     for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
@@ -253,9 +252,6 @@ Plan MakePlan(const PlanRequest& request, const Tell& warn) {
 std::string ToText(const Plan& plan) {
   const PlanRequest& request = plan.request;
   const Expectation& expected = plan.expected;
-  const std::vector<PlannedLoops>& columns = plan.columns;
-  const WantedPrecision& wanted = request.wanted;
-  const double slip = plan.slip;
   std::string text;
   text += fmt::format(
       "expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N{}; noise {:.4g} N and {:.4g} m "
@@ -272,24 +268,24 @@ std::string ToText(const Plan& plan) {
     text += fmt::format("at {:g} times the load of this contact, sigma as the load to {:.4g}\n\n",
                         fmt::join(request.load_ratios, ", "), expected.load_exponent);
   }
-  const std::vector<Shown> shown = ShownOf(columns.front().loops.front());
+  const std::vector<Shown> shown = ShownOf(plan.columns.front().loops.front());
   constexpr std::size_t kCell = 9;
   constexpr std::size_t kLaw = 8;
   text += fmt::format("standard errors      ");
-  for (const PlannedLoops& column : columns) {
+  for (const PlannedLoops& column : plan.columns) {
     text += fmt::format("| {:<{}} ", column.initial_state, shown.size() * kCell + kLaw);
   }
   text += fmt::format("\n{:<12}{:<9}", "X [m]", "X/slip");
-  for ([[maybe_unused]] const PlannedLoops& column : columns) {
+  for ([[maybe_unused]] const PlannedLoops& column : plan.columns) {
     text += "| ";
     for (const Shown& each : shown) text += fmt::format("{:<{}}", each.name, kCell);
     text += fmt::format("{:<{}} ", "law", kLaw);
   }
   text += '\n';
-  for (std::size_t i = 0; i < columns.front().loops.size(); ++i) {
-    const double amplitude = columns.front().loops[i].protocol.amplitude;
-    text += fmt::format("{:<12.4g}{:<9.3g}", amplitude, amplitude / slip);
-    for (const PlannedLoops& column : columns) {
+  for (std::size_t i = 0; i < plan.columns.front().loops.size(); ++i) {
+    const double amplitude = plan.columns.front().loops[i].protocol.amplitude;
+    text += fmt::format("{:<12.4g}{:<9.3g}", amplitude, amplitude / plan.slip);
+    for (const PlannedLoops& column : plan.columns) {
       const ExpectedFit& fit = column.loops[i];
       text += "| ";
       for (const Shown& each : shown) text += fmt::format("{:<{}}", Cell(fit, each), kCell);
@@ -301,15 +297,15 @@ std::string ToText(const Plan& plan) {
       "  -: error larger than the value; law: is this loop expected to distinguish Mindlin's "
       "memory\n"
       "  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} m{}.\n",
-      identification::Thresholds().rival_past, slip,
+      identification::Thresholds().rival_past, plan.slip,
       request.load_ratios.empty() ? "" : " at that load");
-  if (wanted.empty()) return text;
-  text += fmt::format("\nwanted: {}\n", WantedInWords(wanted));
-  for (const PlannedLoops& column : columns) {
+  if (request.wanted.empty()) return text;
+  text += fmt::format("\nwanted: {}\n", WantedInWords(request.wanted));
+  for (const PlannedLoops& column : plan.columns) {
     if (column.reached) {
       const double amplitude = column.reached->protocol.amplitude;
       text += fmt::format("  {}: X >= {:.3g} m, {:.3g} times the displacement at slip\n",
-                          column.initial_state, amplitude, amplitude / slip);
+                          column.initial_state, amplitude, amplitude / plan.slip);
     } else if (column.fewest.amplitude > 0) {
       text += fmt::format(
           "  {}: no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
@@ -324,9 +320,6 @@ std::string ToText(const Plan& plan) {
 std::string ToJson(const Plan& plan) {
   const PlanRequest& request = plan.request;
   const Expectation& expected = plan.expected;
-  const std::vector<PlannedLoops>& columns = plan.columns;
-  const WantedPrecision& wanted = request.wanted;
-  const double slip = plan.slip;
   Json json;
   json["schema"] = "mindahl.plan/1";
   json["version"] = Version();
@@ -339,12 +332,12 @@ std::string ToJson(const Plan& plan) {
       {"displacement_noise", expected.displacement_noise},
       {"autocorrelation", expected.autocorrelation},
       {"load_exponent", request.load_ratios.empty() ? Json() : Json(expected.load_exponent)},
-      {"gross_slip_displacement", slip}};
+      {"gross_slip_displacement", plan.slip}};
   json["protocol"] = {{"cycles", request.cycles},
                       {"samples_per_cycle", request.samples_per_cycle},
                       {"load_ratios", request.load_ratios}};
   json["loops"] = Json::array();
-  for (const PlannedLoops& column : columns) {
+  for (const PlannedLoops& column : plan.columns) {
     for (const ExpectedFit& fit : column.loops) {
       Json entry = {{"initial_state", column.initial_state},
                     {"amplitude", fit.protocol.amplitude},
@@ -361,13 +354,13 @@ std::string ToJson(const Plan& plan) {
     }
   }
   json["wanted"] = Json::object();
-  for (const auto& [name, precision] : wanted) {
+  for (const auto& [name, precision] : request.wanted) {
     json["wanted"][name] = {{"standard_error", precision.value},
                             {"relative", precision.is_relative}};
   }
   json["reached"] = Json::array();
-  if (wanted.empty()) return Dump(json);
-  for (const PlannedLoops& column : columns) {
+  if (request.wanted.empty()) return Dump(json);
+  for (const PlannedLoops& column : plan.columns) {
     const bool any = column.fewest.amplitude > 0;
     json["reached"].push_back(
         {{"initial_state", column.initial_state},
@@ -380,17 +373,16 @@ std::string ToJson(const Plan& plan) {
 
 io::Plot ToPlot(const Plan& plan) {
   constexpr int kPoints = 60;
-  io::Plot plot{.title = "Standard errors that a loop of amplitude X would give", .panels = {}};
+  io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
   plot.columns = 1;
   const FitOptions fit_options = FitOptionsOf(plan.request);
   for (const auto& [state, name] : kStates) {
     if (plan.request.initial_state.value_or(state) != state) continue;
     io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
                         .y_label = "standard error [-]",
-                        .series = {}};
-    panel.log_x = true;
-    panel.log_y = true;
-    panel.title = name;
+                        .log_x = true,
+                        .log_y = true,
+                        .title = std::string(name)};
     Protocol protocol = ProtocolOf(plan.request, state);
     std::vector<Shown> shown;
     std::vector<io::PlotSeries> series;
@@ -403,9 +395,7 @@ io::Plot ToPlot(const Plan& plan) {
         shown = ShownOf(fit);
         for (const Shown& each : shown) {
           series.push_back(
-              {.label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
-               .x = {},
-               .y = {}});
+              {.label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative")});
         }
       }
       for (std::size_t k = 0; k < shown.size(); ++k) {

@@ -200,8 +200,7 @@ MotionRecommendation MakeRecommendation(const RecommendationRequest& request, co
   if (request.asked.largest_cost) {
     RequirePositive("--cost [ns/sample]", *request.asked.largest_cost);
   }
-  MotionRecommendation made{
-      .request = request, .law = ResolveLaw(request.law), .samples = 0, .found = {}};
+  MotionRecommendation made{.request = request, .law = ResolveLaw(request.law)};
   for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
   ImposedMotion motion;
   if (request.displacement.empty()) {
@@ -327,8 +326,6 @@ RecordRecommendation RecommendForRecord(const std::string& name, const loop::Rec
                                         const Tell& warn) {
   const identification::FitOptions options;
   RecordRecommendation priced{.record = name,
-                              .laws = {},
-                              .cost = {},
                               .indistinguishable = options.thresholds.indistinguishable};
   try {
     priced.laws = identification::CompareSimplerLaws(record, options);

@@ -10,6 +10,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "report/names.h"
+#include "report/statements.h"
 #include "request/json.h"
 
 namespace mindahl::request {
@@ -51,7 +52,7 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
     throw InputError(fmt::format(
         "--model {}: a sweep needs a Masing law: mindlin-dahl, mindlin or jenkins", model));
   }
-  FittedSweep fitted{.file = file, .sweep = std::move(sweep), .asked = {}, .fit = {}};
+  FittedSweep fitted{.file = file, .sweep = std::move(sweep)};
   for (const std::string& text : fitted.sweep.notes) note(text);
   SweepOptions& asked = fitted.asked;
   asked.stiffness = kind == "tangent" ? identification::SweepStiffness::kTangent

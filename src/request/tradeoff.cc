@@ -67,8 +67,7 @@ MeasuredExcitation Measure(const BranchLaw& law, std::string name, std::string t
                               .title = std::move(title),
                               .samples = drive.displacement.size(),
                               .floor = tradeoff::MeasureCostFloor(drive),
-                              .points = tradeoff::MeasureWorkPrecision(law, drive, ladder),
-                              .front = {}};
+                              .points = tradeoff::MeasureWorkPrecision(law, drive, ladder)};
   measured.front = tradeoff::ParetoFront(measured.points, Criterion::kMaxForce);
   return measured;
 }
@@ -178,10 +177,7 @@ std::vector<std::string> ExcitationNames() {
 
 Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Tell& progress) {
   const bool is_contact_given = IsAnythingGiven(request.law) || request.law.alpha;
-  Tradeoff study{.law = is_contact_given ? ResolveLaw(request.law) : PaperContact(),
-                 .excitations = {},
-                 .regions = {},
-                 .studied = {}};
+  Tradeoff study{.law = is_contact_given ? ResolveLaw(request.law) : PaperContact()};
   for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
   if (progress) progress("timing every method");
   study.excitations = MeasureScenes(request, study.law);
@@ -245,14 +241,13 @@ std::string RegionsCsv(const Tradeoff& study) {
 io::Plot ToPlot(const Tradeoff& study) {
   const std::vector<MeasuredExcitation>& scenes = study.excitations;
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
-  io::Plot plot{.title = "Work and precision: largest force error against cost", .panels = {}};
+  io::Plot plot{.title = "Work and precision: largest force error against cost"};
   plot.columns = scenes.size() > 1 ? 2 : 1;
   const int rows = static_cast<int>((scenes.size() + 1) / 2);
   plot.width = plot.columns == 2 ? 1500 : 900;
   plot.height = 60 + 460 * rows;
   for (const MeasuredExcitation& scene : scenes) {
-    io::PlotPanel panel{
-        .x_label = "cost [ns/sample]", .y_label = "largest error of T over T*", .series = {}};
+    io::PlotPanel panel{.x_label = "cost [ns/sample]", .y_label = "largest error of T over T*"};
     panel.log_x = true;
     panel.log_y = true;
     panel.title = scene.title;
@@ -268,8 +263,6 @@ io::Plot ToPlot(const Tradeoff& study) {
         order.push_back(label);
         curves[label] = {
             .label = label,
-            .x = {},
-            .y = {},
             .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints};
       }
       curves[label].x.push_back(point.cost);

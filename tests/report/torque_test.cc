@@ -51,7 +51,7 @@ TEST(Torque, HasItsUnitsInWhatIsDescribed) {
       {"measured.energy_per_cycle", "J"}, {"residuals.rms", "N m"},
       {"residuals.r_squared", "-"}};
   for (const auto& [path, unit] : units) {
-    const std::vector<DescribedValue> values = ValuesUnder(report, path);
+    const std::vector<DescribedValue> values = ValuesUnder(report, JsonDocument(report), path);
     ASSERT_EQ(values.size(), 1U) << path;
     EXPECT_EQ(values[0].field.unit, unit) << path;
   }

@@ -46,7 +46,7 @@ struct ContactQuantity {
 
 struct ContactParameters {
   models::BranchLaw law;
-  std::vector<ContactQuantity> quantities;
+  std::vector<ContactQuantity> quantities = {};
 };
 
 /// Returns Dahl's parameters of a contact described by friction and normal load with either contact

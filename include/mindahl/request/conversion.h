@@ -28,8 +28,8 @@ struct ConversionRequest {
 struct ConvertedContact {
   ConversionRequest request;
   convert::TargetRow target;
-  convert::Conversion conversion;
-  std::vector<convert::Parameter> parameters;
+  convert::Conversion conversion = {};
+  std::vector<convert::Parameter> parameters = {};
 };
 
 /// Converts a contact's steady loop to another law or program.

@@ -44,16 +44,16 @@ std::vector<std::string_view> ModelNames();
 
 /// Says whether a term is fitted, held or stated with an uncertainty.
 struct TermRequest {
-  std::optional<double> value;  ///< at which it is held; empty: it is fitted
+  std::optional<double> value = {};  ///< at which it is held; empty: it is fitted
   /// Standard uncertainty of the value, with which rig_stiffness alone is fitted; empty: exact.
   std::optional<double> standard_uncertainty = {};
-  std::string form;  ///< "linear" or "quadratic", of --slip-position alone
+  std::string form = {};  ///< "linear" or "quadratic", of --slip-position alone
 };
 
 /// A column in proportion to which a force is added.
 struct CovariateRequest {
   std::string column;
-  std::optional<double> coefficient;  ///< [N/unit of the column]; empty: it is fitted
+  std::optional<double> coefficient = {};  ///< [N/unit of the column]; empty: it is fitted
 };
 
 /// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may

@@ -30,10 +30,10 @@ struct DriveRequest {
 
 /// One entry a row of output.
 struct ImposedMotion {
-  std::vector<double> time;          ///< [s]
-  std::vector<double> displacement;  ///< [m]
-  std::vector<double> envelope;      ///< [m]; empty unless the amplitude changes along the way
-  std::vector<double> normal_load;   ///< [N]; empty unless a file gives it
+  std::vector<double> time;              ///< [s]
+  std::vector<double> displacement;      ///< [m]
+  std::vector<double> envelope = {};     ///< [m]; empty unless the amplitude changes along the way
+  std::vector<double> normal_load = {};  ///< [N]; empty unless a file gives it
 
   /// Valid as long as this.
   [[nodiscard]] methods::Drive drive() const { return {displacement, envelope}; }

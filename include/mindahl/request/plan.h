@@ -47,7 +47,7 @@ struct Plan {
   PlanRequest request;
   identification::Expectation expected;
   double slip = 0.0;  ///< displacement [m] of λ = 1
-  std::vector<PlannedLoops> columns;
+  std::vector<PlannedLoops> columns = {};
 
   /// True if what is wanted, if anything, is reached.
   [[nodiscard]] bool established() const;

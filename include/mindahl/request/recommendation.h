@@ -33,7 +33,7 @@ struct MotionRecommendation {
   RecommendationRequest request;
   models::BranchLaw law;
   std::size_t samples = 0;
-  tradeoff::Recommendation found;
+  tradeoff::Recommendation found = {};
 
   /// True if a model and a method meet what is asked.
   [[nodiscard]] bool established() const { return found.choice.has_value(); }
@@ -46,8 +46,8 @@ MotionRecommendation MakeRecommendation(const RecommendationRequest& request, co
 /// The laws that a record does not distinguish from the best, with their costs.
 struct RecordRecommendation {
   std::string record;  ///< name of the record
-  identification::SimplerLaws laws;
-  std::vector<double> cost;        ///< cost of each [ns/sample]
+  identification::SimplerLaws laws = {};
+  std::vector<double> cost = {};   ///< cost of each [ns/sample]
   std::size_t choice = 0;          ///< the cheapest that is not distinguished
   double indistinguishable = 0.0;  ///< ΔAICc
 

@@ -13,8 +13,8 @@ namespace mindahl::request {
 struct FittedSweep {
   std::string file;
   io::SweepFile sweep;
-  identification::SweepOptions asked;
-  identification::SweepFit fit;
+  identification::SweepOptions asked = {};
+  identification::SweepFit fit = {};
 
   /// True if neighbouring residuals are correlated, so that the law misses the sweep's shape.
   [[nodiscard]] bool is_doubtful() const;

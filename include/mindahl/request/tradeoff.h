@@ -29,14 +29,14 @@ struct MeasuredExcitation {
   std::size_t samples = 0;
   tradeoff::CostFloor floor;
   std::vector<tradeoff::WorkPrecision> points;
-  std::vector<bool> front;  ///< true on the Pareto front of the largest force error
+  std::vector<bool> front = {};  ///< true on the Pareto front of the largest force error
 };
 
 struct Tradeoff {
   models::BranchLaw law;
-  std::vector<MeasuredExcitation> excitations;
-  std::vector<tradeoff::ModelRegion> regions;  ///< none for α >= 1
-  tradeoff::ModelRegionOptions studied;
+  std::vector<MeasuredExcitation> excitations = {};
+  std::vector<tradeoff::ModelRegion> regions = {};  ///< none for α >= 1
+  tradeoff::ModelRegionOptions studied = {};
 };
 
 /// Runs and times every method along the excitations, and finds the amplitudes at which each model
