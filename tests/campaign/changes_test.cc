@@ -1,5 +1,7 @@
 
 
+#include <tuple>
+
 #include "mindahl/campaign/evolution.h"
 #include "support/histories.h"
 #include "support/prelude.h"
@@ -532,6 +534,170 @@ TEST(ChangeKinds, HaveNames) {
   EXPECT_EQ(NameOf(ChangeKind::kEndOfRunningIn), "end_of_running_in");
   EXPECT_EQ(NameOf(ChangeKind::kTransition), "transition");
   EXPECT_EQ(NameOf(ChangeKind::kBend), "bend");
+}
+
+// --- descriptions by another way
+
+/// A line of least squares through values at 1, 2, 3, … from `begin` to before `end`.
+struct PlainLine {
+  PlainLine(std::span<const double> values, std::size_t begin, std::size_t end) {
+    const auto count = static_cast<double>(end - begin);
+    double xx = 0.0;
+    double xy = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      x_mean += static_cast<double>(i + 1) / count;
+      y_mean += values[i] / count;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const double x = static_cast<double>(i + 1) - x_mean;
+      xx += x * x;
+      xy += x * (values[i] - y_mean);
+    }
+    slope = xy / xx;
+    for (std::size_t i = begin; i < end; ++i) {
+      squares += std::pow(values[i] - At(static_cast<double>(i + 1)), 2);
+    }
+  }
+  [[nodiscard]] double At(double x) const { return y_mean + slope * (x - x_mean); }
+
+  double x_mean = 0.0;
+  double y_mean = 0.0;
+  double slope = 0.0;
+  double squares = 0.0;
+};
+
+TEST(Changes, OfAStepAreThoseOfTheBestOfAllPlaces) {
+  // 100 and from the 15th cycle on 103 with a slope, ± 1 in turn: neighbours turn their sign, which
+  // inflates nothing, and no value is far from its neighbours.
+  constexpr std::size_t kCycles = 40;
+  std::vector<double> values;
+  Course course;
+  for (std::size_t k = 1; k <= kCycles; ++k) {
+    const double level = k < 15 ? 100.0 : 106.0 + 0.125 * static_cast<double>(k);
+    values.push_back(level + (k % 2 == 0 ? 1.0 : -1.0));
+    course.Add(k, values.back());
+  }
+  const CourseDescription description = FindChanges(course);
+  ASSERT_EQ(description.changes.size(), 1U);
+  ASSERT_EQ(description.stretches.size(), 2U);
+  // The best of all places with four cycles on either side, without a cycle left out.
+  std::size_t best = 0;
+  std::vector<double> squares(kCycles, HUGE_VAL);
+  for (std::size_t at = 2; at + 2 <= kCycles; ++at) {
+    squares[at] = PlainLine(values, 0, at).squares + PlainLine(values, at, kCycles).squares;
+    if (at >= 4 && at + 4 <= kCycles && squares[at] < squares[best]) best = at;
+  }
+  const PlainLine before(values, 0, best);
+  const PlainLine after(values, best, kCycles);
+  const Change& change = description.changes[0];
+  EXPECT_EQ(change.kind, ChangeKind::kTransition);
+  EXPECT_EQ(change.cycle, best + 1);
+  constexpr double kRounding = 1e-9;
+  EXPECT_NEAR(change.before, before.At(static_cast<double>(best + 1)), kRounding);
+  EXPECT_NEAR(change.after, after.At(static_cast<double>(best + 1)), kRounding);
+  const double without = PlainLine(values, 0, kCycles).squares;
+  EXPECT_NEAR(std::log(change.p_value),
+              std::log(kCycles) - 0.5 * kCycles * std::log(without / squares[best]), 1e-6);
+  // The interval is of the places whose likelihood ratio is not beyond χ² of one parameter.
+  std::size_t lower = best;
+  std::size_t upper = best;
+  for (std::size_t at = 2; at + 2 <= kCycles; ++at) {
+    if (kCycles * std::log(squares[at] / squares[best]) > 3.841458820694124) continue;
+    lower = std::min(lower, at);
+    upper = std::max(upper, at);
+  }
+  EXPECT_EQ(change.lower95, lower + 1);
+  EXPECT_EQ(change.upper95, upper + 1);
+  const Stretch& first = description.stretches[0];
+  const Stretch& second = description.stretches[1];
+  EXPECT_EQ(first.first_cycle, 1U);
+  EXPECT_EQ(first.last_cycle, best);
+  EXPECT_EQ(second.first_cycle, best + 1);
+  EXPECT_EQ(second.last_cycle, kCycles);
+  EXPECT_NEAR(first.at_start, before.At(1), kRounding);
+  EXPECT_NEAR(first.at_end, before.At(static_cast<double>(best)), kRounding);
+  EXPECT_NEAR(second.at_start, after.At(static_cast<double>(best + 1)), kRounding);
+  EXPECT_NEAR(second.at_end, after.At(kCycles), kRounding);
+  EXPECT_NEAR(second.slope, after.slope, kRounding);
+  // Two lines take four of forty degrees of freedom.
+  const double n = static_cast<double>(kCycles - best);
+  const double spread = n * (n * n - 1) / 12;
+  const double variance = squares[best] / (kCycles - 4);
+  EXPECT_NEAR(second.slope_p_value, std::erfc(after.slope / std::sqrt(2 * variance / spread)),
+              kRounding);
+  EXPECT_FALSE(first.time_constant || second.time_constant);
+}
+
+/// The description of a course that runs in, steps and wears, its values and cycles changed.
+CourseDescription ChangedCourse(double factor, std::size_t shift, double weight) {
+  Generator generator(3);
+  Course course;
+  for (std::size_t k = 1; k <= 400; ++k) {
+    const double x = static_cast<double>(k);
+    const double value = kLevel - 8 * std::exp(-x / 25) - (k < 180 ? 0.0 : 4.0) -
+                         0.03 * std::max(0.0, x - 260) + 0.2 * Normal(generator);
+    course.Add(k + shift, factor * value, weight);
+  }
+  return FindChanges(course);
+}
+
+TEST(Changes, FollowTheSignTheUnitAndTheNumberOfTheCycles) {
+  // Powers of two and the sign change no digit.
+  const CourseDescription plain = ChangedCourse(1.0, 0, 1.0);
+  ASSERT_GE(plain.changes.size(), 2U);
+  for (const auto& [factor, shift, weight] :
+       {std::tuple(-1.0, 0U, 1.0), {1024.0, 0U, 0.25}, {1.0, 1000U, 1.0}}) {
+    const CourseDescription other = ChangedCourse(factor, shift, weight);
+    ASSERT_EQ(other.changes.size(), plain.changes.size());
+    ASSERT_EQ(other.stretches.size(), plain.stretches.size());
+    constexpr double kDigits = 1e-6;  // of a time constant that is searched for
+    const auto near = [&, f = factor](double value, double expected) {
+      EXPECT_NEAR(value / f, expected, kDigits * std::abs(expected));
+    };
+    for (std::size_t k = 0; k < plain.changes.size(); ++k) {
+      EXPECT_EQ(other.changes[k].kind, plain.changes[k].kind);
+      EXPECT_EQ(other.changes[k].cycle, plain.changes[k].cycle + shift);
+      EXPECT_EQ(other.changes[k].lower95, plain.changes[k].lower95 + shift);
+      EXPECT_EQ(other.changes[k].upper95, plain.changes[k].upper95 + shift);
+      near(other.changes[k].before, plain.changes[k].before);
+      near(other.changes[k].after, plain.changes[k].after);
+    }
+    for (std::size_t k = 0; k < plain.stretches.size(); ++k) {
+      EXPECT_EQ(other.stretches[k].first_cycle, plain.stretches[k].first_cycle + shift);
+      EXPECT_EQ(other.stretches[k].last_cycle, plain.stretches[k].last_cycle + shift);
+      EXPECT_EQ(other.stretches[k].trends, plain.stretches[k].trends);
+      near(other.stretches[k].at_start, plain.stretches[k].at_start);
+      near(other.stretches[k].at_end, plain.stretches[k].at_end);
+      near(other.stretches[k].slope, plain.stretches[k].slope);
+    }
+  }
+}
+
+TEST(Changes, FindAllOfACourseThatRunsInStepsAndWears) {
+  const CourseDescription description = ChangedCourse(1.0, 0, 1.0);
+  ASSERT_EQ(description.changes.size(), 3U);
+  EXPECT_EQ(description.changes[0].kind, ChangeKind::kEndOfRunningIn);
+  // The rate is a fifth of the first after ln 5 time constants of 25 cycles; the fall of 8 from
+  // its first value is then a fifth too.
+  EXPECT_NEAR(static_cast<double>(description.changes[0].cycle), 1 + 25 * std::log(5.0), 5.0);
+  EXPECT_NEAR(description.changes[0].before, kLevel - 8.0 / 5, 0.3);
+  EXPECT_EQ(description.changes[0].before, description.changes[0].after);
+  EXPECT_NEAR(*description.stretches[0].time_constant, 25.0, 4.0);
+  EXPECT_EQ(*description.stretches[1].time_constant, *description.stretches[0].time_constant);
+  EXPECT_EQ(description.stretches[1].first_cycle, description.stretches[0].last_cycle + 1);
+  EXPECT_NEAR(description.stretches[0].at_start, kLevel - 8 * std::exp(-1.0 / 25), 0.3);
+  EXPECT_EQ(description.changes[1].kind, ChangeKind::kTransition);
+  EXPECT_EQ(description.changes[1].cycle, 180U);
+  EXPECT_EQ(description.changes[2].kind, ChangeKind::kBend);
+  EXPECT_LE(description.changes[2].lower95, 265U);
+  EXPECT_GE(description.changes[2].upper95, 255U);
+  EXPECT_NEAR(description.stretches[3].slope, -0.03, 0.002);
+  EXPECT_NEAR(description.stretches[3].at_end, kLevel - 4 - 0.03 * 140, 0.3);
+  for (const Change& change : description.changes) {
+    EXPECT_LE(change.lower95, change.cycle);
+    EXPECT_GE(change.upper95, change.cycle);
+    EXPECT_LT(change.p_value, 1e-6);
+  }
 }
 
 }  // namespace

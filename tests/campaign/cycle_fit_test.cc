@@ -221,5 +221,61 @@ TEST(CycleFitter, NamesEachFlagOnce) {
   }
 }
 
+TEST(CycleFitter, HasEveryFactOfItsCycle) {
+  Cycle cycle = CyclesOf(TestRecord(2)).front();
+  for (std::size_t i = 0; i < cycle.record.size(); ++i) {
+    cycle.record.normal_load.push_back(i % 2 == 0 ? 119.5 : 120.5);
+  }
+  cycle.number = 9;
+  cycle.checksum = 17;
+  const CycleFit fit = CycleFitter({}).Fit(cycle);
+  // Measured by hand: half the range, the extreme forces, ∮T dδ by trapezia.
+  const std::vector<double>& x = cycle.record.displacement;
+  const std::vector<double>& force = cycle.record.force;
+  const auto [low, high] = std::ranges::minmax(x);
+  EXPECT_NEAR(*fit.amplitude, (high - low) / 2, 1e-12 * kCycleReach);
+  const auto [least, most] = std::ranges::minmax(force);
+  EXPECT_NEAR(*fit.peak_force, (most - least) / 2, 2 * testing::kCycleNoise);
+  double energy = 0.0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    energy += (force[i] + force[i - 1]) / 2 * (x[i] - x[i - 1]);
+  }
+  EXPECT_NEAR(*fit.energy, energy, 0.01 * energy);
+  // In the middle of a stroke, X from its turn: Masing's 2f(X/2) − Tc, f = Tc(1 − (1 − δ/δc)^1.5).
+  const double gross_slip = 1.5 * kCycleLaw.slip_force / kCycleLaw.tangential_stiffness;
+  const double half_gap =
+      kCycleLaw.slip_force * (1 - 2 * std::pow(1 - kCycleReach / 2 / gross_slip, 1.5));
+  EXPECT_NEAR(*fit.half_gap, half_gap, 3 * testing::kCycleNoise);
+  EXPECT_NEAR(*fit.energy_ratio, *fit.energy / (4 * *fit.amplitude * *fit.peak_force), 1e-9);
+  EXPECT_NEAR(*fit.slope_after_reversal, kCycleLaw.tangential_stiffness,
+              0.3 * kCycleLaw.tangential_stiffness);
+  EXPECT_NEAR(*fit.rms, testing::kCycleNoise, 0.25 * testing::kCycleNoise);
+  EXPECT_NEAR(*fit.normal_load, 120 - 0.5 / static_cast<double>(x.size()), 1e-9);
+  EXPECT_NEAR(*fit.friction_coefficient, *fit.slip_force.value / *fit.normal_load, 1e-12);
+  EXPECT_NEAR(*fit.energy_friction_coefficient,
+              *fit.energy / (4 * *fit.normal_load * *fit.sliding_amplitude), 1e-12);
+  EXPECT_LT(*fit.sliding_amplitude, *fit.amplitude);
+  EXPECT_GT(*fit.sliding_amplitude, 0.0);
+  EXPECT_EQ(fit.start_time, cycle.record.time.front());
+  EXPECT_EQ(fit.number, 9U);
+  EXPECT_EQ(fit.checksum, 17U);
+  EXPECT_TRUE(*fit.slips_grossly);
+  EXPECT_FALSE(*CycleFitter({}).Fit(CyclesOf(Partial(0.5 * kCycleReach)).front()).slips_grossly);
+}
+
+TEST(CycleFitter, TurnsWithTheSignOfItsForce) {
+  Cycle cycle = CyclesOf(TestRecord(2)).front();
+  const CycleFit fit = CycleFitter({}).Fit(cycle);
+  for (double& force : cycle.record.force) force = -force;
+  const CycleFit turned = CycleFitter({}).Fit(cycle);
+  constexpr double kDigits = 1e-6;
+  EXPECT_NEAR(*turned.sigma.value / *fit.sigma.value, 1.0, kDigits);
+  EXPECT_NEAR(*turned.slip_force.value / *fit.slip_force.value, 1.0, kDigits);
+  EXPECT_NEAR(*turned.half_gap / *fit.half_gap, 1.0, kDigits);
+  EXPECT_NEAR(*turned.energy / *fit.energy, 1.0, kDigits);
+  EXPECT_NEAR(*turned.slope_after_reversal / *fit.slope_after_reversal, 1.0, kDigits);
+  EXPECT_TRUE(turned.flags.empty());
+}
+
 }  // namespace
 }  // namespace mindahl::campaign::cycle_fit_test

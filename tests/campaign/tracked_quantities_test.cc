@@ -1,5 +1,7 @@
 
 
+#include <fmt/format.h>
+
 #include "mindahl/campaign/evolution.h"
 #include "support/prelude.h"
 
@@ -51,6 +53,74 @@ TEST(SmallTrendStatements, ReportSignificantTrendsBelowOnePercent) {
   course.stretches[0].trends = true;  // among the changes
   EXPECT_THAT(SmallTrendStatements(course), IsEmpty());
   EXPECT_THAT(ChangeStatements(course), SizeIs(1));
+}
+
+TEST(TrackedCourses, HoldEachQuantityOfACycleUnlessItIsOpen) {
+  CycleFit fit;
+  fit.number = 7;
+  fit.sigma = {1.5, 0.5};
+  fit.alpha = {2.5, 0.25};
+  fit.slip_force = {3.5, 0.125};
+  fit.friction_coefficient = 4.5;
+  fit.half_gap = 5.5;
+  fit.energy = 6.5;
+  fit.energy_ratio = 7.5;
+  fit.rms = 2.0;
+  const std::span<const TrackedQuantity> tracked = TrackedQuantities();
+  const auto held = [&](const std::vector<std::string>& flags) {
+    TrackedCourses courses;
+    fit.flags = flags;
+    courses.Add(fit);
+    std::vector<std::string> all;
+    for (std::size_t k = 0; k < tracked.size(); ++k) {
+      if (courses.courses()[k].bins().empty()) continue;
+      const Course::Bin& bin = courses.courses()[k].bins()[0];
+      EXPECT_EQ(bin.first_cycle, 7U);
+      all.push_back(fmt::format("{} {} {}", tracked[k].name, bin.value, bin.weight));
+    }
+    return all;
+  };
+  // Weights are one over the square of an error; of what is measured, of the rms.
+  const std::vector<std::string> whole = {
+      "sigma 1.5 4",       "alpha 2.5 16",    "slip_force 3.5 64",    "friction_coefficient 4.5 64",
+      "half_gap 5.5 0.25", "energy 6.5 0.25", "energy_ratio 7.5 0.25"};
+  EXPECT_EQ(held({}), whole);
+  EXPECT_EQ(held({"glitches"}), whole);
+  EXPECT_THAT(held({"not_converged"}), IsEmpty());
+  EXPECT_THAT(held({"sigma_open"}), AllOf(SizeIs(6), Not(Contains(whole[0]))));
+  EXPECT_THAT(held({"alpha_open"}), AllOf(SizeIs(6), Not(Contains(whole[1]))));
+  EXPECT_THAT(held({"slip_force_open"}), AllOf(SizeIs(6), Not(Contains(whole[2]))));
+  fit.alpha.standard_error.reset();  // held: every cycle has one weight
+  EXPECT_THAT(held({}), Contains("alpha 2.5 1"));
+  TrackedCourses courses;
+  courses.Add(fit);
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    EXPECT_EQ(courses.have_errors()[k], tracked[k].name != "alpha") << tracked[k].name;
+  }
+}
+
+TEST(ChangeStatements, SayRunningInStepsAndTrendsInTheirOrder) {
+  CourseDescription course;
+  course.stretches = {{1, 20, 1.5, 2.5, 0.5, 1e-20, true, {}},
+                      {21, 40, 3.5, 4.5, 0.5, 0.5, false, {}},
+                      {41, 60, 5.5, 6.5, 0.5, 0.004, true, {}}};
+  course.changes = {{ChangeKind::kBend, 21, 19, 24, 7.5, 8.5, 0.0625},
+                    {ChangeKind::kTransition, 41, 39, 44, 9.5, 10.5, 1e-15}};
+  EXPECT_THAT(ChangeStatements(course),
+              ElementsAre("from cycle 1 to 20 a trend, 1.5 to 2.5, p < 1e-12",
+                          "at cycle 21 (19 to 24) a new rate, 7.5 to 8.5, p 0.06",
+                          "at cycle 41 (39 to 44) a step, 9.5 to 10.5, p < 1e-12",
+                          "from cycle 41 to 60 a trend, 5.5 to 6.5, p 0.004"));
+  course.changes[0].kind = ChangeKind::kEndOfRunningIn;
+  EXPECT_THAT(ChangeStatements(course),
+              ElementsAre("running-in up to cycle 21 (19 to 24), 1.5 to 7.5, p 0.06",
+                          "at cycle 41 (39 to 44) a step, 9.5 to 10.5, p < 1e-12",
+                          "from cycle 41 to 60 a trend, 5.5 to 6.5, p 0.004"));
+  course.changes[1].kind = ChangeKind::kEndOfRunningIn;
+  course.changes[0].kind = ChangeKind::kBend;  // slower twice, and settled only then
+  EXPECT_THAT(ChangeStatements(course),
+              ElementsAre("running-in up to cycle 41 (39 to 44), 1.5 to 9.5, p < 1e-12",
+                          "from cycle 41 to 60 a trend, 5.5 to 6.5, p 0.004"));
 }
 
 }  // namespace

@@ -258,5 +258,85 @@ TEST(AdequacyJson, SaysWhyThereIsNoOptionNoSizeAndNoVerdict) {
   EXPECT_TRUE(has(failed, "adequacy.verdict", "the fit failed: no start led anywhere"));
 }
 
+TEST(VerdictSentence, NamesTheParametersWhoseIntervalsIncludeTheMisfit) {
+  const auto includes = [](const std::vector<std::string>& effective) {
+    ReportInput input = Missing(AdequacyVerdict::kDoubtful, {});
+    for (const char* name : {"viscous", "force_offset"}) {
+      input.fit.parameters.push_back(mindahl::testing::MadeParameter(name, "N", 1.0, 0.1));
+    }
+    input.fit.correlation.assign(25, 0.0);
+    for (ParameterEstimate& estimate : input.fit.parameters) {
+      const bool is_effective = std::ranges::find(effective, estimate.name) != effective.end();
+      if (is_effective) estimate.identifiability = Identifiability::kEffective;
+    }
+    const std::string sentence = VerdictSentence(MakeReport(std::move(input)));
+    return sentence.substr(sentence.find("); ") + 3);
+  };
+  EXPECT_EQ(includes({}), "no parameter is usable");
+  EXPECT_EQ(includes({"alpha"}), "the interval of alpha includes this");
+  EXPECT_EQ(includes({"sigma", "slip_force"}), "the intervals of sigma, slip_force include this");
+  EXPECT_EQ(includes({"sigma", "viscous"}), "the intervals of sigma and 1 more include this");
+  EXPECT_EQ(includes({"sigma", "viscous", "force_offset"}),
+            "the intervals of sigma and 2 more include this");
+  EXPECT_EQ(includes({"viscous"}), "the interval of viscous includes this");
+  EXPECT_EQ(includes({"viscous", "force_offset"}),
+            "the intervals of viscous, force_offset include this");
+}
+
+TEST(VerdictSentence, OfARecordWithoutALoopHasTheFractionThatIsExplained) {
+  ReportInput input = Missing(AdequacyVerdict::kInadequate, {});
+  input.fit.findings = {{.code = "loop_not_seen", .numbers = {{"r_squared", 0.125}}}};
+  EXPECT_EQ(VerdictSentence(MakeReport(input)),
+            "inadequate: the force shows no loop, since the model explains only 12 % of its "
+            "variance; the parameters mean nothing for this record");
+  input.fit.findings[0].numbers = {{"r_squared", -0.5}};
+  EXPECT_THAT(VerdictSentence(MakeReport(input)), HasSubstr("explains only 0 % of"));
+}
+
+TEST(MisfitSentence, HasTheChannelThatIsFitted) {
+  ReportInput input = Missing(AdequacyVerdict::kDoubtful, {});
+  input.fit.adequacy.misfit_over_half_gap = 1.25;
+  EXPECT_EQ(MisfitSentence(MakeReport(input)),
+            "mindlin-dahl misses the force by 1.6 N rms (125 % of the half gap), 30 % of its "
+            "variance alike in every stroke");
+  input.fit.adequacy.misfit_over_half_gap.reset();
+  input.fit.records[0].structure.repeatable_share = 0.0;
+  input.fit.response = loop::Channel::kDisplacement;
+  EXPECT_EQ(MisfitSentence(MakeReport(input)), "mindlin-dahl misses the displacement by 1.6 m rms");
+}
+
+TEST(CauseSentence, OfEachSignAndSizeHasItsWords) {
+  const auto said = [](const char* code, double size, const char* unit, const char* option = "") {
+    const std::string sentence = Sentence(MadeCause(code, size, unit, option));
+    return sentence.substr(0, sentence.find(", which explains"));
+  };
+  EXPECT_EQ(said("running_in", 0.125, "-"), "a friction that grows by 12.5 % over the record");
+  EXPECT_EQ(said("running_in", -0.125, "-"), "a friction that falls by 12.5 % over the record");
+  EXPECT_EQ(said("rig_in_series", -2.5e-8, "m/N"),
+            "a rig in series that deflects by 25 nm/N less than was subtracted");
+  EXPECT_EQ(said("backlash", -2.5e-8, "m"), "an overtravel of 25 nm after each reversal");
+  EXPECT_EQ(said("unequal_directions", 0.999, "-"),
+            "a friction that differs by 99.9 % from the mean in each direction");
+  EXPECT_EQ(said("unequal_directions", 1.0, "-"),
+            "a friction that differs by all from the mean in each direction");
+  EXPECT_EQ(said("unequal_directions", 0.5, ""),
+            "a friction that differs between the two directions");
+  EXPECT_EQ(said("plateau_slope", -12.0, "N/m"),
+            "an additional force that grows by -12 N/m with the displacement");
+  EXPECT_EQ(said("clock_drift", -0.0025, "s"), "a force whose clock gains 2.5 ms over the record");
+  Cause measured = MadeCause("backlash", 2.5e-8, "m", "--backlash fit");
+  measured.is_measured = true;
+  EXPECT_EQ(Sentence(measured),
+            "a backlash of 25 nm after each reversal, over which the force stays constant in "
+            "every stroke: give --backlash fit");
+  const Cause shape = MadeCause("shape_of_law");
+  EXPECT_THAT(Sentence(shape, loop::Channel::kForce), EndsWith(": compare the laws with --model "
+                                                               "auto"));
+  EXPECT_THAT(Sentence(shape, loop::Channel::kDisplacement),
+              EndsWith(": fit another law, --model mindlin-dahl or dahl, and compare"));
+  EXPECT_THAT(Sentence(MadeCause("covariate", 2, "N/unit", "--covariate p")),
+              EndsWith(": give --covariate p, or --covariate p=C where its factor is known"));
+}
+
 }  // namespace
 }  // namespace mindahl::report::adequacy_test

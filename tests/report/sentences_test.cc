@@ -285,5 +285,159 @@ TEST(FindingCodes, AreThoseThatTheIdentificationFinds) {
   EXPECT_EQ(EmittedCodes(), codes);
 }
 
+// --- whole sentences of the other branches
+
+/// A fit whose loop slides, or has not been seen to.
+FitResult FitThat(bool slides) {
+  FitResult fit;
+  fit.model = FindFrictionModel("jenkins");
+  loop::LoopFacts& facts = fit.records.emplace_back().facts;
+  facts.closed = true;
+  facts.amplitude = 1e-6;
+  facts.peak_force = 40.0;
+  facts.half_gap = 40.0;
+  facts.energy_ratio = slides ? 0.95 : 0.2;
+  facts.sliding_fraction = slides ? 0.9 : 0.0;
+  facts.plateau_slope = 0.0;
+  facts.slope_after_reversal = 4e7;
+  facts.energy_per_cycle = facts.energy_ratio * 4 * 1e-6 * 40.0;
+  facts.sliding_amplitude = facts.energy_per_cycle / (4 * 40.0);
+  return fit;
+}
+
+TEST(Sentence, AsksForALargerAmplitudeOnlyWhereTheLoopDoesNotSlide) {
+  const FitResult sliding = FitThat(true);
+  const FitResult sticking = FitThat(false);
+  ASSERT_TRUE(loop::Slides(sliding.records[0].facts));
+  ASSERT_FALSE(loop::Slides(sticking.records[0].facts));
+  const auto both = [&](FindingCode code, const char* kind, const char* where_it_slides,
+                        const char* elsewhere) {
+    EXPECT_EQ(Sentence(Complete(code, kind), sliding, kUnitsOfForce), where_it_slides);
+    EXPECT_EQ(Sentence(Complete(code, kind), sticking, kUnitsOfForce), elsewhere);
+  };
+  both("slip_force_bounded_below", "",
+       "slip_force: the contact slides, but its force keeps changing meanwhile (T* = 12.5 N), as "
+       "if slip were not reached: any larger slip force fits as well; the measured half gap "
+       "remains valid",
+       "slip_force: the loop (T* = 12.5 N at X = 1.75 µm) does not approach gross slip and fits "
+       "any larger slip force as well; raise the amplitude until the force levels off (mindahl "
+       "plan --record says how far)");
+  both("alpha_not_identifiable", "with_slip_force",
+       "alpha: the record determines only its combination with slip_force, since the force keeps "
+       "changing while the contact slides; fix one of them",
+       "alpha: the record determines only the ratio alpha/slip_force; raise the amplitude until "
+       "the force levels off (mindahl plan --record says how far), or fix one of them");
+  both("slip_force_extrapolated", "",
+       "slip_force: it is the asymptote of a law with alpha = 0.0625, and the measured force "
+       "reaches only 36 % of it although the contact slides; the measured half gap remains valid",
+       "slip_force: it is the asymptote of a law with alpha = 0.0625, and the measured force "
+       "reaches only 36 % of it; raise the amplitude until the force levels off");
+  both("undetermined_combination", "",
+       "the record determines only a combination of alpha, force_offset: fix one of them, or "
+       "sample more densely after the reversals",
+       "the record determines only a combination of alpha, force_offset: fix one of them, or "
+       "record a larger amplitude");
+  both("sigma_not_identifiable", "wide",
+       "sigma: the 95 % interval 0.5 N/m … 21 N/m is too wide for a usable value; record more "
+       "samples, or less noise (mindahl plan --record says which)",
+       "sigma: the 95 % interval 0.5 N/m … 21 N/m is too wide for a usable value; record more "
+       "samples, less noise or a larger amplitude (mindahl plan --record says which)");
+}
+
+TEST(Sentence, OfALoadSaysWhatFollowsItAndWhatDoesNot) {
+  FitResult fit = FitThat(false);
+  fit.model = FindFrictionModel("mindlin-dahl");
+  const auto said = [&](FindingCode code) { return Sentence(Complete(code), fit, kUnitsOfForce); };
+  EXPECT_EQ(said("load_followed"),
+            "record 2: the normal load varies by ±5.5 %: the law follows it, with Tc = μN and σ ∝ "
+            "N^α within the record; σ and Tc are given at its mean");
+  EXPECT_EQ(said("load_not_followed"),
+            "record 2: the normal load varies by ±5.5 %, which mindlin-dahl does not model: the "
+            "fit takes the load as constant; keep to one load with --load-window, or use --model "
+            "mindlin-dahl without a rig");
+  fit.rig.stiffness = 8e7;
+  fit.parameters = {testing::MadeParameter("asymmetry", "-", 0.1, 0.01)};
+  EXPECT_THAT(said("load_not_followed"), HasSubstr("which mindlin-dahl behind a rig does not"));
+  EXPECT_THAT(said("load_not_followed"), EndsWith("without a rig or an asymmetry"));
+  fit.model = FindFrictionModel("dahl");
+  EXPECT_THAT(said("load_followed"), EndsWith("with the force in proportion to it; σ and Tc are "
+                                              "given at its mean magnitude"));
+}
+
+TEST(Sentence, OfAnInadequateModelNamesWhatIsNotToBeUsed) {
+  FitResult fit = FitThat(false);
+  fit.parameters = {testing::MadeParameter("sigma", "N/m", 4e7, 1e5)};
+  Finding finding = Complete("model_inadequate");
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr(": its parameters are not to be used; what was"));
+  fit.parameters[0].includes_discrepancy = true;
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr(": alpha, force_offset are not to be used"));
+  finding.parameters = {"alpha"};
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr(": alpha is not to be used"));
+}
+
+TEST(Sentence, OfTheInitialStateSaysWhichIsAssumed) {
+  FitResult fit = FitThat(false);
+  const Finding finding = Complete("initial_state_undecided");
+  fit.initial_state = InitialState::kVirgin;
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr("the values assume an unloaded contact, the"));
+  fit.initial_state = InitialState::kSteady;
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr("the values assume a steady loop, the"));
+}
+
+TEST(Sentence, OfALoopThatExplainsNothingHasNoFraction) {
+  Finding finding = Complete("loop_not_seen");
+  for (const double r_squared : {0.0, -3.0}) {
+    for (auto& [name, number] : finding.numbers) {
+      if (name == "r_squared") number = r_squared;
+    }
+    EXPECT_THAT(Say(finding), HasSubstr("the fitted loop explains nothing of the force: the"));
+  }
+}
+
+TEST(Sentence, OfTwoLawsHasTheEvidenceThatThereIs) {
+  Finding finding = Complete("law_undecided", "dahl");
+  EXPECT_EQ(Say(finding),
+            "sigma, slip_force: the record does not distinguish Masing's law from Dahl's own law "
+            "(ΔAICc = -31.5); the latter gives sigma = 32.5 N/µm and slip_force = 43.5 N; start "
+            "from an unloaded contact, or record a second amplitude");
+  std::erase_if(finding.numbers, [](const auto& number) { return number.first == "delta_aicc"; });
+  finding.parameters = {"alpha"};
+  EXPECT_THAT(Say(finding), HasSubstr("(they give the same steady loop at any one amplitude); "
+                                      "start from"));
+  // Of a law whose slip force is not known no number is given.
+  finding.parameters = {"sigma", "slip_force"};
+  FitResult fit = FitThat(false);
+  fit.parameters = {testing::MadeParameter("slip_force", "N", 40, 0.1)};
+  fit.parameters[0].identifiability = Identifiability::kBoundedBelow;
+  EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce),
+              AllOf(HasSubstr("gives sigma = 32.5 N/µm;"), Not(HasSubstr("slip_force ="))));
+}
+
+TEST(Sentence, OfTheMemoryHasThePValuesInTheirPlaces) {
+  EXPECT_THAT(Say(Complete("memory_contradicts_law", "masing")),
+              HasSubstr("follow Dahl's memory rule (p = 0.25, the other p = 0.0035)"));
+  EXPECT_THAT(Say(Complete("memory_contradicts_law", "dahl")),
+              HasSubstr("follow Masing's memory rule (p = 0.0035, the other p = 0.25)"));
+}
+
+TEST(Sentence, OfAMisfitOfTheDisplacementSaysSo) {
+  FitResult fit = FitThat(false);
+  fit.response = loop::Channel::kDisplacement;
+  const std::string said =
+      Sentence(Complete("systematic_residual", "same_on_return"), fit, kUnitsOfForce);
+  EXPECT_THAT(said, HasSubstr("rms 4 % of the displacement"));
+  EXPECT_THAT(said, EndsWith("a nonlinear spring in series. The intervals include it"));
+  EXPECT_THAT(Say(Complete("systematic_residual", "same_on_return")),
+              EndsWith("a force that depends on the position. The intervals include it; compare "
+                       "with --model auto"));
+}
+
+TEST(Sentence, OfASearchLimitHasTheUnitOfItsParameter) {
+  FitResult fit = FitThat(false);
+  Finding finding = Complete("search_limit");
+  fit.parameters = {testing::MadeParameter("alpha", "N", 1, 0.1)};
+  EXPECT_THAT(Sentence(finding, fit), HasSubstr("at its limit, 990 mN: "));
+}
+
 }  // namespace
 }  // namespace mindahl::report::sentences_test

@@ -1,7 +1,11 @@
 #include "mindahl/request/batch.h"
 
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "mindahl/core/version.h"
 #include "support/histories.h"
 #include "support/page_text.h"
 #include "support/prelude.h"
@@ -208,6 +212,124 @@ TEST(BatchIndex, DrawsEachQuantityThatTwoFilesIdentifyUnderItsName) {
     EXPECT_THAT(page, HasSubstr(std::string("-title\">") + name + "</h3>"));
   }
   EXPECT_THAT(page, Not(HasSubstr("-title\">alpha</h3>")));
+}
+
+/// A fit whose JSON has a number of its own at every place that a column is read from.
+BatchEntry EntryOfAllColumns() {
+  BatchEntry entry;
+  entry.file = "a,b.csv";
+  entry.done = true;
+  entry.sha256 = "5e";
+  SetFitJson(entry, R"({
+    "input": {"samples": 301, "cycles": 3}, "model": "dahl", "initial_state": "steady",
+    "adequacy": {"verdict": "doubtful"}, "loop": {"amplitude": 1.5, "peak_force": 2.5,
+    "slip_regime": "gross"},
+    "measured": {"half_gap": {"value": 3.5}, "sliding_amplitude": 4.5, "energy_per_cycle": 5.5,
+                 "energy_ratio": 6.5},
+    "parameters": {
+      "sigma": {"value": 7.5, "standard_error": 8.5, "ci95": [9.5, 10.5], "identifiability": "v1"},
+      "alpha": {"value": 11.5, "standard_error": 12.5, "ci95": [13.5, null],
+                "identifiability": "v2"},
+      "slip_force": {"value": 14.5, "standard_error": null, "ci95": [15.5, 16.5],
+                     "identifiability": "v3"}},
+    "residuals": {"rms": 17.5, "r_squared": 18.5},
+    "contact": {"normal_load": 19.5, "friction_coefficient": {"value": 20.5,
+                "standard_error": 21.5}, "contact_radius": {"value": 22.5}},
+    "warnings": [{"code": "one"}, {"code": "two"}]})");
+  return entry;
+}
+
+TEST(BatchTable, HasEachNumberInItsColumn) {
+  const std::vector<BatchEntry> entries = {EntryOfAllColumns()};
+  const std::string csv = TableCsv(entries);
+  EXPECT_EQ(csv,
+            "file,done,samples,model,initial_state,adequacy,cycles,amplitude,peak_force,half_gap,"
+            "sliding_amplitude,energy_per_cycle,energy_ratio,sigma,sigma_error,sigma_lower95,"
+            "sigma_upper95,sigma_verdict,alpha,alpha_error,alpha_lower95,alpha_upper95,"
+            "alpha_verdict,slip_force,slip_force_error,slip_force_lower95,slip_force_upper95,"
+            "slip_force_verdict,rms,r_squared,slip_regime,normal_load,friction_coefficient,"
+            "friction_coefficient_error,contact_radius,warnings,fault,version,sha256\n"
+            "\"a,b.csv\",yes,301,dahl,steady,doubtful,3,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,"
+            "v1,11.5,12.5,13.5,,v2,14.5,,15.5,16.5,v3,17.5,18.5,gross,19.5,20.5,21.5,22.5,one "
+            "two,," +
+                std::string(Version()) + ",5e\n");
+}
+
+TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
+  std::vector<BatchEntry> entries = {EntryOfAllColumns(), {}};
+  entries[1].file = "c";
+  entries[1].fault = "no loop";
+  auto json = nlohmann::json::parse(ToJson(entries, "t.csv"));
+  EXPECT_EQ(json["schema"], "mindahl.batch/1");
+  EXPECT_EQ(json["output"], "t.csv");
+  EXPECT_EQ(json["files"][0]["file"], "a,b.csv");
+  EXPECT_TRUE(json["files"][0]["done"]);
+  EXPECT_TRUE(json["files"][0]["fault"].is_null());
+  EXPECT_EQ(json["files"][0]["fit"], nlohmann::json::parse(FitJson(entries[0])));
+  EXPECT_FALSE(json["files"][1]["done"]);
+  EXPECT_EQ(json["files"][1]["fault"], "no loop");
+  EXPECT_TRUE(json["files"][1]["fit"].is_null());
+  EXPECT_TRUE(json["repeats"].empty());
+  EXPECT_TRUE(nlohmann::json::parse(ToJson(entries, ""))["output"].is_null());
+  EXPECT_EQ(FitJson(entries[1]), "");
+}
+
+TEST(BatchText, StatesRepeatsInARowEach) {
+  // 44 ± √((32 + 15)/2), scatter √32 of errors √5, in common √7.5: as of the JSON above.
+  std::string text = ToText(EntriesOf({{40, 3, 3 * kNormal95, "identifiable", 41},
+                                       {48, 1, 4 * kNormal95, "effective", 43}}),
+                            "");
+  EXPECT_THAT(text, StartsWith("2 of 2 files fitted\n\nif these are repeats:\n"));
+  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  // χ² = 64/10 of one degree of freedom: p = 0.0114.
+  EXPECT_THAT(text, HasSubstr("\n slip_force 2 44 4.8 5.7 2.2 2.7 as the errors say, p 0.011\n"));
+  EXPECT_THAT(text, HasSubstr("\n half_gap 2 42 1 1.4 - - without stated errors\n"));
+}
+
+TEST(BatchIndex, ShowsWhatIsHeldAndALowerLimit) {
+  identification::ParameterEstimate estimate;
+  estimate.name = "sigma";
+  estimate.unit = "N/m";
+  estimate.value = 4e7;
+  estimate.lower95 = 2.5e7;
+  estimate.status = identification::ParameterStatus::kFixed;
+  const auto page_of = [&] {
+    std::vector<BatchEntry> entries(1);
+    entries[0].parameters = {estimate};
+    return IndexPage(entries);
+  };
+  EXPECT_THAT(page_of(), HasSubstr("40 N/µm, held"));
+  estimate.status = identification::ParameterStatus::kFree;
+  estimate.identifiability = identification::Identifiability::kBoundedBelow;
+  EXPECT_THAT(page_of(), AllOf(HasSubstr("&gt; 25 N/µm"), Not(HasSubstr("40 N"))));
+}
+
+TEST(BatchIndex, DrawsTheIntervalsOfItsFilesOverTheirNumber) {
+  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}, {80, 1, 2}});
+  for (std::size_t k = 0; k < 3; ++k) {
+    identification::ParameterEstimate& sigma = entries[k].parameters.emplace_back();
+    sigma.name = "sigma";
+    sigma.unit = "N/m";
+    sigma.value = 2e6 + 1e6 * static_cast<double>(k);
+    sigma.lower95 = sigma.value - 5e5;
+    if (k != 1) sigma.upper95 = sigma.value + 7.5e5;  // one without an end is not drawn
+    sigma.status = identification::ParameterStatus::kFree;
+    sigma.identifiability = identification::Identifiability::kIdentifiable;
+  }
+  const std::string page = testing::Unbroken(IndexPage(entries));
+  EXPECT_THAT(page, HasSubstr(">sigma [N/µm]</text>"));
+  // Two lines from the lower to the upper end, each with a marker at its value.
+  const std::regex lines("d=\"M([0-9.]+) ([0-9.]+)V([0-9.]+)M([0-9.]+) ([0-9.]+)V([0-9.]+)\"/>");
+  std::smatch line;
+  ASSERT_TRUE(std::regex_search(page, line, lines));
+  const auto at = [&line](std::size_t k) { return std::stod(line[k]); };
+  const double per_unit = (at(2) - at(5)) / 2;  // [px] between 1.5 and 3.5 N/µm
+  constexpr double kTenth = 0.1;                // [px]
+  EXPECT_NEAR(at(2) - at(3), 1.25 * per_unit, kTenth);
+  EXPECT_NEAR(at(5) - at(6), 1.25 * per_unit, kTenth);
+  EXPECT_THAT(page, HasSubstr(fmt::format("cx=\"{}\" cy=\"{:.1f}\"", line[1].str(),
+                                          at(2) - 0.5 * per_unit)));
+  EXPECT_GT(at(4), at(1));
 }
 
 }  // namespace

@@ -1,5 +1,10 @@
 #include "mindahl/request/fit_request.h"
 
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "mindahl/identification/terms.h"
 #include "support/prelude.h"
 
 namespace mindahl::request::fit_request_test {
@@ -91,6 +96,373 @@ TEST(FitRecords, NeedsARecordAndANameForEach) {
   const Tell ignore = [](std::string_view) {};
   EXPECT_THROW(FitRecords({}, {}, ignore), InputError);
   EXPECT_THROW(FitRecords({}, {io::RecordFile{}}, ignore), InvalidArgument);
+}
+
+TEST(FitRequest, BecomesOptionsEachInItsPlace) {
+  FitRequest request;
+  request.model = "dahl";
+  request.initial_state = "virgin";
+  request.force_sign = "opposite";
+  request.offsets = "off";
+  request.loss = "cauchy";
+  request.load_window = {10.0, 20.0};
+  request.cycles = loop::CountRange{2, 5};
+  request.samples = loop::CountRange{7, 90};
+  request.skip_cycles = 3;
+  request.starts = 4;
+  request.seed = 11;
+  request.fix["alpha"] = 0.25;
+  request.start["sigma"] = 3e7;
+  request.bound["slip_force"] = {1.0, 5.0};
+  request.prior["sigma"] = {2e7, 1e6};
+  request.regions = true;
+  request.confidence = 0.5;
+  request.force_noise = 0.125;
+  request.displacement_noise = 1e-9;
+  request.reversal_gate = 2e-9;
+  request.contact.normal_loads = {{30.0, 1.0}, {40.0, 2.0}};
+  request.covariates = {{.column = "pressure", .coefficient = {}},
+                        {.column = "2", .coefficient = 0.75}};
+  request.terms["viscous"] = {};
+  request.terms["rig_stiffness"] = {.value = 8e7, .standard_uncertainty = 1e6, .form = ""};
+  request.terms["asymmetry"].value = 0.0625;
+  const identification::FitOptions fit = MakeFitOptions(request);
+  EXPECT_EQ(fit.model->name, "dahl");
+  EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
+  EXPECT_EQ(fit.preparation.force_sense, -1);
+  EXPECT_EQ(fit.preparation.excitation, loop::Channel::kDisplacement);
+  EXPECT_FALSE(fit.offsets);
+  EXPECT_EQ(fit.loss, identification::Loss::kCauchy);
+  EXPECT_EQ(fit.preparation.load_window->lower, 10.0);
+  EXPECT_EQ(fit.preparation.load_window->upper, 20.0);
+  EXPECT_EQ(fit.preparation.cycles->first, 2U);
+  EXPECT_EQ(fit.preparation.cycles->last, 5U);
+  EXPECT_EQ(fit.preparation.samples->first, 7U);
+  EXPECT_EQ(fit.preparation.samples->last, 90U);
+  EXPECT_EQ(fit.preparation.skip_cycles, 3U);
+  EXPECT_EQ(fit.starts, 4U);
+  EXPECT_EQ(fit.seed, 11U);
+  EXPECT_EQ(fit.start, request.start);
+  EXPECT_EQ(fit.bounds.at("slip_force").lower, 1.0);
+  EXPECT_EQ(fit.bounds.at("slip_force").upper, 5.0);
+  EXPECT_TRUE(fit.regions);
+  EXPECT_EQ(fit.confidence, 0.5);
+  EXPECT_EQ(fit.force_noise, 0.125);
+  EXPECT_EQ(fit.preparation.displacement_noise, 1e-9);
+  EXPECT_EQ(fit.preparation.reversal_gate, 2e-9);
+  EXPECT_THAT(fit.normal_loads, ElementsAre(30.0, 40.0));
+  EXPECT_THAT(fit.covariates, ElementsAre("pressure", "2"));
+  EXPECT_THAT(CovariateColumns(request), ElementsAre("pressure", "2"));
+  EXPECT_THAT(fit.terms, ElementsAre("rig_stiffness", "viscous"));
+  EXPECT_EQ(
+      fit.fixed,
+      (std::map<std::string, double>{
+          {"alpha", 0.25}, {"asymmetry", 0.0625}, {identification::NameOfCovariate("2"), 0.75}}));
+  ASSERT_EQ(fit.priors.size(), 2U);
+  EXPECT_EQ(fit.priors.at("sigma").value, 2e7);
+  EXPECT_EQ(fit.priors.at("sigma").standard_uncertainty, 1e6);
+  EXPECT_EQ(fit.priors.at("rig_stiffness").value, 8e7);
+  EXPECT_EQ(fit.priors.at("rig_stiffness").standard_uncertainty, 1e6);
+}
+
+TEST(FitRequest, LeavesToTheFitWhatIsNotAsked) {
+  const identification::FitOptions made = MakeFitOptions({});
+  EXPECT_EQ(made.model->name, "mindlin-dahl");
+  EXPECT_FALSE(made.initial_state || made.preparation.force_sense || made.force_noise ||
+               made.preparation.load_window || made.preparation.cycles ||
+               made.preparation.samples || made.preparation.reversal_gate ||
+               made.preparation.displacement_noise || made.regions);
+  EXPECT_TRUE(made.offsets);
+  EXPECT_EQ(made.loss, identification::Loss::kNone);
+  FitRequest request;
+  request.initial_state = "steady";
+  request.force_sign = "same";
+  request.noise_in = "displacement";
+  request.loss = "huber";
+  const identification::FitOptions other = MakeFitOptions(request);
+  EXPECT_EQ(other.initial_state, models::InitialState::kSteady);
+  EXPECT_EQ(other.preparation.force_sense, 1);
+  EXPECT_EQ(other.preparation.excitation, loop::Channel::kForce);
+  EXPECT_EQ(other.loss, identification::Loss::kHuber);
+  request.loss = "tukey";
+  EXPECT_EQ(MakeFitOptions(request).loss, identification::Loss::kTukey);
+}
+
+std::string RefusalOf(const FitRequest& request) {
+  try {
+    MakeFitOptions(request);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
+  const auto start = [](const char* name, const auto& change) {
+    FitRequest request;
+    request.start[name] = 0.25;
+    change(request);
+    return RefusalOf(request);
+  };
+  const auto as_it_is = [](FitRequest&) {};
+  EXPECT_EQ(start("alpha", as_it_is), "");
+  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.fix["alpha"] = 0.25; }),
+              HasSubstr("it is held at a value that is given"));
+  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.model = "mindlin"; }),
+              HasSubstr("--model mindlin prescribes it"));
+  EXPECT_EQ(start("alpha", [](FitRequest& r) { r.model = "auto"; }), "");
+  EXPECT_EQ(start("force_offset", as_it_is), "");
+  EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.offsets = "off"; }),
+              HasSubstr("--offsets off holds it at 0"));
+  EXPECT_EQ(start("displacement_offset", as_it_is), "");
+  EXPECT_THAT(start("displacement_offset", [](FitRequest& r) { r.initial_state = "steady"; }),
+              HasSubstr("that of a steady loop is its centre"));
+  EXPECT_EQ(start("force_offset", [](FitRequest& r) { r.initial_state = "steady"; }), "");
+  EXPECT_THAT(start("force_offset",
+                    [](FitRequest& r) {
+                      r.initial_state = "steady";
+                      r.noise_in = "displacement";
+                    }),
+              HasSubstr("that of a steady loop is its centre"));
+  EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --viscous fit"));
+  EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms["viscous"] = {}; }), "");
+  EXPECT_THAT(start("rig_stiffness", as_it_is), HasSubstr("add --rig-stiffness fit"));
+  EXPECT_EQ(start("rig_stiffness", [](FitRequest& r) { r.model = "auto"; }), "");
+  EXPECT_THAT(start("displacement_drift", as_it_is),
+              EndsWith("add --drift --noise-in displacement"));
+  EXPECT_THAT(start("displacement_drift", [](FitRequest& r) { r.noise_in = "displacement"; }),
+              EndsWith("add --drift"));
+}
+
+TEST(FitRequest, RefusesTwoAnswersToOneQuestion) {
+  FitRequest request;
+  request.terms["viscous"] = {};
+  request.fix["viscous"] = 2.0;
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--viscous fit contradicts --fix viscous"));
+  request.terms["viscous"].value = 3.0;
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--viscous and --fix viscous say the same"));
+  request = {};
+  request.covariates = {{.column = "p", .coefficient = {}}, {.column = "p", .coefficient = {}}};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate: 'p' is given twice"));
+  request.covariates = {{.column = "p", .coefficient = 2.0}};
+  request.fix[identification::NameOfCovariate("p")] = 2.0;
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate p=2 and --fix"));
+  request.covariates = {{.column = "", .coefficient = {}}};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("'' is no column"));
+  request = {};
+  request.term_choice = "viscous,viscous";
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--terms: 'viscous' is given twice"));
+  request.term_choice = "viscous,auto";
+  EXPECT_THAT(RefusalOf(request), HasSubstr("'auto' stands alone"));
+  request.term_choice = "viscous";
+  EXPECT_EQ(RefusalOf(request), "");
+  request.terms["viscous"] = {};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--terms viscous and --viscous say the same"));
+  request = {};
+  request.prior["rig_stiffness"] = {8e7, 1e6};
+  request.terms["rig_stiffness"] = {.value = 8e7, .standard_uncertainty = 1e6, .form = ""};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--prior rig_stiffness and --rig-stiffness"));
+}
+
+TEST(FitRequest, TakesABoundWithBothItsEnds) {
+  FitRequest request;
+  request.bound["slip_force"] = {1.0, 5.0};
+  for (const double held : {1.0, 5.0, 3.0}) {
+    request.fix["slip_force"] = held;
+    // What is held needs no bound; that it lies within is no contradiction.
+    EXPECT_THAT(RefusalOf(request), Not(HasSubstr("outside"))) << held;
+  }
+  request.fix.clear();
+  request.bound["slip_force"] = {5.0, 5.0};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--bound: '5:5' is empty"));
+  for (const auto& [first, last, is_fine] :
+       {std::tuple(1U, 1U, true), {2U, 5U, true}, {0U, 3U, false}, {4U, 3U, false}}) {
+    for (std::optional<loop::CountRange> FitRequest::*range :
+         {&FitRequest::cycles, &FitRequest::samples}) {
+      FitRequest counted;
+      counted.*range = loop::CountRange{first, last};
+      EXPECT_EQ(RefusalOf(counted).empty(), is_fine) << first << " " << last;
+    }
+  }
+}
+
+TEST(FitRequest, ChoosesTermsByDefaultUnlessAnythingElseIsSaid) {
+  EXPECT_TRUE(ChoosesTermsByDefault({}));
+  FitRequest held;
+  held.fix["alpha"] = 0.25;  // of the law, and no term
+  EXPECT_TRUE(ChoosesTermsByDefault(held));
+  const std::vector<std::function<void(FitRequest&)>> said = {
+      [](FitRequest& r) { r.term_choice = "none"; },
+      [](FitRequest& r) {
+        r.files = {"a", "b"};
+      },
+      [](FitRequest& r) { r.terms["viscous"] = {}; },
+      [](FitRequest& r) { r.covariates = {{.column = "p", .coefficient = {}}}; },
+      [](FitRequest& r) { r.fix["viscous"] = 1.0; },
+      [](FitRequest& r) { r.model = "auto"; },
+      [](FitRequest& r) { r.loss = "huber"; },
+      [](FitRequest& r) { r.noise_in = "displacement"; }};
+  for (std::size_t k = 0; k < said.size(); ++k) {
+    FitRequest request;
+    said[k](request);
+    EXPECT_FALSE(ChoosesTermsByDefault(request)) << k;
+  }
+}
+
+TEST(FitRequest, NamesItsTermsInTheirOrder) {
+  const auto named = [](const char* choice) {
+    FitRequest request;
+    request.term_choice = choice;
+    return NamedTerms(request);
+  };
+  EXPECT_THAT(named("viscous,inertia"), ElementsAre("viscous", "inertia"));
+  EXPECT_THAT(named("viscous"), ElementsAre("viscous"));
+  EXPECT_THAT(named("viscous,"), ElementsAre("viscous", ""));
+  for (const char* none : {"", "none", "auto"}) EXPECT_THAT(named(none), IsEmpty());
+}
+
+TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
+  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+      {"--viscous cannot", [](FitRequest& r) { r.terms["viscous"] = {}; }},
+      {"--covariate cannot",
+       [](FitRequest& r) { r.covariates = {{.column = "p", .coefficient = {}}}; }},
+      {"--terms cannot", [](FitRequest& r) { r.term_choice = "auto"; }},
+      {"--model auto cannot", [](FitRequest& r) { r.model = "auto"; }},
+      {"--force-noise cannot", [](FitRequest& r) { r.force_noise = 0.5; }},
+      {"--displacement-noise [m]", [](FitRequest& r) { r.displacement_noise = 0.0; }},
+      {"--trim auto", [](FitRequest& r) { r.trim = "auto"; }}};
+  for (const auto& [words, change] : refused) {
+    FitRequest request;
+    change(request);
+    EXPECT_EQ(RefusalOf(request), "") << words;
+    request.noise_in = "displacement";
+    EXPECT_THAT(RefusalOf(request), HasSubstr(words));
+  }
+  FitRequest drift;
+  drift.noise_in = "displacement";
+  drift.terms["force_drift"] = {};
+  EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("displacement_drift"));
+  drift.noise_in = "force";
+  EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("force_drift"));
+}
+
+TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
+  const auto refusal = [](const auto& change) -> std::string {
+    FitRequest request;
+    change(request);
+    try {
+      MakeCycleFitOptions(request);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal([](FitRequest& r) { r.noise_in = "displacement"; }),
+              HasSubstr("--noise-in displacement is not available in track"));
+  EXPECT_THAT(refusal([](FitRequest& r) { r.terms["asymmetry"] = {}; }),
+              HasSubstr("--asymmetry is not available in track"));
+  EXPECT_EQ(refusal([](FitRequest& r) { r.terms["viscous"] = {}; }), "");
+}
+
+// --- the contact
+
+TEST(ResolveContact, NamesEachQuantityWithItsValue) {
+  ContactOptions options;
+  options.friction_coefficient = {0.25, 0.0625};
+  options.known = {.normal_load = contact::UncertainValue{80.0, 0.0},
+                   .contact_radius = contact::UncertainValue{2e-3, 0.0},
+                   .tangential_compliance = contact::UncertainValue{4e-11, 0.0}};
+  const ContactParameters made = ResolveContact(options);
+  // σ = 8a/G*, Tc = μN, δc = 3μNG*/(16a), p₀ = 3N/(2πa²).
+  EXPECT_DOUBLE_EQ(made.law.tangential_stiffness, 8 * 2e-3 / 4e-11);
+  EXPECT_DOUBLE_EQ(made.law.slip_force, 20.0);
+  EXPECT_EQ(made.law.shape_exponent, 1.0 / 3);
+  const auto json = nlohmann::json::parse(ToJson(made));
+  const auto value = [&](const char* section, const char* name) {
+    return json[section][name]["value"].get<double>();
+  };
+  EXPECT_EQ(value("contact", "friction_coefficient"), 0.25);
+  EXPECT_EQ(json["contact"]["friction_coefficient"]["standard_error"], 0.0625);
+  EXPECT_EQ(json["contact"]["friction_coefficient"]["unit"], "-");
+  EXPECT_EQ(value("contact", "normal_load"), 80.0);
+  EXPECT_EQ(value("contact", "contact_radius"), 2e-3);
+  EXPECT_EQ(value("contact", "compliance"), 4e-11);
+  EXPECT_DOUBLE_EQ(value("contact", "maximum_pressure"), 240 / (2 * std::numbers::pi * 4e-6));
+  EXPECT_DOUBLE_EQ(value("contact", "gross_slip_displacement"), 3 * 20 * 4e-11 / (16 * 2e-3));
+  EXPECT_DOUBLE_EQ(value("parameters", "sigma"), 4e8);
+  EXPECT_EQ(value("parameters", "alpha"), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(value("parameters", "slip_force"), 20.0);
+  EXPECT_DOUBLE_EQ(json["parameters"]["slip_force"]["standard_error"].get<double>(), 5.0);
+  EXPECT_EQ(json["contact"].size(), 6U);
+  EXPECT_EQ(json["compliance_definition"], kComplianceDefinition);
+  const std::string text = ToText(made);
+  EXPECT_THAT(text,
+              HasSubstr("slip_force                                       20 ± 5        N     "
+                        "Tc = mu N\n"));
+  options.friction_coefficient = {0.25, 0.0};
+  EXPECT_THAT(ToText(ResolveContact(options)), Not(HasSubstr("±")));
+}
+
+TEST(ResolveLaw, TakesAContactOrItsParametersAndNamesWhatIsMissing) {
+  const auto refusal = [](const LawRequest& request) -> std::string {
+    try {
+      ResolveLaw(request);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  LawRequest request;
+  EXPECT_THAT(refusal(request), StartsWith("--sigma missing"));
+  request.sigma = 4e7;
+  EXPECT_THAT(refusal(request), StartsWith("--slip-force missing"));
+  request.slip_force = 40.0;
+  EXPECT_EQ(refusal(request), "");
+  EXPECT_EQ(ResolveLaw(request).shape_exponent, 1.0 / 3);
+  request.alpha = 0.75;
+  const models::BranchLaw law = ResolveLaw(request);
+  EXPECT_EQ(law.tangential_stiffness, 4e7);
+  EXPECT_EQ(law.shape_exponent, 0.75);
+  EXPECT_EQ(law.slip_force, 40.0);
+  EXPECT_EQ(ResolveLaw(request, "mindlin-dahl", std::nullopt).shape_exponent, 0.75);
+  EXPECT_EQ(ResolveLaw(request, "x", 0.75).shape_exponent, 0.75);
+  EXPECT_THROW(ResolveLaw(request, "jenkins", 0.0), InputError);
+  request.contact.known.normal_load = 10.0;
+  EXPECT_THAT(refusal(request), HasSubstr("--sigma and --slip-force exclude"));
+  request.sigma.reset();
+  request.slip_force.reset();
+  EXPECT_EQ(refusal(request).substr(0, refusal(request).find(" missing")),
+            "--friction, --youngs-modulus-1, --poisson-1, --radius-1, --youngs-modulus-2, "
+            "--poisson-2, --radius-2");
+  request.contact.known.contact_radius = 1e-3;
+  EXPECT_EQ(refusal(request).substr(0, refusal(request).find(" missing")),
+            "--friction, --compliance");
+  request.contact.known.body_2.radius = 0.5;
+  EXPECT_THAT(refusal(request), HasSubstr("give one of the two"));
+}
+
+TEST(ValidateContact, HasThePropertiesOfItsBodiesWithinTheirBounds) {
+  const auto refusal = [](const contact::KnownBody& body) -> std::string {
+    ContactOptions options;
+    options.known.body_2 = body;
+    try {
+      Validate(options);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using contact::UncertainValue;
+  EXPECT_EQ(refusal({.poisson_ratio = UncertainValue{0.5, 0.0}}), "");
+  EXPECT_THAT(refusal({.poisson_ratio = UncertainValue{0.51, 0.0}}), HasSubstr("--poisson-2"));
+  EXPECT_EQ(refusal({.poisson_ratio = UncertainValue{-0.99, 0.0}}), "");
+  EXPECT_THAT(refusal({.poisson_ratio = UncertainValue{-1.0, 0.0}}), HasSubstr("--poisson-2"));
+  EXPECT_EQ(refusal({.radius = UncertainValue{-2.0, 0.5}}), "");  // a socket
+  EXPECT_EQ(refusal({.radius = UncertainValue{HUGE_VAL, 0.0}}), "");
+  EXPECT_THAT(refusal({.radius = UncertainValue{HUGE_VAL, 0.5}}), HasSubstr("a plane is exact"));
+  EXPECT_THAT(refusal({.radius = UncertainValue{0.0, 0.0}}), HasSubstr("--radius-2 [m]"));
+  EXPECT_THAT(refusal({.youngs_modulus = UncertainValue{0.0, 0.0}}),
+              HasSubstr("--youngs-modulus-2"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "mindahl/request/motion.h"
 
 #include "io/temporary_directory.h"
+#include "mindahl/models/friction_model.h"
 #include "support/prelude.h"
 
 // The motion that is asked for, by a waveform or a file.
@@ -212,6 +213,232 @@ TEST(AddedForces, KeepTheSlipForcePositive) {
       Simulated({.slip_slope = -0.5, .slip_curvature = 0.3, .slip_trend = -0.2, .ripple = {}}),
       InputError);
   EXPECT_THROW(Simulated({.ripple = {}, .ripple_amplitude = 1}), InputError);
+}
+
+// --- what a simulation takes from its request
+
+std::string SimulationRefusal(const SimulationRequest& request) {
+  try {
+    Simulate(request);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A path of three strokes with a load of its own at each row, for a law that is known.
+class SimulateRequest : public ::testing::Test {
+ protected:
+  SimulateRequest() {
+    request_.law.sigma = kLaw.tangential_stiffness;
+    request_.law.slip_force = kLaw.slip_force;
+    request_.drive.path =
+        directory_.Write("path.csv", "x [um],N [N]\n0,50\n1,60\n3,70\n2,50\n-1,40\n0.5,50\n")
+            .string();
+    request_.drive.force_path.clear();
+  }
+
+  /// Makes the request one of a force that a file imposes.
+  void ImposeForce(const std::string& rows) {
+    request_.drive.path.clear();
+    request_.drive.force_path = directory_.Write("force.csv", "F [N]\n" + rows).string();
+  }
+
+  TemporaryDirectory directory_;
+  SimulationRequest request_;
+};
+
+TEST_F(SimulateRequest, UnderALoadNeedsBothParametersOrAContact) {
+  request_.drive.load_column = "N";
+  request_.law.contact.known.normal_load = 50.0;
+  EXPECT_EQ(SimulationRefusal(request_), "");
+  const std::vector<double> by_parameters = Simulate(request_).force;
+  // The law's load is that of the reference: one of its parameters alone is no contact.
+  request_.law.slip_force.reset();
+  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--slip-force missing"));
+  request_.law.slip_force = 40.0;
+  request_.law.sigma.reset();
+  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--sigma missing"));
+  request_.law.contact.known.normal_load.reset();
+  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--normal-load missing"));
+  // The same contact by its radius: σ = 8a/G* = 4e7 N/m, Tc = μN = 40 N at 50 N.
+  request_.law.slip_force.reset();
+  request_.law.contact.friction_coefficient = contact::UncertainValue{0.8, 0.0};
+  request_.law.contact.known = {.normal_load = contact::UncertainValue{50.0, 0.0},
+                                .contact_radius = contact::UncertainValue{2e-4, 0.0},
+                                .tangential_compliance = contact::UncertainValue{4e-11, 0.0}};
+  const std::vector<double> by_contact = Simulate(request_).force;
+  ASSERT_EQ(by_contact.size(), by_parameters.size());
+  for (std::size_t i = 0; i < by_contact.size(); ++i) {
+    EXPECT_NEAR(by_contact[i], by_parameters[i], 1e-9) << i;
+  }
+}
+
+TEST_F(SimulateRequest, UnderAConstantLoadIsThatOfTheLawAtThisLoad) {
+  request_.drive.path =
+      directory_.Write("even.csv", "x [um],N [N]\n0,100\n1,100\n3,100\n-1,100\n").string();
+  request_.drive.load_column = "N";
+  request_.law.contact.known.normal_load = 50.0;
+  const std::vector<double> loaded = Simulate(request_).force;
+  // Twice the load: twice the slip force, σ as the cube root.
+  request_.drive.load_column.clear();
+  request_.law.contact.known.normal_load.reset();
+  request_.law.slip_force = 80.0;
+  request_.law.sigma = 4e7 * std::cbrt(2.0);
+  const std::vector<double> constant = Simulate(request_).force;
+  ASSERT_EQ(loaded.size(), constant.size());
+  for (std::size_t i = 0; i < loaded.size(); ++i) EXPECT_NEAR(loaded[i], constant[i], 1e-9) << i;
+}
+
+TEST_F(SimulateRequest, OfAnImposedForceMovesAJenkinsElementByItsSpring) {
+  ImposeForce("0\n5\n-5\n30\n");
+  request_.model = "jenkins";
+  const Simulation made = Simulate(request_);
+  EXPECT_THAT(made.force, ElementsAre(0, 5, -5, 30));
+  EXPECT_THAT(made.motion.time, ElementsAre(0, 1, 2, 3));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(made.motion.displacement[i], made.force[i] / 4e7, 1e-20) << i;
+  }
+  EXPECT_TRUE(made.motion.normal_load.empty() && made.motion.envelope.empty());
+  request_.forces.viscous = 1.0;
+  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--force-path imposes the whole force"));
+  request_.forces.viscous = 0.0;
+  request_.model = "simplified-dahl";
+  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--force-path cannot be used with --model"));
+  request_.model = "jenkins";
+  request_.method = "rk4";
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--force-path cannot be used with"));
+}
+
+TEST_F(SimulateRequest, OfAnAsymmetrySlidesAtAnotherForceEachWay) {
+  request_.model = "jenkins";
+  request_.asymmetry = 0.25;
+  // 1 µm of slip: 40·(1 ± 0.25) N at 3 µm upwards and at −1 µm downwards.
+  const std::vector<double> force = Simulate(request_).force;
+  EXPECT_NEAR(force[2], 50.0, 1e-9);
+  EXPECT_NEAR(force[4], -30.0, 1e-9);
+  for (const double beyond : {1.0, -1.0}) {
+    request_.asymmetry = beyond;
+    EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--asymmetry [-]"));
+  }
+  request_.asymmetry = 0.25;
+  request_.backlash = 1e-7;
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--asymmetry cannot be used with --backlash"));
+  request_.backlash = 0.0;
+  request_.drive.load_column = "N";
+  request_.law.contact.known.normal_load = 50.0;
+  EXPECT_THAT(SimulationRefusal(request_),
+              HasSubstr("--asymmetry cannot be used with --normal-load-column"));
+  request_.drive.load_column.clear();
+  request_.law.contact.known.normal_load.reset();
+  ImposeForce("0\n5\n");
+  EXPECT_THAT(SimulationRefusal(request_),
+              HasSubstr("--asymmetry cannot be used with --force-path"));
+}
+
+TEST_F(SimulateRequest, OfABacklashPassesItsGapWhereTheForceTurnsItsSign) {
+  request_.model = "jenkins";
+  request_.law.slip_force = 1e4;  // never slips: a spring with a gap of 0.2 µm about its middle
+  request_.drive.path = directory_.Write("gap.csv", "x [um]\n0\n1\n0.9\n0.5\n-1\n0.05\n").string();
+  request_.backlash = 2e-7;
+  const std::vector<double> force = Simulate(request_).force;
+  const std::array<double, 6> expected = {0, 36, 32, 16, -36, 0};  // 4e7·(|x| − 0.1 µm)
+  ASSERT_EQ(force.size(), expected.size());
+  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_NEAR(force[i], expected[i], 1e-9) << i;
+  request_.backlash = -1e-7;
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--backlash [m]"));
+  request_.backlash = 2e-7;
+  request_.model = "dahl";
+  EXPECT_EQ(SimulationRefusal(request_), "");
+  request_.method = "euler";
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--backlash cannot be used with"));
+}
+
+TEST_F(SimulateRequest, HasTheMethodWithTheResolutionThatIsAsked) {
+  const auto expect_as = [&](const char* method, const methods::Resolution& resolution) {
+    const Simulation made = Simulate(request_);
+    std::vector<double> force(made.force.size());
+    methods::Prepare(*methods::FindMethod(method), *models::FindFrictionModel(request_.model), kLaw,
+                     resolution)({.displacement = made.motion.displacement}, force);
+    EXPECT_EQ(made.force, force) << method;
+  };
+  request_.method = "iwan";
+  expect_as("iwan", {.steps = methods::FindMethod("iwan")->default_steps});
+  request_.steps = 7;
+  expect_as("iwan", {.steps = 7});
+  request_.tolerance = 1e-3;
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("it belongs to --method dopri5"));
+  request_.method = "dopri5";
+  request_.steps.reset();
+  expect_as("dopri5", {.steps = 1, .tolerance = 1e-3});
+  request_.tolerance.reset();
+  expect_as("dopri5", {});
+  request_.method = "exact";
+  request_.steps = 7;
+  EXPECT_THAT(SimulationRefusal(request_),
+              StartsWith("--steps 7 has no effect with --method exact"));
+  request_.steps.reset();
+  request_.method = "rk4";
+  request_.model = "coulomb";
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("cannot compute --model coulomb"));
+}
+
+TEST_F(SimulateRequest, AddsNoiseOfTheDeviationsThatAreAsked) {
+  std::string rows = "x [um]\n";
+  constexpr std::size_t kRows = 4000;
+  for (std::size_t i = 0; i < kRows; ++i) rows += i % 2 == 0 ? "0\n" : "1\n";
+  request_.drive.path = directory_.Write("long.csv", rows).string();
+  const Simulation exact = Simulate(request_);
+  request_.force_noise = 0.5;
+  const Simulation force_only = Simulate(request_);
+  request_.displacement_noise = 2e-8;
+  const Simulation both = Simulate(request_);
+  const auto deviation = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(squares / static_cast<double>(a.size()));
+  };
+  // A deviation of 4000 is known to 1/√8000; five of that.
+  constexpr double kScatter = 5 * 0.0112;
+  EXPECT_NEAR(deviation(both.force, exact.force) / 0.5, 1.0, kScatter);
+  EXPECT_NEAR(deviation(both.motion.displacement, exact.motion.displacement) / 2e-8, 1.0, kScatter);
+  EXPECT_EQ(both.force, force_only.force);
+  EXPECT_EQ(force_only.motion.displacement, exact.motion.displacement);
+  request_.drive.seed = 2;
+  EXPECT_NE(Simulate(request_).force, both.force);
+  request_.force_noise = -1.0;
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--noise-force [N]"));
+  request_.force_noise = 0.0;
+  request_.displacement_noise = -1.0;
+  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--noise-displacement [m]"));
+}
+
+TEST(SimulationTable, HasAColumnForWhatWasImposed) {
+  Simulation made;
+  made.motion.time = {0, 1};
+  made.motion.displacement = {2.5, 3.5};
+  made.force = {4.5, 5.5};
+  EXPECT_EQ(ToCsv(made), "time [s],displacement [m],force [N]\n0,2.5,4.5\n1,3.5,5.5\n");
+  made.motion.normal_load = {6.5, 7.5};
+  EXPECT_EQ(ToCsv(made),
+            "time [s],displacement [m],force [N],normal load [N]\n0,2.5,4.5,6.5\n1,3.5,5.5,7.5\n");
+}
+
+TEST(SimulatedModels, AreAllModelsAndTheLimitsOfTheirLaws) {
+  const std::vector<std::string> names = SimulatedModels();
+  EXPECT_EQ(names.size(), models::FrictionModels().size() + models::LimitLaws().size());
+  EXPECT_THAT(names, AllOf(Contains("mindlin"), Contains("spring"), Contains("coulomb")));
+}
+
+TEST(MakeMotion, RefusesASizeThatIsNone) {
+  for (const double size : {0.0, -1.0, HUGE_VAL}) {
+    DriveRequest request;
+    request.lambda = size;
+    EXPECT_THROW(MakeMotion(request, kLaw), InvalidArgument) << size;
+    request.lambda.reset();
+    request.amplitude = size;
+    EXPECT_THROW(MakeMotion(request, kLaw), InvalidArgument) << size;
+  }
 }
 
 }  // namespace

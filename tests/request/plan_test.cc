@@ -227,5 +227,201 @@ TEST(MakePlan, OfALoadSeriesIsOfTheLawAtTheMeanLoad) {
   EXPECT_THROW(Made(request), InputError);
 }
 
+/// A plan set by hand: of a virgin and a steady contact two amplitudes each.
+Plan MadeByHand() {
+  Plan plan;
+  plan.slip = 0.5;
+  plan.request.cycles = 3.5;
+  plan.request.samples_per_cycle = 60;
+  plan.expected.law = {2.5, 0.75, 1.5};
+  plan.expected.force_noise = 0.125;
+  plan.expected.displacement_noise = 0.0625;
+  const auto parameter = [](const char* name, const char* unit, double value,
+                            std::optional<double> error) {
+    identification::ParameterEstimate estimate;
+    estimate.name = name;
+    estimate.unit = unit;
+    estimate.value = value;
+    estimate.standard_error = error;
+    estimate.status = identification::ParameterStatus::kFree;
+    return estimate;
+  };
+  for (const char* state : {"virgin", "steady"}) {
+    PlannedLoops& column = plan.columns.emplace_back();
+    column.initial_state = state;
+    const bool is_virgin = column.initial_state == "virgin";
+    for (const double amplitude : {1.25, 2.25}) {
+      identification::ExpectedFit& fit = column.loops.emplace_back();
+      fit.protocol.amplitude = amplitude;
+      fit.peak_force = amplitude + 8;
+      // σ known to its value; α by as much as it is; Tc not at all in the steady loop.
+      fit.parameters = {
+          parameter("sigma", "N/m", 2.5, amplitude < 2 ? 2.5 : std::nextafter(2.5, 0.0)),
+          parameter("alpha", "-", 0.75, 0.25),
+          parameter("slip_force", "N", 1.5,
+                    is_virgin ? std::optional(0.0375) : std::optional<double>())};
+      fit.law_evidence = is_virgin ? std::nextafter(10.0, 11.0) : 10.0;
+    }
+  }
+  return plan;
+}
+
+TEST(PlanJson, HasEveryNumberUnderItsName) {
+  Plan plan = MadeByHand();
+  plan.columns[0].loops.pop_back();
+  plan.columns[1].loops.pop_back();
+  plan.request.wanted = {{"alpha", {.value = 0.5}},
+                         {"sigma", {.value = 0.25, .is_relative = true}}};
+  plan.columns[0].reached = plan.columns[0].loops[0];
+  plan.columns[1].fewest = {.amplitude = 7.5, .cycles = 9.0};
+  auto json = nlohmann::json::parse(ToJson(plan));
+  json.erase("version");
+  EXPECT_EQ(json, nlohmann::json::parse(R"({
+    "schema": "mindahl.plan/1",
+    "expected": {"sigma": 2.5, "alpha": 0.75, "slip_force": 1.5, "rig_stiffness": null,
+      "force_noise": 0.125, "displacement_noise": 0.0625, "autocorrelation": 0,
+      "load_exponent": null, "gross_slip_displacement": 0.5},
+    "protocol": {"cycles": 3.5, "samples_per_cycle": 60, "load_ratios": []},
+    "loops": [
+      {"initial_state": "virgin", "amplitude": 1.25, "peak_force": 9.25, "parameters": {
+        "sigma": {"value": 2.5, "unit": "N/m", "standard_error": 2.5},
+        "alpha": {"value": 0.75, "unit": "-", "standard_error": 0.25},
+        "slip_force": {"value": 1.5, "unit": "N", "standard_error": 0.0375}},
+       "law_evidence": 10.000000000000002, "law_decided": true},
+      {"initial_state": "steady", "amplitude": 1.25, "peak_force": 9.25, "parameters": {
+        "sigma": {"value": 2.5, "unit": "N/m", "standard_error": 2.5},
+        "alpha": {"value": 0.75, "unit": "-", "standard_error": 0.25},
+        "slip_force": {"value": 1.5, "unit": "N", "standard_error": null}},
+       "law_evidence": 10, "law_decided": false}],
+    "wanted": {"alpha": {"standard_error": 0.5, "relative": false},
+               "sigma": {"standard_error": 0.25, "relative": true}},
+    "reached": [
+      {"initial_state": "virgin", "least_amplitude": 1.25, "fewest_cycles": null,
+       "amplitude_of_fewest_cycles": null},
+      {"initial_state": "steady", "least_amplitude": null, "fewest_cycles": 9,
+       "amplitude_of_fewest_cycles": 7.5}]})"));
+  plan.request.load_ratios = {0.5, 2.0};
+  plan.expected.load_exponent = 0.375;
+  plan.expected.rig.stiffness = 8.5;
+  plan.expected.autocorrelation = 0.25;
+  json = nlohmann::json::parse(ToJson(plan));
+  EXPECT_EQ(json["expected"]["load_exponent"], 0.375);
+  EXPECT_EQ(json["expected"]["rig_stiffness"], 8.5);
+  EXPECT_EQ(json["expected"]["autocorrelation"], 0.25);
+  EXPECT_EQ(json["protocol"]["load_ratios"], (std::vector<double>{0.5, 2.0}));
+}
+
+TEST(PlanText, HasEveryNumberInItsRow) {
+  Plan plan = MadeByHand();
+  std::string text = ToText(plan);
+  EXPECT_THAT(text, StartsWith("expected: sigma = 2.5 N/m, alpha = 0.75, Tc = 1.5 N; noise 0.125 N "
+                               "and 0.0625 m a\nsample; a sine of 3.5 cycles, 60 samples each\n\n"
+                               "standard errors      | virgin"));
+  EXPECT_THAT(text, EndsWith("Slip begins at 0.5 m.\n"));
+  const auto single = [](std::string words) {
+    for (std::size_t at = 0; (at = words.find("  ", at)) != std::string::npos;) words.erase(at, 1);
+    return words;
+  };
+  // σ at an error of its value is open, and at one below it is said in percent.
+  EXPECT_THAT(single(text), HasSubstr("\n1.25 2.5 | - 0.25 2.5 % decided | - 0.25 - open \n"));
+  EXPECT_THAT(single(text),
+              HasSubstr("\n2.25 4.5 | 1e+02 % 0.25 2.5 % decided | 1e+02 % 0.25 - open \n"));
+  EXPECT_THAT(single(text),
+              HasSubstr("\nX [m] X/slip | sigma alpha Tc law | sigma alpha Tc law \n"));
+  plan.expected.rig.stiffness = 8.5;
+  plan.expected.autocorrelation = 0.25;
+  plan.expected.load_exponent = 0.375;
+  plan.request.load_ratios = {0.5, 2.0};
+  text = ToText(plan);
+  EXPECT_THAT(text, HasSubstr("Tc = 1.5 N, rig 8.5 N/m; noise"));
+  EXPECT_THAT(text, HasSubstr("sample, autocorrelated by 0.25 from one to the next; a sine"));
+  EXPECT_THAT(text, HasSubstr("\n\nat 0.5, 2 times the load of this contact, sigma as the load to "
+                              "0.375\n\n"));
+  EXPECT_THAT(text, EndsWith("Slip begins at 0.5 m at that load.\n"));
+}
+
+TEST(PlanText, SaysOfEachStateWhatReachesWhatIsWanted) {
+  Plan plan = MadeByHand();
+  plan.request.wanted = {{"alpha", {.value = 0.5}},
+                         {"sigma", {.value = 0.25, .is_relative = true}}};
+  EXPECT_FALSE(plan.established());
+  EXPECT_THAT(ToText(plan), EndsWith("\nwanted: alpha to 0.5, sigma to 25 %\n"
+                                     "  virgin: no amplitude determines it\n"
+                                     "  steady: no amplitude determines it\n"));
+  plan.columns[1].reached = plan.columns[1].loops[1];
+  plan.columns[0].fewest = {.amplitude = 7.5, .cycles = 9.0};
+  EXPECT_TRUE(plan.established());
+  EXPECT_THAT(ToText(plan),
+              EndsWith("  virgin: no amplitude reaches it with 3.5 cycles; X = 7.5 m "
+                       "would with 9\n"
+                       "  steady: X >= 2.25 m, 4.5 times the displacement at slip\n"));
+}
+
+TEST(MakePlan, RefusesWhatItCannotPlan) {
+  const auto refusal = [](const auto& change) -> std::string {
+    PlanRequest request = Known();
+    change(request);
+    try {
+      Made(request);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal([](PlanRequest& r) { r.with = {"inertia"}; }),
+              HasSubstr("--with: 'inertia' cannot be planned for"));
+  EXPECT_THAT(refusal([](PlanRequest& r) { r.with = {"rig_stiffness"}; }),
+              StartsWith("--with rig_stiffness needs --rig-stiffness"));
+  EXPECT_EQ(refusal([](PlanRequest& r) {
+              r.with = {"rig_stiffness"};
+              r.rig_stiffness = 8e7;
+            }),
+            "");
+  EXPECT_THAT(refusal([](PlanRequest& r) { r.force_noise.reset(); }),
+              StartsWith("--force-noise missing"));
+  EXPECT_THAT(refusal([](PlanRequest& r) { r.displacement_noise = -1; }),
+              HasSubstr("--displacement-noise [m]"));
+  EXPECT_THAT(refusal([](PlanRequest& r) {
+                r.wanted = {{"sigm", {.value = 1}}};
+              }),
+              HasSubstr("--want: 'sigm' is no parameter"));
+  EXPECT_THAT(refusal([](PlanRequest& r) { r.record = &NoisyRecord; }),
+              StartsWith("--record excludes --sigma"));
+}
+
+TEST(MakePlan, TakesTheLawOfItsRecordAndSaysWhatIsNotKnown) {
+  PlanRequest request;
+  request.record = &NoisyRecord;
+  request.record_name = "loop.csv";
+  request.force_noise = 0.75;
+  request.amplitudes = {3e-6};
+  request.initial_state = models::InitialState::kSteady;
+  request.law.alpha = 0.25;
+  std::vector<std::string> said;
+  const Plan plan = MakePlan(request, [&](std::string_view text) { said.emplace_back(text); });
+  EXPECT_EQ(plan.expected.law.shape_exponent, 0.25);
+  EXPECT_NEAR(plan.expected.law.slip_force, 40.0, 1.0);  // at another α, a little off
+  EXPECT_EQ(plan.expected.force_noise, 0.75);
+  // 500 samples of a line, known in no part: σ and Tc are guesses, and Mindlin's α is taken.
+  PlanRequest open = request;
+  open.law.alpha.reset();
+  open.force_noise.reset();
+  open.record = [] {
+    io::RecordFile file = NoisyRecord();
+    testing::Generator generator(5);
+    for (std::size_t i = 0; i < file.record.size(); ++i) {
+      file.record.displacement[i] *= 0.02;
+      file.record.force[i] = 4e7 * file.record.displacement[i] + 0.2 * testing::Normal(generator);
+    }
+    return file;
+  };
+  said.clear();
+  const Plan guessed = MakePlan(open, [&](std::string_view text) { said.emplace_back(text); });
+  ASSERT_FALSE(said.empty());
+  EXPECT_THAT(said.front(), StartsWith("loop.csv: "));
+  EXPECT_THAT(said, Contains(HasSubstr("alpha is not identified: Mindlin's 1/3 is assumed")));
+  EXPECT_EQ(guessed.expected.law.shape_exponent, 1.0 / 3);
+}
+
 }  // namespace
 }  // namespace mindahl::request::plan_test

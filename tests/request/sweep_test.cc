@@ -1,13 +1,11 @@
 #include "mindahl/request/sweep.h"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
+#include <nlohmann/json.hpp>
 
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // These tests concern what --sweep takes from the request.
 namespace mindahl::request::sweep_test {
@@ -52,6 +50,144 @@ TEST(FitSweepFile, HoldsTheShapeThatAModelPrescribes) {
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 0.0);
   request.model = "mindlin";
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 1.0 / 3.0);
+}
+
+/// A sweep and its fit, each of whose numbers is another.
+FittedSweep MadeByHand() {
+  FittedSweep fitted;
+  fitted.file = "s.csv";
+  fitted.sweep.amplitude = {1, 2, 3};
+  fitted.sweep.response = {6, 5, 4};
+  fitted.sweep.over_force = true;
+  fitted.asked.stiffness = identification::SweepStiffness::kTangent;
+  fitted.asked.confidence = 0.5;
+  const auto add = [&](const char* name, const char* unit, double value) {
+    identification::ParameterEstimate& estimate = fitted.fit.parameters.emplace_back();
+    estimate.name = name;
+    estimate.unit = unit;
+    estimate.value = value;
+    return &estimate;
+  };
+  identification::ParameterEstimate* sigma = add("sigma", "N/m", 2.5);
+  sigma->standard_error = 0.25;
+  sigma->lower95 = 2.25;
+  sigma->upper95 = 2.875;
+  sigma->status = identification::ParameterStatus::kFree;
+  sigma->identifiability = identification::Identifiability::kIdentifiable;
+  add("alpha", "-", 0.75);
+  identification::ParameterEstimate* slip_force = add("slip_force", "N", 8.5);
+  slip_force->standard_error = HUGE_VAL;
+  slip_force->lower95 = 7.5;
+  slip_force->status = identification::ParameterStatus::kFree;
+  slip_force->identifiability = identification::Identifiability::kBoundedBelow;
+  fitted.fit.converged = true;
+  fitted.fit.message = "solved";
+  fitted.fit.rms = 0.125;
+  fitted.fit.r_squared = 0.9375;
+  fitted.fit.degrees_of_freedom = 11;
+  fitted.fit.correlation_p_value = 0.25;
+  return fitted;
+}
+
+TEST(FittedSweep, JsonHasEveryNumberUnderItsName) {
+  auto json = nlohmann::json::parse(ToJson(MadeByHand()));
+  json.erase("version");
+  EXPECT_EQ(json, nlohmann::json::parse(R"({
+    "schema": "mindahl.sweep/1",
+    "input": {"files": ["s.csv"], "points": 3, "amplitude": "force", "response": "stiffness"},
+    "sweep": "tangent", "confidence": 0.5,
+    "parameters": {
+      "sigma": {"value": 2.5, "unit": "N/m", "standard_error": 0.25, "ci95": [2.25, 2.875],
+                "status": "free", "identifiability": "identifiable"},
+      "alpha": {"value": 0.75, "unit": "-", "standard_error": null, "ci95": [null, null],
+                "status": "fixed", "identifiability": null},
+      "slip_force": {"value": 8.5, "unit": "N", "standard_error": null, "ci95": [7.5, null],
+                     "status": "free", "identifiability": "bounded_below"}},
+    "residuals": {"rms": 0.125, "r_squared": 0.9375, "degrees_of_freedom": 11,
+                  "correlation_p_value": 0.25},
+    "adequacy": {"verdict": "adequate"},
+    "solver": {"solver": "ceres::Solve", "converged": true, "message": "solved"}})"));
+  FittedSweep other = MadeByHand();
+  other.sweep.over_force = false;
+  other.sweep.is_compliance = true;
+  other.asked.stiffness = identification::SweepStiffness::kSecant;
+  other.fit.correlation_p_value = 0.001;
+  json = nlohmann::json::parse(ToJson(other));
+  EXPECT_EQ(json["input"]["amplitude"], "displacement");
+  EXPECT_EQ(json["input"]["response"], "compliance");
+  EXPECT_EQ(json["sweep"], "secant");
+  EXPECT_EQ(json["adequacy"]["verdict"], "doubtful");
+}
+
+TEST(FittedSweep, TextHasEveryParameterAndWhatIsDoubtful) {
+  FittedSweep fitted = MadeByHand();
+  EXPECT_EQ(ToText(fitted),
+            "stiffness of 3 points over the force amplitude, tangent\n\n"
+            "  sigma                  2.5 N/m   (2.25 … 2.875)  identifiable\n"
+            "  alpha                 0.75 -     held\n"
+            "  slip_force             8.5 N     (7.5 … …)  bounded below\n"
+            "\n  residuals 0.125 N/m rms, R² 0.9375\n");
+  fitted.sweep.is_compliance = true;
+  fitted.fit.correlation_p_value = 0.0025;
+  fitted.fit.converged = false;
+  EXPECT_THAT(ToText(fitted),
+              AllOf(StartsWith("compliance of 3 points"), HasSubstr("residuals 0.125 m/N rms"),
+                    HasSubstr("\n  doubtful: neighbouring residuals are correlated (p = 0.0025)"),
+                    EndsWith("\n  not converged: solved\n")));
+}
+
+TEST(FittedSweep, IsDoubtfulBelowAChanceOfOneInAHundred) {
+  FittedSweep fitted = MadeByHand();
+  fitted.fit.parameters.pop_back();  // the open slip force
+  for (const auto& [p_value, doubtful] :
+       {std::pair(std::nextafter(0.01, 0.0), true), {0.01, false}}) {
+    fitted.fit.correlation_p_value = p_value;
+    EXPECT_EQ(fitted.is_doubtful(), doubtful);
+    EXPECT_TRUE(fitted.established(Strictness::kNone));
+    EXPECT_TRUE(fitted.established(Strictness::kDoubtful));
+    EXPECT_EQ(fitted.established(Strictness::kAdequate), !doubtful);
+  }
+  fitted.fit.converged = false;
+  EXPECT_FALSE(fitted.established(Strictness::kNone));
+  FittedSweep open = MadeByHand();
+  EXPECT_TRUE(open.established(Strictness::kNone));
+  EXPECT_FALSE(open.established(Strictness::kDoubtful));
+}
+
+TEST(FitSweepFile, RefusesWhatASweepHasNot) {
+  const auto refusal = [](const FitRequest& request, const std::string& kind) -> std::string {
+    try {
+      FitSweep(request, "s.csv", {}, kind, {}, [](std::string_view) {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  FitRequest request;
+  EXPECT_THAT(refusal(request, "chord"), HasSubstr("--sweep"));
+  request.model = "dahl";
+  EXPECT_THAT(refusal(request, "secant"), HasSubstr("--model dahl: a sweep needs a Masing law"));
+  request.files = {"a.csv", "b.csv"};
+  EXPECT_THROW(FitSweepFile(request, "secant", {}, {}, [](std::string_view) {}), InputError);
+}
+
+TEST(FitSweepFile, HoldsWhatIsGivenAndTakesTheNoiseThatIsKnown) {
+  FitRequest request;
+  request.model = "mindlin-dahl";
+  request.fix["alpha"] = 0.125;
+  EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 0.125);
+  EXPECT_EQ(FitWith(request).fit.parameter("alpha").status,
+            identification::ParameterStatus::kFixed);
+  const TemporaryDirectory directory;
+  request.model = "jenkins";
+  request.fix.clear();
+  request.files = {directory.Write("sweep.csv", JenkinsSweep()).string()};
+  const auto error = [&](double noise) {
+    return *FitSweepFile(request, "secant", {}, noise, [](std::string_view) {})
+                .fit.parameter("sigma")
+                .standard_error;
+  };
+  EXPECT_NEAR(error(2e5) / error(1e5), 2.0, 1e-6);
 }
 
 }  // namespace

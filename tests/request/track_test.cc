@@ -184,5 +184,178 @@ TEST(TestPage, OfFitsThatAllFailedSaysSo) {
   EXPECT_THAT(page, Not(HasSubstr("<figure")));
 }
 
+/// The descriptions of σ and Tc of a test, set by hand.
+std::vector<campaign::CourseDescription> DescribedByHand() {
+  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
+  std::vector<campaign::CourseDescription> courses(tracked.size());
+  const auto of = [&](std::string_view name) -> campaign::CourseDescription& {
+    const auto found = std::ranges::find(tracked, name, &campaign::TrackedQuantity::name);
+    return courses[static_cast<std::size_t>(found - tracked.begin())];
+  };
+  of("sigma") = {
+      .stretches = {{1, 20, 1.5, 2.5, 3.5, 1e-5, true, {}}, {21, 60, 5.5, 6.5, 7.5, 0.25}},
+      .changes = {{campaign::ChangeKind::kTransition, 21, 19, 24, 8.5, 9.5, 0.375}}};
+  of("slip_force") = {.stretches = {{1, 60, 40.5, 40.25, -0.5, 1e-6}}, .changes = {}};
+  return courses;
+}
+
+TEST(TrackedTest, TextHasEveryNumberInItsLine) {
+  TrackedTest test = Lossy({Losing(3.0), Losing(5.0, {"sigma_open"})}, 1);
+  test.cycles = 60;
+  test.samples = 812;
+  test.resumed = 7;
+  test.is_torsional = true;
+  const std::string text = ToText(test, DescribedByHand());
+  EXPECT_EQ(text,
+            "60 cycles of 812 samples, 2 fits\n"
+            "7 of them existed already\n"
+            "8 J dissipated in all\n"
+            "\n1 cycle has a flag:\n"
+            "  sigma_open               1   the cycle does not determine sigma\n"
+            "\n  over the test                       at first       at last\n"
+            "  sigma [N m/rad]                          1.5           6.5\n"
+            "  slip_force [N m]                        40.5         40.25\n"
+            "\nChanges:\n"
+            "  sigma                 from cycle 1 to 20 a trend, 1.5 to 2.5, p 1e-05\n"
+            "  sigma                 at cycle 21 (19 to 24) a step, 8.5 to 9.5, p 0.4\n"
+            "\nBeyond chance, but less than 1 %:\n"
+            "  slip_force            from cycle 1 to 60 a trend, 40.5 to 40.25, p 1e-06\n");
+  std::vector<campaign::CourseDescription> still = DescribedByHand();
+  still[0] = {.stretches = {{1, 60, 1.5, 2.5, 3.5, 0.25}}, .changes = {}};
+  EXPECT_THAT(ToText(test, still),
+              HasSubstr("\n\nNothing changed beyond chance by 1 % or more.\n\nBeyond chance, but"));
+  EXPECT_THAT(Changes(test, DescribedByHand()),
+              ElementsAre("sigma [N m/rad]: from cycle 1 to 20 a trend, 1.5 to 2.5, p 1e-05",
+                          "sigma [N m/rad]: at cycle 21 (19 to 24) a step, 8.5 to 9.5, p 0.4"));
+}
+
+TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
+  TrackedTest test = Lossy({Losing(3.0), Losing(5.0, {"sigma_open"})}, 1);
+  test.files = {"a.csv", "b.csv"};
+  test.cycles = 60;
+  test.samples = 812;
+  test.unused_samples = 5;
+  test.broken_rows = 4;
+  test.reversal_gate = 0.25;
+  test.is_gate_certain = false;
+  test.output = "t.csv";
+  campaign::PooledValue alpha;
+  alpha.Add(0.0, 1.0);
+  alpha.Add(4.0, 1.0);
+  test.shared_alpha = alpha;
+  auto json = nlohmann::json::parse(ToJson(test, DescribedByHand()));
+  for (const char* key : {"version", "quantities", "flags"}) json.erase(key);
+  // Of two values 4 apart with errors of 1: Q = 8, τ² = 7, √(1/2 + 7/2).
+  const auto scatter = json["shared_alpha"]["scatter"].get<double>();
+  EXPECT_NEAR(scatter, std::sqrt(7.0), 1e-14);
+  json["shared_alpha"].erase("scatter");
+  EXPECT_NEAR(json["shared_alpha"]["p_value"].get<double>(), std::erfc(2.0), 1e-14);
+  json["shared_alpha"].erase("p_value");
+  EXPECT_EQ(json, nlohmann::json::parse(R"({
+    "schema": "mindahl.track/1",
+    "input": {"files": ["a.csv", "b.csv"], "samples": 812, "cycles": 60, "unused_samples": 5,
+              "broken_rows": 4},
+    "reversals": {"gate": 0.25, "certain": false}, "output": "t.csv", "fits": 2, "flagged": 1,
+    "accumulated_energy": 8, "energy_counts": {"measured": 2, "replaced": 0, "left_out": 0},
+    "shared_alpha": {"value": 2, "standard_error": 2, "cycles": 2}})"));
+}
+
+TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
+  TrackedTest test;
+  test.files = {"x/a.csv"};
+  for (std::size_t k = 1; k <= 30; ++k) {
+    campaign::CycleFit fit = Losing(1.0);
+    fit.number = k;
+    fit.slip_force = {40.0, 0.5};
+    test.Add(fit);
+  }
+  test.cycles = 30;
+  const auto labels = [&] {
+    std::vector<std::string> all;
+    for (const io::PlotPanel& panel : ToPlot(test, test.courses.Describe()).panels) {
+      all.push_back(panel.y_label);
+    }
+    return all;
+  };
+  EXPECT_THAT(labels(), ElementsAre("slip_force [N]"));
+  const io::Plot plot = ToPlot(test, test.courses.Describe());
+  EXPECT_EQ(plot.title, "a.csv");
+  EXPECT_EQ(plot.subtitle, "30 cycles: nothing changed beyond chance by 1 % or more");
+  TrackedTest loaded;
+  loaded.files = {"a.csv"};
+  for (std::size_t k = 1; k <= 30; ++k) {
+    campaign::CycleFit fit = Losing(1.0);
+    fit.number = k;
+    fit.slip_force = {k <= 15 ? 40.0 : 20.0, 0.5};
+    fit.friction_coefficient = k <= 15 ? 0.5 : 0.25;
+    loaded.Add(fit);
+  }
+  loaded.cycles = 30;
+  test = std::move(loaded);
+  EXPECT_THAT(labels(), ElementsAre("friction_coefficient"));
+  EXPECT_EQ(ToPlot(test, test.courses.Describe()).subtitle,
+            "30 cycles: dashed where it changed beyond chance");
+}
+
+/// Jenkins' loop of 20 N, of cycles of 40 samples between ±1 µm at a load of 50 N.
+io::NamedRecord LoopOf(const char* name, std::size_t cycles, bool is_torsional = false) {
+  io::NamedRecord record{.name = name, .file = {}};
+  record.file.is_torsional = is_torsional;
+  double force = 0.0;
+  double before = 0.0;
+  for (std::size_t i = 0; i <= 40 * cycles; ++i) {
+    const double x = 1e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 40);
+    force = std::clamp(force + 4e7 * (x - before), -20.0, 20.0);
+    before = x;
+    record.file.record.displacement.push_back(x);
+    // A little of everything, so that a fit of it has errors.
+    record.file.record.force.push_back(force + 0.01 * std::sin(1.7 * static_cast<double>(i * i)));
+    record.file.lines.push_back(i + 2);
+  }
+  return record;
+}
+
+TEST(TrackRun, CountsTheSamplesAndCyclesOfItsRecords) {
+  const std::vector<io::NamedRecord> records = {LoopOf("a", 5), LoopOf("b", 4)};
+  TrackRequest request;
+  std::size_t fits = 0;
+  TrackRun run(request,
+               {.fits = [&](std::span<const campaign::CycleFit> done) { fits += done.size(); }});
+  run.Read(records);
+  run.Finish();
+  // A record begins in the middle of a stroke: its first and last half cycle are of no cycle.
+  EXPECT_EQ(fits, 4U + 3U);
+  EXPECT_EQ(run.test().cycles, 7U);
+  EXPECT_EQ(run.test().samples, 201U + 161U);
+  EXPECT_THAT(run.test().files, ElementsAre("a", "b"));
+  EXPECT_FALSE(run.test().is_torsional);
+  const std::vector<io::NamedRecord> mixed = {LoopOf("a", 5), LoopOf("b", 4, true)};
+  TrackRun other(request, {.fits = [](std::span<const campaign::CycleFit>) {}});
+  try {
+    other.Read(mixed);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "a holds a force and b a torque: track them apart");
+  }
+}
+
+TEST(TrackRun, TakesTheLoadThatIsGiven) {
+  const std::vector<io::NamedRecord> records = {LoopOf("a", 5)};
+  TrackRequest request;
+  request.normal_load = 80.0;
+  std::vector<campaign::CycleFit> fits;
+  TrackRun run(request, {.fits = [&](std::span<const campaign::CycleFit> done) {
+                 fits.insert(fits.end(), done.begin(), done.end());
+               }});
+  run.Read(records);
+  ASSERT_EQ(fits.size(), 4U);
+  EXPECT_EQ(fits[0].normal_load, 80.0);
+  ASSERT_TRUE(fits[0].friction_coefficient);
+  EXPECT_NEAR(*fits[0].friction_coefficient, 0.25, 0.01);
+  EXPECT_THROW(TrackRun(request, {}).Read({}), InputError);
+  request.normal_load = 0.0;
+  EXPECT_THROW(Validate(request), InvalidArgument);
+}
+
 }  // namespace
 }  // namespace mindahl::request::track_test

@@ -1,8 +1,11 @@
 #include "mindahl/request/tradeoff.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "request/json.h"
 #include "support/prelude.h"
 
 // These tests concern the sentences on a study whose points are set by hand.
@@ -170,6 +173,126 @@ TEST(TradeoffPlot, DrawsErrorsOverCostsAndAnExactOneAboveNought) {
   EXPECT_EQ(exact.label, "exact");
   EXPECT_EQ(exact.x, std::vector{12.0});
   EXPECT_GT(exact.y[0], 0.0);
+}
+
+TEST(TradeoffJson, HasEveryNumberUnderItsName) {
+  Tradeoff study = Study();
+  study.regions.erase(study.regions.begin() + 2, study.regions.end());
+  study.regions[1].criterion = Criterion::kEnergy;
+  WorkPrecision& spring = study.excitations[0].points.emplace_back(Point("spring", "", 2.5, 0.5));
+  spring.approximation.law = models::BranchLaw{6.5, 0.25, 7.5};
+  spring.precision.energy.reset();
+  spring.measured_cost.reset();
+  spring.operations.Add(methods::Operation::kSample, 4);
+  spring.operations.Add(methods::Operation::kLinear, 3);
+  study.excitations[0].front.push_back(true);
+  auto json = nlohmann::json::parse(ToJson(study));
+  EXPECT_EQ(json["excitations"][0]["points"].size(), 3U);
+  EXPECT_EQ(json["excitations"][0]["points"][2], nlohmann::json::parse(R"({
+    "model": "spring", "method": null, "steps": null, "tolerance": null,
+    "refitted": {"sigma": 6.5}, "cost_ns_per_sample": 2.5, "measured_ns_per_sample": null,
+    "operations_per_sample": {"sample": 1, "linear": 0.75}, "max_force_error": 0.5,
+    "rms_force_error": 0.25, "energy_error": null, "pareto": true})"));
+  json["excitations"][0].erase("points");
+  json.erase("version");
+  const double least = study.studied.least_lambda;
+  const double greatest = study.studied.greatest_lambda;
+  const nlohmann::json whole = {
+      {"schema", "mindahl.tradeoff/1"},
+      {"law", {{"sigma", 4e7}, {"alpha", 1.0 / 3}, {"slip_force", 40.0}}},
+      {"excitations",
+       {{{"name", "micro"},
+         {"samples", 1001},
+         {"cost_floor", {{"memory_ns_per_sample", 0.5}, {"arithmetic_ns_per_sample", 1.5}}}}}},
+      {"model_regions",
+       {{{"model", "jenkins"},
+         {"cycle", 1},
+         {"criterion", "force"},
+         {"tolerance", 0.01},
+         {"lambda", {{least, 0.02}, {1.25, greatest}}}},
+        {{"model", "jenkins"},
+         {"cycle", 1},
+         {"criterion", "energy"},
+         {"tolerance", 0.05},
+         {"lambda", nlohmann::json::array({nlohmann::json::array({0.25, 0.75})})}}}}};
+  EXPECT_EQ(json, whole);
+}
+
+TEST(TradeoffCsv, HasThePointsOwnParametersAndTheirCostOverTheFloor) {
+  Tradeoff study = Study();
+  std::vector<WorkPrecision>& points = study.excitations[0].points;
+  points[0].approximation.law = models::BranchLaw{6.5, 0.25, 7.5};
+  points[1].approximation = {"mindlin-dahl", "dopri5", {.steps = 3, .tolerance = 0.5}};
+  const double floor = tradeoff::ModelledCostFloor().arithmetic;
+  const std::string csv = PointsCsv(study);
+  const std::string row = csv.substr(csv.find("\nmicro,jenkins"));
+  EXPECT_THAT(row, StartsWith("\nmicro,jenkins,exact,,,3,6.0," + fmt::format("{}", 3 / floor) +
+                              ",0.08,0.04,0.02,1,6.5,0.0,7.5\n"));
+  EXPECT_THAT(csv, HasSubstr("\nmicro,mindlin-dahl,dopri5,3,0.5,12,24.0,"));
+  EXPECT_THAT(RegionsCsv(study), StartsWith("model,cycle,criterion,tolerance [-],lambda from "
+                                            "[-],lambda to [-]\njenkins,1,force,0.01,"));
+}
+
+TEST(TradeoffPlot, HasAPanelAnExcitationAndOneLegend) {
+  Tradeoff study = Study();
+  study.excitations[0].points[0].approximation.law = models::BranchLaw{6.5, 0.25, 7.5};
+  study.excitations.push_back(study.excitations[0]);
+  study.excitations[1].title = "macro-slip";
+  study.excitations[1].points[0].approximation.law.reset();
+  study.excitations[1].points.push_back(study.excitations[1].points.back());
+  for (const std::size_t scenes : {2U, 3U}) {
+    if (scenes == 3) study.excitations.insert(study.excitations.begin(), study.excitations[0]);
+    const io::Plot plot = ToPlot(study);
+    ASSERT_EQ(plot.panels.size(), scenes);
+    EXPECT_EQ(plot.columns, 2);
+    EXPECT_EQ(plot.width, 1500);
+    EXPECT_EQ(plot.height, 60 + 460 * (scenes == 2 ? 1 : 2));
+    EXPECT_EQ(plot.panels.front().title, "micro-slip");
+    EXPECT_EQ(plot.panels.back().title, "macro-slip");
+    EXPECT_EQ(plot.panels.front().series[0].label, "");
+    EXPECT_EQ(plot.panels.back().series[0].label, "jenkins");
+    EXPECT_EQ(plot.panels.back().series[1].label, "exact");
+    EXPECT_THAT(plot.panels.back().series[1].x, ElementsAre(12.0, 12.0));
+    EXPECT_EQ(plot.panels.back().series[0].style, io::PlotStyle::kMarkers);
+    EXPECT_EQ(plot.panels.back().series[1].style, io::PlotStyle::kLineAndPoints);
+  }
+  study.excitations.resize(1);
+  const io::Plot alone = ToPlot(study);
+  EXPECT_EQ(alone.panels[0].series[0].label, "jenkins refitted");
+  EXPECT_EQ(alone.columns, 1);
+  EXPECT_EQ(alone.width, 900);
+  EXPECT_EQ(alone.height, 520);
+}
+
+TEST(RefittedParameters, AreThoseThatTheLawHas) {
+  const auto words = [](const char* model) {
+    return RefittedParameters({model, "exact", {}, models::BranchLaw{2.5, 0.25, 1.5}});
+  };
+  EXPECT_EQ(words("spring"), "sigma = 2.5 N/m");
+  EXPECT_EQ(words("coulomb"), "Tc = 1.5 N");
+  EXPECT_EQ(words("dahl"), "sigma = 2.5 N/m and Tc = 1.5 N");
+}
+
+TEST(MakeTradeoff, MeasuresThePathOrTheExcitationsThatAreChosen) {
+  TradeoffRequest request;
+  request.law.sigma = 4e7;
+  request.law.slip_force = 40.0;
+  request.law.alpha = 1.0;  // slips nowhere: no regions, and three elastic limits are λ = 1
+  request.displacement = {0.0, 1e-6, 2e-6, -2e-6, 2e-6};
+  request.path_name = "p.csv";
+  std::vector<std::string> progress;
+  const Tradeoff made = MakeTradeoff(
+      request, [](std::string_view) {},
+      [&](std::string_view text) { progress.emplace_back(text); });
+  ASSERT_EQ(made.excitations.size(), 1U);
+  EXPECT_EQ(made.excitations[0].name, "path");
+  EXPECT_EQ(made.excitations[0].title, "p.csv");
+  EXPECT_EQ(made.excitations[0].samples, 5U);
+  EXPECT_EQ(made.excitations[0].front.size(), made.excitations[0].points.size());
+  EXPECT_TRUE(made.regions.empty());
+  EXPECT_EQ(progress.size(), 2U);
+  EXPECT_EQ(made.law.shape_exponent, 1.0);
+  EXPECT_THAT(ExcitationNames(), ElementsAre("micro", "macro", "growing", "random", "nested"));
 }
 
 }  // namespace
