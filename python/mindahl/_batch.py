@@ -6,7 +6,7 @@ import inspect
 import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from html import escape
 from typing import Any, Optional, Union
@@ -17,10 +17,10 @@ from . import _mindahl
 from ._arguments import count, is_frame, path_text
 from ._fit import fit, prepared, request_and_arguments
 from ._records import is_path
-from ._result import FitWarning, Report
+from ._result import FitWarning, Report, Table
 
 
-class BatchTable(Mapping[str, Any]):
+class BatchTable(Table):
     """The answer of batch(): one row a source, an array a column; unknown values are NaN or None.
 
     report: sections of `mindahl batch --json`, `files` with the fit of each, and `repeats`.
@@ -32,15 +32,6 @@ class BatchTable(Mapping[str, Any]):
                          for name, cells in _mindahl.batch_columns(entries).items()}
         self.report = Report(_mindahl.batch_answer(entries), "batch", ("files", "repeats"))
 
-    def __getitem__(self, name: str) -> Any:
-        return self._columns[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
     @property
     def established(self) -> bool:
         """Was every source fitted, and established where `strict` asks for it?"""
@@ -50,12 +41,6 @@ class BatchTable(Mapping[str, Any]):
     def faults(self) -> dict[str, str]:
         """Why a source has no fit or is not established, by its name."""
         return {entry.name: entry.fault for entry in self._entries if entry.fault}
-
-    def to_pandas(self) -> Any:
-        """A pandas DataFrame of the columns. Raises ImportError without pandas."""
-        import pandas
-
-        return pandas.DataFrame(self._columns)
 
     def to_csv(self) -> str:
         """What `mindahl batch --output` writes."""

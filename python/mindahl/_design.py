@@ -18,9 +18,7 @@ from ._result import Report
 
 def _one_record(record: Any) -> tuple[Record, list[str]]:
     """A record from a file, a frame, a Record or a pair of arrays, and what was assumed of it."""
-    arguments = RecordArguments(
-        displacement=None, force=None, time=None, normal_load_column=None, displacement_unit=None,
-        force_unit=None, time_unit=None, normal_load_unit=None)
+    arguments = RecordArguments({})
     is_pair = isinstance(record, (tuple, list)) and len(record) == 2 and all(map(is_array, record))
     source, force = record if is_pair else (record, None)
     records = records_of(source, force, arguments)

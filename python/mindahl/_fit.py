@@ -12,51 +12,47 @@ from ._arguments import (Uncertain, array, assignments, column_name, contact_opt
                          optional_number, pair, path_text, priors_of, uncertain)
 from ._contact import report_of
 from ._mindahl import Record
-from ._records import Column, RecordArguments, columns_of, is_path, records_of
+from ._records import RecordArguments, columns_of, is_path, records_of
 from ._result import FitResult, FitWarning, Report
 
 Range = tuple[float, float]
 Asked = Union[float, str]
 
 
-def request_of(
-    *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
-    terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
-    starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
-    noise_in: str = "force", term_choice: Union[None, str, Sequence[str]] = None,
-    confidence: float = 0.95, prior: Any = None, regions: bool = False,
-) -> _mindahl.FitRequest:
+def request_of(given: Mapping[str, Any]) -> _mindahl.FitRequest:
+    """What the arguments of fit() or track() ask of the model and of its terms."""
     request = _mindahl.FitRequest()
-    request.model = model
-    request.initial_state = initial_state
-    request.force_sign = force_sign
-    request.noise_in = noise_in
-    request.offsets = on_off("offsets", offsets)
+    request.model = given["model"]
+    request.initial_state = given["initial_state"]
+    request.force_sign = given["force_sign"]
+    request.noise_in = given.get("noise_in", "force")
+    request.offsets = on_off("offsets", given["offsets"])
+    covariate = given.get("covariate")
     if isinstance(covariate, Mapping):
         for column, value in covariate.items():
             request.add_covariate(column, fitted_or_number(f"covariate[{column!r}]", value))
     else:
         for column in names_of(covariate):
             request.add_covariate(column, None)
-    request.fix = assignments("fix", fix)
-    request.start = assignments("start", start)
-    request.prior = priors_of(prior)
-    request.regions = regions
-    for parameter, value in mapping("bound", bound, "(low, high)").items():
+    request.fix = assignments("fix", given["fix"])
+    request.start = assignments("start", given["start"])
+    request.prior = priors_of(given["prior"])
+    request.regions = given.get("regions", False)
+    for parameter, value in mapping("bound", given["bound"], "(low, high)").items():
         low, high = pair(f"bound[{parameter!r}]", value)
         request.set_bound(parameter, number(f"bound[{parameter!r}]", low),
                           number(f"bound[{parameter!r}]", high))
-    if term_choice is not None:
-        request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
-    request.loss = loss
-    request.starts = count("starts", starts, 1)
-    request.seed = count("seed", seed, 0)
-    request.confidence = number("confidence", confidence)
-    request.force_noise = optional_number("force_noise", force_noise)
-    request.displacement_noise = optional_number("displacement_noise", displacement_noise)
-    request.reversal_gate = optional_number("reversal_gate", reversal_gate)
+    if given["terms"] is not None:
+        request.term_choice = ",".join(names_of(given["terms"]))
+    request.loss = given["loss"]
+    request.starts = count("starts", given["starts"], 1)
+    request.seed = count("seed", given["seed"], 0)
+    request.confidence = number("confidence", given["confidence"])
+    for name in ("force_noise", "displacement_noise", "reversal_gate"):
+        setattr(request, name, optional_number(name, given[name]))
+    request.join = given["join"]
     for name, option in _mindahl.terms():
-        asked = terms[option.removeprefix("--").replace("-", "_")]
+        asked = given.get(option.removeprefix("--").replace("-", "_"))
         if asked is None or asked is False:
             continue
         if option == "--slip-position" and isinstance(asked, str):
@@ -239,19 +235,13 @@ _KNOWN = ("youngs_modulus_1", "poisson_1", "radius_1", "youngs_modulus_2", "pois
 
 def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest, RecordArguments]:
     """What the arguments of fit() ask for, and how they say that records are to be read."""
-    request = request_of(
-        terms=given, term_choice=given["terms"],
-        **{name: given[name] for name in (
-            "model", "initial_state", "force_sign", "noise_in", "offsets", "covariate", "fix",
-            "start", "bound", "prior", "regions", "loss", "starts", "seed", "force_noise", "displacement_noise",
-            "reversal_gate", "confidence")})
+    request = request_of(given)
     request.set_cycles(counts("cycles", given["cycles"]))
     request.set_samples(counts("samples", given["samples"]))
     request.set_time_window(interval("time_window", given["time_window"]))
     request.set_load_window(interval("load_window", given["load_window"]))
     request.skip_cycles = count("skip_cycles", given["skip_cycles"], 0)
     request.trim = given["trim"]
-    request.join = given["join"]
     request.contact = contact_options(**{name: given[name] for name in _KNOWN})
     loads = given["normal_load"]
     if loads is not None:
@@ -259,15 +249,8 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
                                   for load in (loads if isinstance(loads, list) else [loads])])
     most = given["max_memory"]
     arguments = RecordArguments(
-        force=None, covariates=request.covariate_columns(), encoding=given["encoding"],
-        calibration={role: (given[f"{name}_gain"], given[f"{name}_zero"]) for role, name in (
-            ("displacement", "displacement"), ("force", "force"), ("time", "time"),
-            ("normal_load_column", "normal_load"))},
-        max_rows=count("max_rows", given["max_rows"], 1),
-        max_memory=None if most is None else count("max_memory", most, 1),
-        **{name: given[name] for name in (
-            "displacement", "time", "normal_load_column", "displacement_unit", "force_unit",
-            "time_unit", "normal_load_unit")})
+        given, request.covariate_columns(), count("max_rows", given["max_rows"], 1),
+        None if most is None else count("max_memory", most, 1))
     request.columns = _mindahl.RecordColumns(
         _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
         _mindahl.ColumnChoice(unit=given["time_unit"] or ""),

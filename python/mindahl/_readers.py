@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import datetime
+import inspect
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -139,7 +140,9 @@ def _record(path: Path, columns: Columns, within: Optional[str],
                          + f": it has {', '.join(columns) or 'none'}")
     length = max(set(lengths), key=lambda size: (lengths.count(size), size))
     table = {name: values for name, values in chosen.items() if len(values) == length}
+    bound = inspect.signature(read_csv).bind(path, **options)  # TypeError for what it has not
+    bound.apply_defaults()
     return _mindahl.record_of_columns(
         path_text(path), list(table),
         [array(name, values, keep_missing=True) for name, values in table.items()],
-        record_options(**options))
+        record_options(bound.arguments))

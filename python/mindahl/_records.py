@@ -39,24 +39,17 @@ def columns_of(
         encoding)
 
 
-def record_options(
-    *, displacement: Optional[Column] = None,
-    force: Optional[Column] = None, time: Optional[Column] = None,
-    normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
-    force_unit: Optional[str] = None, time_unit: Optional[str] = None,
-    normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (),
-    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
-    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
-    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
-    normal_load_zero: float = 0.0, encoding: str = "",
-) -> _mindahl.RecordColumns:
-    """What read_csv() takes."""
-    return columns_of(
-        displacement, force, time, normal_load_column, displacement_unit, force_unit, time_unit,
-        normal_load_unit, covariates,
-        {"displacement": (displacement_gain, displacement_zero),
-         "force": (force_gain, force_zero), "time": (time_gain, time_zero),
-         "normal_load_column": (normal_load_gain, normal_load_zero)}, encoding)
+def calibration_of(given: Mapping[str, Any]) -> Calibration:
+    """Gains and zeros among the arguments of a function that reads a record."""
+    return {role: (given.get(f"{name}_gain"), given.get(f"{name}_zero", 0.0))
+            for role, name in zip(UNITS, ("displacement", "force", "time", "normal_load"))}
+
+
+def record_options(given: Mapping[str, Any]) -> _mindahl.RecordColumns:
+    """What the arguments of read_csv() say of the columns."""
+    return columns_of(calibration=calibration_of(given), **{name: given[name] for name in (
+        *UNITS, "displacement_unit", "force_unit", "time_unit", "normal_load_unit", "covariates",
+        "encoding")})
 
 
 def read_csv(
@@ -84,34 +77,21 @@ def read_csv(
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """
-    return _mindahl.read_csv(path_text(path), record_options(
-        displacement=displacement, force=force, time=time, normal_load_column=normal_load_column,
-        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
-        normal_load_unit=normal_load_unit, covariates=covariates,
-        displacement_gain=displacement_gain, displacement_zero=displacement_zero,
-        force_gain=force_gain, force_zero=force_zero, time_gain=time_gain, time_zero=time_zero,
-        normal_load_gain=normal_load_gain, normal_load_zero=normal_load_zero, encoding=encoding))
+    return _mindahl.read_csv(path_text(path), record_options(locals()))
 
 
 class RecordArguments:
     """How the arguments of fit() and track() that say what a record is are to be read."""
 
-    def __init__(
-        self, *, displacement: Any, force: Any, time: Any, normal_load_column: Any,
-        displacement_unit: Optional[str], force_unit: Optional[str], time_unit: Optional[str],
-        normal_load_unit: Optional[str], covariates: Sequence[str] = (),
-        covariate_values: Optional[Mapping[str, Any]] = None, max_rows: Optional[int] = None,
-        max_memory: Optional[int] = None, calibration: Optional[Calibration] = None,
-        encoding: str = "",
-    ) -> None:
-        self.roles = {"displacement": displacement, "force": force, "time": time,
-                      "normal_load_column": normal_load_column}
-        self.units = {"displacement_unit": displacement_unit, "force_unit": force_unit,
-                      "time_unit": time_unit, "normal_load_unit": normal_load_unit}
+    def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = (),
+                 max_rows: Optional[int] = None, max_memory: Optional[int] = None) -> None:
+        self.roles = {**{role: given.get(role) for role in UNITS}, "force": None}
+        self.units = {name: given.get(name) for name in (
+            "displacement_unit", "force_unit", "time_unit", "normal_load_unit")}
         self.covariates = list(covariates)
-        self.calibration = {role: values for role, values in (calibration or {}).items()
+        self.calibration = {role: values for role, values in calibration_of(given).items()
                             if values != (None, 0.0)}
-        self.encoding = encoding
+        self.encoding = given.get("encoding", "")
         self.max_rows = max_rows
         """Of the files that are still to be read, all together."""
         self.max_memory = max_memory

@@ -21,6 +21,27 @@ class FitWarning(UserWarning):
     what was assumed of the columns of a file or a frame and of their units: result.notes."""
 
 
+class Table(Mapping[str, Any]):
+    """Columns of one length by name, a NumPy array each."""
+
+    _columns: dict[str, Any]
+
+    def __getitem__(self, name: str) -> Any:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame of the columns. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+
 class Section(Mapping[str, Any]):
     """A part of the report, by item or by attribute: what docs/contract.md lists. Read-only."""
 

@@ -17,10 +17,10 @@ from . import _mindahl
 from ._arguments import count, optional_number, path_text, several
 from ._fit import Asked, Range, request_of
 from ._records import RecordArguments, is_path, records_of
-from ._result import FitWarning
+from ._result import FitWarning, Table
 
 
-class CycleTable(Mapping[str, Any]):
+class CycleTable(Table):
     """The answer of track(): one row a cycle, a NumPy array a column; unknown values are NaN.
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
@@ -87,23 +87,8 @@ class CycleTable(Mapping[str, Any]):
     def changes(self) -> tuple[str, ...]:
         return tuple(self._described[2])
 
-    def __getitem__(self, name: str) -> Any:
-        return self._columns[name]
-
-    def __iter__(self) -> Any:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
     def __repr__(self) -> str:
         return f"<mindahl.CycleTable: {len(self['cycle'])} rows of {', '.join(self._columns)}>"
-
-    def to_pandas(self) -> Any:
-        """A pandas DataFrame of the columns. Raises ImportError without pandas."""
-        import pandas
-
-        return pandas.DataFrame(self._columns)
 
 
 def track(
@@ -148,18 +133,9 @@ def track(
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits.
     """
+    given = dict(locals())
+    fit = request_of(given)
     request = _mindahl.TrackRequest()
-    request.fit = request_of(
-        model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
-        terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "asymmetry": None, "drift": drift,  # cycles have no column for that one
-               "speed_exponent": speed_exponent, "inertia": inertia,
-               "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
-               "ripple": ripple, "backlash": backlash},
-        covariate=None, fix=fix, start=start, bound=bound, prior=prior, loss=loss, starts=starts, seed=seed,
-        force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate, term_choice=terms,
-        confidence=confidence)
     request.normal_load = optional_number("normal_load", normal_load)
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)
@@ -169,25 +145,15 @@ def track(
     request.shares_alpha = alpha == "shared"
     if broken_rows not in ("refuse", "skip"):
         raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
-    fit = request.fit
-    fit.join = join
-    request.fit = fit
-    arguments = RecordArguments(
-        displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
-        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
-        normal_load_unit=normal_load_unit,
-        calibration={"displacement": (displacement_gain, displacement_zero),
-                     "force": (force_gain, force_zero), "time": (time_gain, time_zero),
-                     "normal_load_column": (normal_load_gain, normal_load_zero)},
-        encoding=encoding)
+    arguments = RecordArguments(given)
     files = _files_of(source)
     if files is None:
         if broken_rows == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
+        request.fit = fit
         found = _mindahl.track(request, records_of(source, force, arguments))
     else:
         arguments.roles["force"] = force
-        fit = request.fit
         fit.columns = arguments.columns()
         fit.files = list(files)
         request.fit = fit

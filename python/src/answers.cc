@@ -118,9 +118,9 @@ Answer RecommendForRecord(const NamedRecord& record) {
 Answer Tradeoff(const LawRequest& law, const std::vector<std::string>& excitations,
                 const Array& array, const std::string& path_name) {
   const std::vector<double> displacement = VectorOf(array);
-  const std::vector<std::string> names = request::ExcitationNames();
-  const std::vector<std::string_view> words(names.begin(), names.end());
-  for (const std::string& name : excitations) RequireOneOf("--excitation", name, words);
+  for (const std::string& name : excitations) {
+    RequireOneOf("--excitation", name, request::ExcitationNames());
+  }
   return AnswerOf([&](const request::Tell& warn) {
     return request::MakeTradeoff({.law = law,
                                   .excitations = excitations,

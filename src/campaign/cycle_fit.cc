@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/from_chars.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
@@ -194,16 +195,6 @@ constexpr std::string_view kGross = "gross";
 // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
 constexpr std::size_t kColumns = 3 + kNumbers.size() + 4;
 
-std::vector<std::string_view> CellsOf(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 template <typename Value>
 Value CellValue(std::string_view cell) {
   if (const auto value = NumberIn<Value>(cell)) return *value;
@@ -241,7 +232,7 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
 }
 
 CycleTableEntry ReadCycleTableRow(std::string_view line) {
-  const std::vector<std::string_view> cells = CellsOf(line);
+  const std::vector<std::string_view> cells = PartsOf(line, ',');
   if (cells.size() != kColumns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
   }
@@ -255,11 +246,8 @@ CycleTableEntry ReadCycleTableRow(std::string_view line) {
   const std::string_view regime = cells[kColumns - 4];
   if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
   entry.accumulated_energy = CellValue<double>(cells[kColumns - 3]);
-  std::string_view flags = cells[kColumns - 2];
-  while (!flags.empty()) {
-    const std::size_t blank = std::min(flags.find(' '), flags.size());
-    entry.fit.flags.emplace_back(flags.substr(0, blank));
-    flags.remove_prefix(std::min(blank + 1, flags.size()));
+  if (const std::string_view flags = cells[kColumns - 2]; !flags.empty()) {
+    for (const std::string_view flag : PartsOf(flags, ' ')) entry.fit.flags.emplace_back(flag);
   }
   const std::string_view checksum = cells[kColumns - 1];
   const auto [end, error] =

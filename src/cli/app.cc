@@ -31,19 +31,16 @@
 namespace mindahl::cli {
 namespace {
 
-std::vector<const CLI::App*> Commands(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App*) { return true; });
+std::vector<std::string> CommandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
 }
 
 bool IsCommand(const CLI::App& app, std::string_view name) {
-  return std::ranges::any_of(
-      Commands(app), [name](const CLI::App* command) { return command->get_name() == name; });
-}
-
-std::vector<std::string> CommandNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : Commands(app)) names.push_back(command->get_name());
-  return names;
+  return std::ranges::count(CommandNames(app), name) > 0;
 }
 
 /// Keys of a configuration: the long names of a command's options.

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "cli/options.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -45,10 +45,8 @@ void AddKnown(CLI::App& command, const std::string& name, std::optional<Uncertai
 /// "25,50±1%,100".
 void ReadNormalLoads(const std::string& text, ContactOptions& options) {
   std::vector<UncertainValue> loads;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    loads.push_back(ParseUncertainValue(text.substr(begin, end - begin), "--normal-load"));
-    begin = end + 1;
+  for (const std::string_view load : PartsOf(text, ',')) {
+    loads.push_back(ParseUncertainValue(load, "--normal-load"));
   }
   SetNormalLoads(options, loads);
 }

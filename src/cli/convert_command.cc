@@ -7,6 +7,7 @@
 #include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/request/conversion.h"
 
@@ -71,9 +72,9 @@ void AddConvertCommand(CLI::App& app, Console& console) {
            "amplitude X of the contact's steady loop [m], without the rig's travel", "M")
       .Required();
   const OptionGroup result(command, "What it becomes");
-  std::vector<std::string> names;
-  for (const convert::TargetRow& row : convert::Targets()) names.emplace_back(row.name);
-  result.Add("--to", options->asked.to, "law or program").Required().OneOf(names);
+  result.Add("--to", options->asked.to, "law or program")
+      .Required()
+      .OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name));
   result.Add(
       "--least-amplitude", options->asked.least_amplitude,
       "from this amplitude [m] on a target that is not exact is fitted;\ndefault --amplitude", "M");

@@ -20,7 +20,6 @@ namespace {
 
 constexpr const char* kFilesGroup = "Files";
 
-/// Returns K and N.
 std::pair<std::uint64_t, std::uint64_t> ShardOf(const std::string& text) {
   constexpr std::uint64_t kMost = 1'000'000;  // so that no product overflows
   const std::size_t slash = text.find('/');

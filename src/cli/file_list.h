@@ -15,7 +15,6 @@ struct FileList {
 
 /// Adds --files-from, beside which FILE is not required.
 void AddFilesFrom(CLI::App& command, FileList& options);
-/// Adds --shard.
 void AddShard(CLI::App& command, FileList& options);
 
 /// Returns the named files, then those of the list; of m the K-th of N parts, from the ⌊(K −

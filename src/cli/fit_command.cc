@@ -73,7 +73,6 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   }
 }
 
-/// Refuses what has no meaning for a sweep, which is no record.
 void RequireSweepOptions(const CLI::App& command) {
   constexpr auto kOfSweeps = std::to_array<std::string_view>(
       {"strict", "help", "sweep", "json", "response", "response-unit", "response-noise",

@@ -15,13 +15,11 @@ using request::FitRequest;
 using request::kAutomatic;
 using request::Strictness;
 
-/// Adds them to a command.
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
 
 /// The group of the columns in the help of a command.
 inline constexpr std::string_view kColumnGroup = "Columns and units";
 
-/// Adds --join.
 void AddJoin(CLI::App& command, FitRequest& options);
 
 /// Adds the options that say which columns of a record are read, and in what unit.

@@ -24,7 +24,6 @@ CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::stri
 /// Sets what a command does once its options are read.
 void WhenCalled(CLI::App& command, std::function<void()> run);
 
-/// Refers to an option that was added to a command.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -87,7 +86,6 @@ class OptionGroup {
 /// The group of options that belong to none.
 inline constexpr const char* kPlainGroup = "Options";
 
-/// Returns an option that was added before.
 Option FindOption(CLI::App& command, const std::string& option);
 
 /// Holds what the command line, or a configuration, gives for an option.

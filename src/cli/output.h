@@ -72,7 +72,6 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Replaces the text about the present work.
   void Say(std::string what);
 
  private:

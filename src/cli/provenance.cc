@@ -17,9 +17,11 @@ report::InputFile DigestOf(const std::string& file) {
   return {.name = file, .sha256 = io::Sha256OfFile(file)};
 }
 
-report::Provenance OptionsAndInputs(const CLI::App& command, const Console& console,
-                                    std::span<const std::string> files) {
-  report::Provenance provenance;
+}  // namespace
+
+report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
+                                std::span<const std::string> files) {
+  report::Provenance provenance{.command = console.command_line, .inputs = {}, .options = {}};
   for (const std::string& file : files) provenance.inputs.push_back(DigestOf(file));
   for (const std::string& file : console.inputs) {
     if (!file.empty()) provenance.inputs.push_back(DigestOf(file));
@@ -32,8 +34,6 @@ report::Provenance OptionsAndInputs(const CLI::App& command, const Console& cons
   }
   return provenance;
 }
-
-}  // namespace
 
 std::string ShellWord(std::string_view word) {
   constexpr std::string_view kPlain =
@@ -58,18 +58,11 @@ std::string CommandLine(int argc, const char* const* argv) {
   return line;
 }
 
-report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
-                                std::span<const std::string> files) {
-  report::Provenance provenance = OptionsAndInputs(command, console, files);
-  provenance.command = console.command_line;
-  return provenance;
-}
-
 report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& console,
                                       const std::string& file) {
   constexpr std::array<std::string_view, 6> kOfBatch = {"--output", "--overwrite", "--json",
                                                         "--report", "--threads",   "--strict"};
-  report::Provenance provenance = OptionsAndInputs(batch, console, {&file, 1});
+  report::Provenance provenance = ProvenanceOf(batch, console, {&file, 1});
   std::erase_if(provenance.options, [&](const auto& option) {
     return std::ranges::find(kOfBatch, option.first) != kOfBatch.end();
   });

@@ -11,6 +11,7 @@
 #include "cli/drive_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "core/text.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/request/motion.h"
 
@@ -51,12 +52,6 @@ void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
       "PHI");
   add("--ripple-phase-down", forces.ripple_phase_down, "phase where the displacement falls [rad]",
       "PHI");
-}
-
-std::vector<std::string> MethodNames() {
-  std::vector<std::string> names;
-  for (const Method& method : methods::Methods()) names.emplace_back(method.name);
-  return names;
 }
 
 std::string MethodHelp() {
@@ -115,7 +110,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
 
   const OptionGroup method(command, "Method");
-  method.AddShown("--method", options->simulation.method, MethodHelp()).OneOf(MethodNames());
+  method.AddShown("--method", options->simulation.method, MethodHelp())
+      .OneOf(NamesOf(methods::Methods(), &Method::name));
   method
       .Add("--steps", options->simulation.steps,
            "substeps a sample, elements of iwan, intervals of table", "N")

@@ -266,7 +266,6 @@ void TrackRun::SayProgress() {
                              made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
 }
 
-/// @throws InputError where a signal asks the run to end
 void TrackRun::RequireNoSignal() const {
   if (signals_->noted() != 0) throw InputError("stopped by a signal");
 }

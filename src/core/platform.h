@@ -53,7 +53,6 @@ int EndFileAt(int file, std::uintmax_t size);
 int WriteToDisk(int file);
 int WriteDirectoryToDisk(const std::string& name);
 int CloseFile(int file);
-/// Gives a file another's permissions.
 int CopyPermissions(const std::string& from, int file);
 /// Removes a file or an empty directory. A signal handler may call it.
 void RemoveName(const char* name);
@@ -68,7 +67,6 @@ void HandleSignalAgain(int signal, void (*handler)(int signal));
 /// Calls a handler after about a second, and again whenever it asks for it.
 void CallEverySecond(void (*handler)(int));
 void CallInASecond();
-/// Ends the program by a signal.
 void EndBySignal(int signal);
 
 /// Runs a program, found on PATH, with no shell, no input, and its messages in a file.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mindahl {
 
@@ -21,6 +22,25 @@ inline std::string LowerCase(std::string_view text) {
 inline std::size_t CharactersIn(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
+}
+
+/// Returns the parts of a text between separators, one more than there are of these.
+inline std::vector<std::string_view> PartsOf(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// Returns the names of the rows of a table.
+template <typename Rows, typename Member>
+std::vector<std::string_view> NamesOf(const Rows& rows, Member name) {
+  std::vector<std::string_view> names;
+  for (const auto& row : rows) names.push_back(row.*name);
+  return names;
 }
 
 }  // namespace mindahl

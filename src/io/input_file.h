@@ -21,7 +21,6 @@ std::string NameOfInput(const std::filesystem::path& path);
 /// @throws InputError "cannot read '<name>': <reason>", by errno
 [[noreturn]] void ThrowCannotRead(const std::string& name);
 
-/// @throws InputError for a line longer than kLongestLine
 [[noreturn]] void ThrowLongLine(const std::string& name);
 
 /// Closes what was opened; standard input stays open.

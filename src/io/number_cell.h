@@ -37,7 +37,6 @@ NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 /// "#DIV/0!". That is a broken number, where another '#' begins a comment.
 bool BeginsWithErrorValue(std::string_view text);
 
-/// True for the ten digits of ASCII.
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 /// `text` without the blanks and tabs around it.

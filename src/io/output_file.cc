@@ -115,7 +115,6 @@ class OutputFile {
   int file_ = -1;
 };
 
-/// Waits until the name of a file is on the disk.
 void WriteNameToDisk(const std::filesystem::path& file, const std::filesystem::path& path) {
   const std::filesystem::path parent = file.parent_path();
   RequireWritten(path, WriteDirectoryToDisk(parent.empty() ? "." : parent.string()));

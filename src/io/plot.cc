@@ -85,7 +85,6 @@ double TextWidth(std::string_view text) {
   return kCharacter * static_cast<double>(CharactersIn(text));
 }
 
-/// Legend entries of a panel.
 struct Legend {
   std::size_t entries = 0;
   double longest = 0.0;  // [px]
@@ -256,7 +255,6 @@ bool Convert(const std::string& svg, const std::string& png, const std::string& 
   return succeeded;
 }
 
-/// Returns the picture of an SVG file as PNG.
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
   std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
   if (const int error = MakeNewDirectory(pattern); error != 0) {

@@ -439,7 +439,6 @@ bool GoesToAndFro(std::span<const double> values) {
   return std::min(rise, fall) > kGoodPart * (greatest - least);
 }
 
-/// Returns a header cell without the word "amplitude".
 std::string WithoutAmplitude(const std::string& name) {
   constexpr std::string_view kWord = "amplitude";
   const std::size_t at = LowerCase(name).find(kWord);
@@ -728,7 +727,6 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
   return joined;
 }
 
-/// @throws InputError for a calibration that is none
 void RequireCalibration(const Role& role, const ColumnChoice& choice) {
   if (std::isfinite(choice.gain.value_or(1.0)) && choice.gain != 0.0 &&
       std::isfinite(choice.zero)) {
@@ -860,12 +858,8 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   sweep.lines = table.lines();
   std::vector<bool> taken(table.columns(), false);
   const auto find = [&](const Role& role, const ColumnChoice& choice) {
-    std::optional<std::size_t> column;
-    if (!choice.column.empty()) {
-      column = finder.Chosen(choice.column, role);
-    } else {
-      column = finder.Recognized(role, taken);
-    }
+    const std::optional<std::size_t> column =
+        choice.column.empty() ? finder.Recognized(role, taken) : finder.Chosen(choice.column, role);
     if (column) taken[*column] = true;
     return column;
   };

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/text.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/report/units.h"
 #include "report/names.h"
@@ -221,12 +222,7 @@ std::string Sentence(const Cause& cause, loop::Channel response) {
                          : fmt::format("give {}{}", cause.option, OrHeld(cause)));
 }
 
-std::vector<std::string_view> CauseCodes() {
-  std::vector<std::string_view> codes;
-  codes.reserve(kCauses.size());
-  for (const CauseRow& row : kCauses) codes.push_back(row.code);
-  return codes;
-}
+std::vector<std::string_view> CauseCodes() { return NamesOf(kCauses, &CauseRow::code); }
 
 bool IsUsable(const Report& report) {
   if (!IsJudged(report)) return true;

@@ -29,7 +29,6 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   return fields;
 }
 
-/// Returns members with the unit of the quantity, which the table does not know.
 Value PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
   Value members = Render(PropagatedFields(), value);
   members.Place("unit", ToValue(unit));

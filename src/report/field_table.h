@@ -271,7 +271,6 @@ inline constexpr const char* kWhyNoContact =
 inline constexpr const char* kWhyNoSphere =
     "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
 
-/// Returns why nothing of a fit that failed is there.
 std::string WhyFailed(const Report& report);
 
 /// Returns the rows of a quantity whose error comes from the fit and from inputs.

@@ -12,7 +12,6 @@ namespace mindahl::report {
 
 using Json = nlohmann::ordered_json;
 
-/// A null of a report.
 struct NullPlace {
   std::string path;
   std::string why;
@@ -30,7 +29,6 @@ struct Value {
   void Set(const std::string& key, Value value);
   /// Adds the members of another value.
   void Add(const Value& members);
-  /// Adds an element of a list.
   void Append(Value value);
 };
 

@@ -161,7 +161,6 @@ std::optional<Interval> IntervalOfModulus(const PropagatedValue& value, const He
   return Interval{*lower, modulus_at(half_width).value_or(std::numeric_limits<double>::infinity())};
 }
 
-/// Returns the contact at the mean load of the series.
 KnownContact AtMeanLoad(const FitResult& fit, const KnownContact& known) {
   KnownContact at_mean = known;
   const double error = known.normal_load ? known.normal_load->standard_error : 0.0;

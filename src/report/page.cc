@@ -197,14 +197,18 @@ Json Joined(Json rows, const Lists&... more) {
 
 // --- figures
 
+/// Returns a figure as a member of the page's data, by its id.
+Json Figure(const std::string& id, const std::optional<io::PlotPanel>& panel) {
+  return Json::array({id, FigureData(panel, id)});
+}
+
 Json Likelihoods(const Report& report) {
   auto sigma = RegionPanel(report, "sigma");
   auto slip_force = RegionPanel(report, "slip_force");
   auto likelihood = SlipForceLikelihood(report);
   if (!sigma && !slip_force && !likelihood) return {};
-  return {{"region-sigma", FigureData(sigma, "region-sigma")},
-          {"region-slip-force", FigureData(slip_force, "region-slip-force")},
-          {"likelihood", FigureData(likelihood, "likelihood")}};
+  return {Figure("region-sigma", sigma), Figure("region-slip-force", slip_force),
+          Figure("likelihood", likelihood)};
 }
 
 // --- the model's loop, the contact, the mapping
@@ -233,7 +237,6 @@ Json Hertz(const contact::HertzPrediction& hertz) {
           {"displacement_ratio", ValueText(hertz.gross_slip_displacement_ratio, "-")}};
 }
 
-/// Tests whether the contact is Mindlin's.
 std::vector<std::string> ContactTests(const Report& report) {
   std::vector<std::string> tests;
   if (IsShown(report.fit, "alpha")) tests = ExponentStatements(report);
@@ -344,13 +347,10 @@ Json Loads(const Report& report) {
           {"hypotheses", std::move(hypotheses)},
           {"laws", std::move(laws)},
           {"statements", LoadLawStatements(report)},
-          {"load-stiffness",
-           FigureData(LoadPanel(report, units, OverLoad::kStiffness), "load-stiffness")},
-          {"load-slip-force",
-           FigureData(LoadPanel(report, units, OverLoad::kSlipForce), "load-slip-force")}};
+          Figure("load-stiffness", LoadPanel(report, units, OverLoad::kStiffness)),
+          Figure("load-slip-force", LoadPanel(report, units, OverLoad::kSlipForce))};
 }
 
-/// Returns what is there of a fit that did not fail.
 Json Fitted(const Report& report, const Provenance& provenance) {
   const FitResult& fit = report.fit;
   const PanelUnits units = PrefixedUnits(report);
@@ -370,7 +370,7 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"parameters", ParameterRows(report)},
       {"wide_interval", WideIntervalStatement(fit, report.units)},
       {"slip_forces", SlipForcesStatement(report)},
-      {"loop", FigureData(LoopPanel(report, units, LoopColours::kByCycle), "loop")},
+      Figure("loop", LoopPanel(report, units, LoopColours::kByCycle)),
       {"other_causes", OtherCauses(report)},
       {"commands", Commands(report, provenance)},
       {"notes", MessagesOf(report.notes)},
@@ -379,13 +379,10 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"closed", facts.closed},
       {"trends", TrendStatements(facts)},
       {"memory", MemoryStatement(report)},
-      {"residual-stroke",
-       FigureData(ResidualAlongStroke(report, units, LoopColours::kByCycle), "residual-stroke")},
-      {"residual-time", FigureData(ResidualInTime(report, units), "residual-time")},
-      {"residual-distribution",
-       FigureData(ResidualDistribution(report, units), "residual-distribution")},
-      {"residual-autocorrelation",
-       FigureData(ResidualAutocorrelation(report), "residual-autocorrelation")},
+      Figure("residual-stroke", ResidualAlongStroke(report, units, LoopColours::kByCycle)),
+      Figure("residual-time", ResidualInTime(report, units)),
+      Figure("residual-distribution", ResidualDistribution(report, units)),
+      Figure("residual-autocorrelation", ResidualAutocorrelation(report)),
       {"residuals",
        fields("residuals.", IsShown(fit, "slip_force") ? "" : "residuals.normalized_rms")},
       {"inadequate", inadequate},
@@ -395,7 +392,7 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"contact", has_contact ? Contact(report) : Json()},
       {"selection", Selection(report)},
       {"loads", Loads(report)},
-      {"backbone", FigureData(BackbonePanel(report, units), "backbone")},
+      Figure("backbone", BackbonePanel(report, units)),
       {"record", Joined(fields("input."), fields("reversals."))}};
 }
 

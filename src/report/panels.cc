@@ -47,7 +47,6 @@ bool Counts(const RecordFit& fit, std::size_t sample) {
   return fit.counts.empty() || fit.counts[sample] != 0;
 }
 
-/// Returns the residuals of the samples of a record that count.
 std::vector<double> CountedResiduals(const RecordFit& fit) {
   std::vector<double> residuals;
   for (std::size_t i = 0; i < fit.residual.size(); ++i) {

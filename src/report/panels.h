@@ -10,7 +10,6 @@
 // The figures of a report, each one panel. None is of a fit that failed.
 namespace mindahl::report {
 
-/// Units in which a report's figures are drawn.
 struct PanelUnits {
   ScaledUnit displacement;
   ScaledUnit force;
@@ -55,7 +54,6 @@ std::optional<io::PlotPanel> RegionPanel(const Report& report, std::string_view 
 /// under a model that is inadequate.
 std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);
 
-/// Quantities of a load series.
 enum class OverLoad { kStiffness, kSlipForce };
 
 /// Draws σ or Tc against the load: of the whole series a line where it determines it, of each file

@@ -36,7 +36,6 @@ void Require(const ReportInput& input) {
   }
 }
 
-/// Warnings and notes of what the fit found.
 void SayFindings(Report& report) {
   for (const identification::Finding& finding : report.fit.findings) {
     const bool is_note = finding.severity == identification::Severity::kNote;

@@ -38,7 +38,6 @@ std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
                      100 * trend->standard_error / std::abs(*mean), trend->p_value);
 }
 
-/// The comparisons of branches, in words.
 struct ComparisonWords {
   std::string_view code;
   std::string_view words;

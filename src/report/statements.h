@@ -106,7 +106,6 @@ std::string LawHeading(const LoadLaw& law);
 /// Returns the 95 % interval of a quantity in its own unit, "49.8 … 50.4 mm"; "open".
 std::string IntervalWords(const QuantityUnderLaw& quantity);
 
-/// Returns a theory of the load's exponent in words.
 std::string WordsOfHypothesis(std::string_view name);
 
 /// @throws InvalidArgument for a fit that failed: it has no curve to draw and no residual to list

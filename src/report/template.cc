@@ -53,7 +53,6 @@ std::string Prose(const std::string& text) {
   return html;
 }
 
-/// Returns the data as templates see them.
 mustache::data DataOf(const Json& value) {
   if (value.is_object()) {
     mustache::data object;

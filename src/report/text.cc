@@ -201,16 +201,10 @@ struct ParameterWords {
   std::string interval;
 };
 
-/// Formats value, error and interval of a fitted parameter.
+/// @param estimate  of which a value or a lower limit is shown
 ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
-  switch (WhatIsShown(estimate)) {
-    case Shown::kNothing:  // has no row
-      return {};
-    case Shown::kLowerLimit:
-      return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit) : "open"), "-"};
-    case Shown::kHeld:
-    case Shown::kValue:
-      break;
+  if (WhatIsShown(estimate) == Shown::kLowerLimit) {
+    return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit) : "open"), "-"};
   }
   const double error = estimate.standard_error.value_or(0.0);
   const ScaledUnit unit = UnitFor(estimate.unit, std::max(std::abs(estimate.value), error));
@@ -345,7 +339,6 @@ std::string OfAmplitude(const Report& report) {
                      Quantity(report.loop->measured.amplitude, report.units.displacement, 4));
 }
 
-/// Describes what was measured without a model.
 std::string MeasuredText(const Report& report) {
   const RecordFit& widest = report.fit.WidestRecord();
   const loop::LoopFacts& facts = widest.facts;
@@ -395,7 +388,6 @@ std::string Coloured(const std::string& sentence, const Report& report, const St
   return style.Judged(JudgementOf(word), word) + sentence.substr(word.size());
 }
 
-/// Returns the verdict, and what to do next.
 std::string AdequacyText(const Report& report, const Style& style) {
   return Coloured(Wrapped(VerdictSentence(report), 2), report, style) +
          Labelled("next: ", NextStep(report));
@@ -418,33 +410,22 @@ std::string NotesText(const Report& report) {
   return text.empty() ? text : "\n" + text;
 }
 
-/// Sums over the records of a fit.
-struct Totals {
+std::string SamplesText(const Report& report) {
   std::size_t samples = 0;
   std::size_t left_out = 0;
   std::size_t reversals = 0;
   std::size_t cycles = 0;
-};
-
-Totals TotalsOf(const FitResult& fit) {
-  Totals totals;
-  for (const RecordFit& record : fit.records) {
-    totals.samples += record.residual.size();
-    totals.reversals += record.reversals.size();
-    totals.cycles += record.measures.cycles;
-    totals.left_out += record.left_out;
+  for (const RecordFit& record : report.fit.records) {
+    samples += record.residual.size();
+    left_out += record.left_out;
+    reversals += record.reversals.size();
+    cycles += record.measures.cycles;
   }
-  return totals;
-}
-
-std::string SamplesText(const Report& report) {
-  const Totals totals = TotalsOf(report.fit);
   const loop::ReversalGate& gate = report.fit.WidestRecord().gate;
-  return fmt::format(
-      "{} samples{}, {} reversals ({}gate {}), {} cycles", totals.samples,
-      totals.left_out > 0 ? fmt::format(", {} of them left out", totals.left_out) : "",
-      totals.reversals, gate.certain ? "" : "not certain, ",
-      Quantity(gate.gate, report.units.excitation, 3), totals.cycles);
+  return fmt::format("{} samples{}, {} reversals ({}gate {}), {} cycles", samples,
+                     left_out > 0 ? fmt::format(", {} of them left out", left_out) : "", reversals,
+                     gate.certain ? "" : "not certain, ",
+                     Quantity(gate.gate, report.units.excitation, 3), cycles);
 }
 
 /// Returns the initial state, of each file where they differ.
@@ -458,7 +439,6 @@ std::string InitialStates(const FitResult& fit) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Describes what was fitted: model, initial state and samples.
 std::string FitText(const Report& report) {
   const FitResult& fit = report.fit;
   std::string text = Wrapped(

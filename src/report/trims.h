@@ -16,7 +16,6 @@ struct Field;
 /// was; none where it was not requested.
 std::vector<Warning> TrimNotes(const Report& report);
 
-/// One part that was left out of a record.
 struct TrimmedItem {
   std::string file;
   loop::TrimmedPart part;
@@ -24,7 +23,6 @@ struct TrimmedItem {
   std::size_t last_line = 0;
 };
 
-/// Lists the parts of all records, in order.
 std::vector<TrimmedItem> TrimmedItems(const Report& report);
 
 const std::vector<Field<TrimmedItem>>& TrimmedFields();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <variant>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/models/friction_model.h"
@@ -42,9 +43,7 @@ std::string ErrorsInWords(const LoopError& error) {
 }  // namespace
 
 ConvertedContact MakeConversion(const ConversionRequest& request) {
-  std::vector<std::string_view> names;
-  for (const TargetRow& target : convert::Targets()) names.push_back(target.name);
-  RequireOneOf("--to", request.to, names);
+  RequireOneOf("--to", request.to, NamesOf(convert::Targets(), &TargetRow::name));
   RequireOneOf("--from", request.from, kLawsToConvert);
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   Validate(request.normal, target.target);

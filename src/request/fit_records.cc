@@ -58,7 +58,6 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
                   what, half_range, unit));
 }
 
-/// Refuses a record that cannot be fitted, naming its file with a line and a column.
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   bool is_loaded = false;
   std::size_t samples = 0;
@@ -206,7 +205,6 @@ void RequireLoads(const FitRequest& request, const std::optional<Interval>& wind
   }
 }
 
-/// Requires one normal load for all files, or one a file.
 void RequireLoadsOfRecords(const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == request.files.size()) return;

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
@@ -53,14 +54,12 @@ void ApplyCompanions(std::string_view group, std::string_view but, FitOptions& f
   }
 }
 
-/// Applies --slip-position linear or quadratic.
 void ApplySlipPosition(std::string_view text, FitOptions& fit) {
   constexpr std::array<std::string_view, 2> kForms = {"linear", "quadratic"};
   RequireOneOf("--slip-position", text, kForms);
   ApplyCompanions(text == kForms[0] ? "slip_position" : "slip_position_quadratic", "", fit);
 }
 
-/// Applies the request for a term: to be fitted, or held at a given value.
 void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
   const std::string name(term.name);
   if (!asked.value) {
@@ -104,7 +103,6 @@ void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions
   }
 }
 
-/// Fits the groups of terms that are named.
 void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
   std::vector<std::string_view> names = {kAutomatic, kNoTerms};
   for (const identification::TermGroup& group : identification::TermGroups()) {
@@ -128,7 +126,6 @@ void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
   }
 }
 
-/// Refuses the options that do not apply to a fit of the displacement, by name.
 void RequireOptionsOfDisplacement(const FitRequest& request) {
   const auto refuse = [](std::string_view option, std::string_view why) {
     throw InputError(
@@ -183,7 +180,6 @@ void RequireFitted(std::string_view option, const std::string& name, bool is_aut
   refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
 }
 
-/// Refuses a held value outside its bounds.
 void RequireWithinBounds(const FitOptions& fit) {
   for (const auto& [name, interval] : fit.bounds) {
     const auto fixed = fit.fixed.find(name);
@@ -251,14 +247,9 @@ bool ChoosesTermsByDefault(const FitRequest& request) {
 
 std::vector<std::string> NamedTerms(const FitRequest& request) {
   const std::string_view choice = request.term_choice;
-  std::vector<std::string> names;
-  if (choice.empty() || choice == kNoTerms || choice == kAutomatic) return names;
-  for (std::size_t begin = 0; begin <= choice.size();) {
-    const std::size_t comma = std::min(choice.find(',', begin), choice.size());
-    names.emplace_back(choice.substr(begin, comma - begin));
-    begin = comma + 1;
-  }
-  return names;
+  if (choice.empty() || choice == kNoTerms || choice == kAutomatic) return {};
+  const std::vector<std::string_view> names = PartsOf(choice, ',');
+  return {names.begin(), names.end()};
 }
 
 FitOptions MakeFitOptions(const FitRequest& options) {

@@ -183,7 +183,6 @@ void AddForces(const AddedForces& forces, std::span<const double> time,
   }
 }
 
-/// α where the model prescribes it.
 std::optional<double> PrescribedExponent(const std::string& model) {
   const FrictionModel* found = models::FindFrictionModel(model);
   return found == nullptr ? std::nullopt : found->shape_exponent;

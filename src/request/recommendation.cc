@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/models/branch_law.h"
@@ -106,7 +107,6 @@ std::string LibraryCall(const Approximation& approximation, const BranchLaw& con
       approximation.method, resolution);
 }
 
-/// Returns the verdict on the scene in one line.
 std::string RecommendationVerdict(const Recommendation& recommendation) {
   if (!recommendation.choice) return "nothing meets the request";
   const std::size_t choice = *recommendation.choice;
@@ -183,16 +183,10 @@ Json CommandJson(const RecommendationRequest& request, const Approximation& appr
 
 }  // namespace
 
-std::vector<std::string> CriterionNames() {
-  std::vector<std::string> names;
-  names.reserve(kCriteria.size());
-  for (const CriterionRow& row : kCriteria) names.emplace_back(row.name);
-  return names;
-}
+std::vector<std::string_view> CriterionNames() { return NamesOf(kCriteria, &CriterionRow::name); }
 
 Criterion FindCriterion(const std::string& name) {
-  const std::vector<std::string> names = CriterionNames();
-  RequireOneOf("--criterion", name, std::vector<std::string_view>(names.begin(), names.end()));
+  RequireOneOf("--criterion", name, CriterionNames());
   return std::ranges::find(kCriteria, name, &CriterionRow::name)->criterion;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "core/text.h"
 #include "mindahl/core/version.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/recommendation.h"
@@ -25,7 +26,6 @@ using tradeoff::WorkPrecision;
 
 namespace {
 
-/// An excitation of the study.
 struct Scene {
   std::string_view name;
   std::string_view title;
@@ -168,12 +168,7 @@ std::string RegionsText(const std::vector<ModelRegion>& regions,
 
 }  // namespace
 
-std::vector<std::string> ExcitationNames() {
-  std::vector<std::string> names;
-  names.reserve(kScenes.size());
-  for (const Scene& scene : kScenes) names.emplace_back(scene.name);
-  return names;
-}
+std::vector<std::string_view> ExcitationNames() { return NamesOf(kScenes, &Scene::name); }
 
 Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Tell& progress) {
   const bool is_contact_given = IsAnythingGiven(request.law) || request.law.alpha;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/identification/model_selection.h"
@@ -23,7 +24,7 @@ struct RecommendationRequest {
 };
 
 /// Returns the names of the criteria, in their order.
-std::vector<std::string> CriterionNames();
+std::vector<std::string_view> CriterionNames();
 
 /// @throws InputError for a name that is none of these
 tradeoff::Criterion FindCriterion(const std::string& name);

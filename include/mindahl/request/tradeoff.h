@@ -20,7 +20,7 @@ struct TradeoffRequest {
 };
 
 /// Returns the names of the excitations, in their order.
-std::vector<std::string> ExcitationNames();
+std::vector<std::string_view> ExcitationNames();
 
 /// An excitation as it was measured.
 struct MeasuredExcitation {
