@@ -33,10 +33,11 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
 /// most (2π/n)⁶/200 of the amplitude.
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
-/// Returns how far a turning point may lie beyond its sample: the longer of the adjacent steps.
-double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
+/// Returns OvershootOfMotion() of every reversal of all records.
+std::vector<double> OvershootsOfMotion(const ScaledRecords& data);
 
-/// Returns LongestOvershoot() of every reversal of all records.
+/// Returns how far the turning point of every reversal of all records may lie beyond its sample:
+/// the longer of the adjacent steps.
 std::vector<double> LongestOvershoots(const ScaledRecords& data);
 
 /// ∂(weighted force)/∂overshoot, a sparse column a reversal: an overshoot moves the branch that
@@ -45,9 +46,12 @@ class TurningPointColumns {
  public:
   /// @param problem  of turned records; θ as of the problem
   TurningPointColumns(const Problem& problem, std::span<const double> theta, Response& response);
+  explicit TurningPointColumns(Eigen::SparseMatrix<double> columns);
 
   [[nodiscard]] const Eigen::SparseMatrix<double>& columns() const { return columns_; }
 
+  /// Returns the factors of the columns that explain most of another.
+  [[nodiscard]] Eigen::VectorXd Fit(const Eigen::VectorXd& column) const;
   /// Takes off a column what those of the turning points explain of it.
   void ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
 
