@@ -249,6 +249,15 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   });
 }
 
+/// Gives the options the values of what a fit has found, to begin with.
+void StartFrom(const FitResult& fit, FitOptions& options) {
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.status != ParameterStatus::kFixed) {
+      options.start[parameter.name] = parameter.value;
+    }
+  }
+}
+
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -328,10 +337,7 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
   options.preparation.held_out = held_out_;
   options.starts = 1;
   options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  for (const ParameterEstimate& parameter : base.fit.parameters) {
-    if (parameter.status != ParameterStatus::kFixed)
-      options.start[parameter.name] = parameter.value;
-  }
+  StartFrom(base.fit, options);
   for (const auto& [name, value] : starts) options.start[name] = value;
   try {
     ++result_.estimates;
@@ -791,11 +797,7 @@ bool Selection::MayBeVirgin(const FitOptions& options) {
 /// measured force is let go where the model is adequate.
 void Selection::FitLast() {
   FitOptions from_here = base_.options;
-  for (const ParameterEstimate& parameter : base_.fit.parameters) {
-    if (parameter.status != ParameterStatus::kFixed) {
-      from_here.start[parameter.name] = parameter.value;
-    }
-  }
+  StartFrom(base_.fit, from_here);
   if (MayBeVirgin(from_here)) from_here = base_.options;  // from all starts
   const auto fit = [&] {
     ++result_.estimates;
