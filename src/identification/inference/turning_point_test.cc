@@ -14,12 +14,22 @@
 namespace mindahl::identification {
 namespace {
 
-/// The most that overshoots move a parameter, in standard errors: as if every sample lay on the
-/// steepest part of its branch.
-double LargestShift(const Problem& problem, const Solution& best,
-                    std::span<const double> overshoot) {
+/// Returns the largest of all records' reversals.
+double LargestOf(double (*overshoot)(const ScaledRecord&, std::size_t), const ScaledRecords& data) {
+  double largest = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      largest = std::max(largest, overshoot(record, k));
+    }
+  }
+  return largest;
+}
+
+/// The most that turning points where the motion has them move a parameter, in standard errors: as
+/// if every sample lay on the steepest part of its branch.
+double LargestShift(const Problem& problem, const Solution& best) {
   const auto counted = static_cast<double>(problem.data->counted);
-  return counted * std::exp(best.theta[kStiffness]) * std::ranges::max(overshoot) /
+  return counted * std::exp(best.theta[kStiffness]) * LargestOf(OvershootOfMotion, *problem.data) /
          std::sqrt(best.sum_of_squares);
 }
 
@@ -28,8 +38,13 @@ double LargestShift(const Problem& problem, const Solution& best,
 std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, const Solution& best,
                                                     const FitOptions& options,
                                                     SearchBuffers& buffers) {
-  const std::vector<double> overshoot = OvershootsOfMotion(*problem.data);
-  if (!(LargestShift(problem, best, overshoot) > options.thresholds.turning_point_shift)) return {};
+  if (!(LargestShift(problem, best) > options.thresholds.turning_point_shift)) return {};
+  std::vector<double> overshoot;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      overshoot.push_back(OvershootOfMotion(record, k));
+    }
+  }
   TurningPointFit fit{PutInTurningPoints(*problem.data, overshoot), best};
   Problem turned = problem;
   turned.data = &fit.records->data;
@@ -70,7 +85,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   const std::size_t parameters = problem.parameters.free().size() + reversals;
   if (2 * parameters > data.counted) return of_motion;
   // Missed extremes explain nothing that no sample could show: σ·overshoot is the most they may do.
-  const double most = std::exp(best.theta[kStiffness]) * std::ranges::max(LongestOvershoots(data));
+  const double most = std::exp(best.theta[kStiffness]) * LargestOf(LongestOvershoot, data);
   if (count * count * most * most / least < 2 * static_cast<double>(reversals)) return of_motion;
 
   const double needed =

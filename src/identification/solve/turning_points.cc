@@ -108,12 +108,15 @@ std::vector<BranchMotion> MotionOf(const models::LoadingPath& path, const Scaled
   return motion;
 }
 
-/// Returns how far a turning point may lie beyond its sample.
+}  // namespace
+
 double LongestOvershoot(const ScaledRecord& record, std::size_t reversal) {
   const std::size_t i = record.reversals[reversal];
   const auto& x = record.displacement;
   return std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i]));
 }
+
+namespace {
 
 /// Extremum beyond x₀ of the polynomial through samples first … last about it; from three samples
 /// the parabola's. Newton's form, and his method from the middle.
@@ -189,27 +192,14 @@ double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal) {
                     LongestOvershoot(record, reversal));
 }
 
-namespace {
-
-std::vector<double> OfAllReversals(const ScaledRecords& data,
-                                   double (*overshoot)(const ScaledRecord&, std::size_t)) {
-  std::vector<double> overshoots;
+std::vector<double> LongestOvershoots(const ScaledRecords& data) {
+  std::vector<double> longest;
   for (const ScaledRecord& record : data.records) {
     for (std::size_t k = 0; k < record.reversals.size(); ++k) {
-      overshoots.push_back(overshoot(record, k));
+      longest.push_back(LongestOvershoot(record, k));
     }
   }
-  return overshoots;
-}
-
-}  // namespace
-
-std::vector<double> OvershootsOfMotion(const ScaledRecords& data) {
-  return OfAllReversals(data, OvershootOfMotion);
-}
-
-std::vector<double> LongestOvershoots(const ScaledRecords& data) {
-  return OfAllReversals(data, LongestOvershoot);
+  return longest;
 }
 
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,

@@ -33,11 +33,10 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
 /// most (2π/n)⁶/200 of the amplitude.
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
-/// Returns OvershootOfMotion() of every reversal of all records.
-std::vector<double> OvershootsOfMotion(const ScaledRecords& data);
+/// Returns how far a turning point may lie beyond its sample: the longer of the adjacent steps.
+double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
 
-/// Returns how far the turning point of every reversal of all records may lie beyond its sample:
-/// the longer of the adjacent steps.
+/// Returns LongestOvershoot() of every reversal of all records.
 std::vector<double> LongestOvershoots(const ScaledRecords& data);
 
 /// ∂(weighted force)/∂overshoot, a sparse column a reversal: an overshoot moves the branch that
