@@ -47,6 +47,8 @@ std::string Needs(std::string_view quantity, const std::vector<std::string>& inp
   return fmt::format("{} needs {}", quantity, fmt::join(inputs, ", "));
 }
 
+bool IsComplete(const KnownBody& body) { return IsElastic(body) && body.radius; }
+
 /// Holds the quantities that follow from the known properties alone, without the fit.
 struct Derived {
   std::optional<Quantity> normal_load;
@@ -194,9 +196,8 @@ PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient) {
   RequireKnown(known);
   RequireKnown("friction coefficient [-]", friction_coefficient);
-  const auto is_complete = [](const KnownBody& body) { return IsElastic(body) && body.radius; };
   const bool by_radius = known.contact_radius && known.tangential_compliance;
-  const bool by_bodies = is_complete(known.body_1) && is_complete(known.body_2);
+  const bool by_bodies = IsComplete(known.body_1) && IsComplete(known.body_2);
   if (!known.normal_load || by_radius == by_bodies) {
     throw InvalidArgument(
         "contact: must be given by its normal load and either contact radius and tangential "
@@ -317,10 +318,6 @@ double SmallestRadius(const KnownContact& known) {
     if (body->radius) smallest = std::min(smallest, std::abs(body->radius->value));
   }
   return smallest;
-}
-
-bool IsComplete(const KnownBody& body) {
-  return body.youngs_modulus && body.poisson_ratio && body.radius;
 }
 
 /// Returns Hertz's contact radius [m] where materials, radii and load are known.

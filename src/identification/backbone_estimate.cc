@@ -168,7 +168,7 @@ Eigen::MatrixXd ColumnsOf(const Followed& record, const Grid& grid) {
   return columns.transpose();
 }
 
-/// Less its mean over what counts.
+/// Takes off a column its mean over what counts.
 void Center(const std::vector<unsigned char>& counts, Eigen::Ref<Eigen::VectorXd> column) {
   double sum = 0.0;
   double count = 0.0;
@@ -190,10 +190,12 @@ struct BackboneSeries {
   Eigen::VectorXd right;    // Aᵀy
   double samples = 0.0;
 
+  [[nodiscard]] Eigen::VectorXd Residual(std::size_t r, const Eigen::VectorXd& w) const {
+    return force[r] - columns[r] * w;
+  }
   [[nodiscard]] double SumOfSquares(const Eigen::VectorXd& w) const {
     double sum = 0.0;
-    for (std::size_t r = 0; r < columns.size(); ++r)
-      sum += (force[r] - columns[r] * w).squaredNorm();
+    for (std::size_t r = 0; r < columns.size(); ++r) sum += Residual(r, w).squaredNorm();
     return sum;
   }
 };
@@ -225,10 +227,8 @@ Autocorrelation BackboneAutocorrelation(const BackboneSeries& series,
   std::vector<std::span<const double>> spans;
   std::vector<std::span<const unsigned char>> counts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    residuals.emplace_back(series.force[r] - series.columns[r] * w);
-  }
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    spans.emplace_back(residuals[r].data(), static_cast<std::size_t>(residuals[r].size()));
+    const Eigen::VectorXd& residual = residuals.emplace_back(series.Residual(r, w));
+    spans.emplace_back(residual.data(), records[r].counts.size());
     counts.emplace_back(records[r].counts);
   }
   return EstimateAutocorrelation(spans, counts);
@@ -239,7 +239,7 @@ double Widening(const BackboneSeries& series, std::span<const Followed> records,
                 const Eigen::VectorXd& w, const Thresholds& thresholds) {
   double widening = 1.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Eigen::VectorXd residual = series.force[r] - series.columns[r] * w;
+    const Eigen::VectorXd residual = series.Residual(r, w);
     const ResidualStructure structure =
         DescribeStructure(records[r].displacement, records[r].reversals,
                           {residual.data(), records[r].displacement.size()}, records[r].counts,

@@ -23,6 +23,8 @@ Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b) {
 }
 
 Eigen::MatrixXd SolveLeastSquares(const MatrixView& a, const MatrixView& b, Eigen::Index* rank) {
+  if (rank != nullptr) *rank = 0;
+  if (a.cols() == 0) return Eigen::MatrixXd(0, b.cols());
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(a);
   if (rank != nullptr) *rank = factors.rank();
   // Eigen divides by the pivots of a matrix of zeros.

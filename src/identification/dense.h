@@ -19,6 +19,7 @@ Eigen::MatrixXd SquareOf(const MatrixView& a);
 /// Solves AX = B with a symmetric A, by LDLᵀ with pivots.
 Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b);
 /// Solves AX = B in the sense of least squares, by QR with column pivots.
+/// @param a     may have no columns
 /// @param rank  written where it is asked for: of A
 Eigen::MatrixXd SolveLeastSquares(const MatrixView& a, const MatrixView& b,
                                   Eigen::Index* rank = nullptr);

@@ -228,7 +228,9 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   FillFitted(attempt, solved, result);
   if (solved.fits_turns()) {
     const std::vector<double>& overshoot = solved.turned->records->overshoot;
-    result.findings.push_back(FoundTurningPoints(std::ranges::max(overshoot) * data.length));
+    result.findings.push_back(
+        {.code = "turning_points_between_samples",
+         .numbers = {{"overshoot", std::ranges::max(overshoot) * data.length}}});
   }
   return result;
 }
@@ -285,29 +287,18 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
   }
 }
 
-/// The options with a slip force no larger than the largest force of the record, where the loop
-/// slides over most of its stroke and the fitted law, which is not adequate, carries its slip force
-/// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
-std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& given) {
-  constexpr const char* kName = "slip_force";
+/// Returns WithinMeasuredForce() of a fit that is not adequate, from starts of its own.
+std::optional<FitOptions> OptionsWithinForce(const FitResult& result, const FitOptions& given) {
   // Below, nothing says that the model does not follow the record.
   if (result.depth < Depth::kIntervals) return std::nullopt;
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
-      result.response == loop::Channel::kDisplacement || given.bounds.contains(kName) ||
-      given.fixed.contains(kName)) {
+      result.response == loop::Channel::kDisplacement || IsScaledByLoad(result)) {
     return std::nullopt;
   }
   const RecordFit& widest = result.WidestRecord();
-  if (!SlidesOverMostOfStroke(widest.facts, given.thresholds) || IsScaledByLoad(result)) {
-    return std::nullopt;
-  }
-  const double peak_force = widest.facts.peak_force / widest.load_ratio;
-  if (peak_force >= given.thresholds.mobilised_by_asymptote * result.law.slip_force) {
-    return std::nullopt;
-  }
-  FitOptions within = given;
-  within.start.clear();
-  within.bounds[kName] = {0.0, peak_force};
+  std::optional<FitOptions> within =
+      WithinMeasuredForce(widest.facts, widest.load_ratio, result.law.slip_force, given);
+  if (within) within->start.clear();
   return within;
 }
 
@@ -358,7 +349,7 @@ struct Fitter::State {
   /// residuals scatter as noise of the displacement makes them.
   void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
     Fit(records, depth, given);
-    std::optional<FitOptions> within = WithinMeasuredForce(result, given);
+    std::optional<FitOptions> within = OptionsWithinForce(result, given);
     if (within) Fit(records, depth, *within);
     TryDisplacementNoise(records, depth, within ? *within : given);
   }

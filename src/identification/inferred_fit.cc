@@ -185,13 +185,13 @@ MemoryTest CompareBranches(const FittedProblem& fitted_problem, const LawCompari
                            const DisplacementEffect& displacement, const Thresholds& thresholds,
                            Response& response) {
   const auto& [problem, solution, noise, estimates] = fitted_problem;
-  const FittedLaw fitted{&problem, &solution, estimates.jacobian(), estimates.residual()};
+  const FittedLaw fitted{&problem, &solution, {estimates.jacobian(), estimates.residual()}};
   if (!laws.other) return TestMemory(fitted, nullptr, noise, displacement, thresholds, response);
   const Problem& problem_of_other = laws.other->problem;
-  FittedLaw other{&problem_of_other, &laws.other->solution, {}, {}};
-  const auto& free = problem_of_other.parameters.free();
-  other.jacobian =
-      JacobianAt(problem_of_other, other.solution->theta, response, free, other.residual);
+  const Solution& solution_of_other = laws.other->solution;
+  const FittedLaw other{&problem_of_other, &solution_of_other,
+                        LinearizeAt(problem_of_other, solution_of_other.theta, response,
+                                    problem_of_other.parameters.free())};
   const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
   const MemoryTest test = TestMemory(is_masing ? fitted : other, is_masing ? &other : &fitted,
                                      noise, displacement, thresholds, response);
@@ -249,7 +249,7 @@ void WidenByProfiles(const FittedProblem& fitted, const FitOptions& options, Sea
   }
   if (StiffnessIsOpenAbove(fitted, options, buffers)) {
     OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
-    result.findings.push_back(FoundOpenStiffness());
+    result.findings.push_back({.code = "sigma_bounded_below", .parameters = {"sigma"}});
   }
 }
 
@@ -288,20 +288,20 @@ void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const Solv
                  FitResult& result) {
   const auto& [problem, solution, noise, estimates] = fitted;
   const double peak_force = result.PeakForce();
-  const auto cover = [&](const Rival& other) {
-    return CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
-                      attempt.buffers.response, result.parameters);
+  const auto cover = [&](const Rival& other, FindingCode code) {
+    const std::vector<std::string> apart =
+        CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
+                   attempt.buffers.response, result.parameters);
+    if (!apart.empty()) result.findings.push_back({.code = code, .parameters = apart});
   };
   if (solved.rival && !solved.fits_turns()) {
-    Append(result.findings,
-           FoundUndecidedPast(cover(
-               {solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState})));
+    cover({solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState},
+          "initial_state_undecided");
   }
   if (solved.fits_turns() || solved.is_weighted) return;  // other starts led to another problem
   for (const Descent& descent : solved.descents) {
     if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
-    Append(result.findings,
-           FoundSeveralMinima(cover({problem, descent.solution, IntervalSource::kOtherMinimum})));
+    cover({problem, descent.solution, IntervalSource::kOtherMinimum}, "several_minima");
     break;  // one says it
   }
 }

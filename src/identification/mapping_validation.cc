@@ -91,9 +91,7 @@ Record MindlinRecord(const Case& drawn) {
 }
 
 struct Errors {
-  double sigma = 0.0;
-  double alpha = 0.0;
-  double slip_force = 0.0;
+  std::array<double, kValidatedParameters.size()> of_contact{};  // of σ, α and Tc
   double standardized = 0.0;
   bool undetermined = false;
   bool converged = false;
@@ -146,9 +144,9 @@ void CompareContact(const Trial& trial, const models::BranchLaw& fitted, Errors&
   const models::BranchLaw found =
       trial.IsDahl() ? models::MasingEquivalent(fitted, trial.amplitude) : fitted;
   const models::BranchLaw& truth = trial.contact;
-  errors.sigma = std::abs(found.tangential_stiffness / truth.tangential_stiffness - 1);
-  errors.alpha = std::abs(found.shape_exponent - truth.shape_exponent);
-  errors.slip_force = std::abs(found.slip_force / truth.slip_force - 1);
+  errors.of_contact = {std::abs(found.tangential_stiffness / truth.tangential_stiffness - 1),
+                       std::abs(found.shape_exponent - truth.shape_exponent),
+                       std::abs(found.slip_force / truth.slip_force - 1)};
 }
 
 Errors Compare(const Trial& trial, const FitResult& fit, double interval_factor) {
@@ -197,23 +195,18 @@ double StandardizedDistance(const Trial& trial, const FitResult& fit) {
 /// Collects one row of the table.
 struct RowBuilder {
   ValidationRow row;
-  std::vector<double> sigma;
-  std::vector<double> alpha;
-  std::vector<double> slip_force;
+  std::array<std::vector<double>, kValidatedParameters.size()> of_contact;
 
   /// @returns whether the case met the tolerance
   bool Add(const Errors& errors) {
     ++row.cases;
     row.undetermined += errors.undetermined ? 1 : 0;
-    sigma.push_back(errors.sigma);
-    alpha.push_back(errors.alpha);
-    slip_force.push_back(errors.slip_force);
     row.worst_standardized = std::max(row.worst_standardized, errors.standardized);
     for (std::size_t k = 0; k < errors.intervals.size(); ++k) {
+      of_contact[k].push_back(errors.of_contact[k]);
       row.intervals[k].Add(errors.intervals[k]);
     }
-    const double worst = row.noise == 0 ? std::max({errors.sigma, errors.alpha, errors.slip_force})
-                                        : errors.standardized;
+    const double worst = row.noise == 0 ? std::ranges::max(errors.of_contact) : errors.standardized;
     const bool met =
         errors.converged && worst <= row.tolerance && (row.noise > 0 || !errors.undetermined);
     row.failures += met ? 0 : 1;
@@ -221,6 +214,7 @@ struct RowBuilder {
   }
 
   ValidationRow Finish() {
+    const auto& [sigma, alpha, slip_force] = of_contact;
     row.median_sigma_error = Median(sigma);
     row.worst_sigma_error = Largest(sigma);
     row.median_alpha_error = Median(alpha);
@@ -253,8 +247,8 @@ std::string Describe(const Case& drawn, std::size_t index, double noise, const T
       index, trial.IsDahl() ? " by Dahl's own law" : "", drawn.lambda, noise, drawn.normal_load,
       drawn.contact.contact_radius, drawn.contact.tangential_compliance, drawn.friction_coefficient,
       drawn.excitation.cycles,
-      errors.converged ? "" : fmt::format("not converged ({}), ", errors.termination), errors.sigma,
-      errors.alpha, errors.slip_force, errors.standardized);
+      errors.converged ? "" : fmt::format("not converged ({}), ", errors.termination),
+      errors.of_contact[0], errors.of_contact[1], errors.of_contact[2], errors.standardized);
 }
 
 /// Loops slide beyond it, and their intervals are the parabola's.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -41,47 +43,20 @@ struct Regression {
 /// Least squares of force = offset + factor·column over the samples that count.
 Regression Regress(std::span<const double> column, std::span<const double> force,
                    std::span<const unsigned char> counts, bool offset) {
-  double n = 0.0;
-  double mean_column = 0.0;
-  double mean_force = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (counts[i] == 0) continue;
-    ++n;
-    mean_column += column[i];
-    mean_force += force[i];
+  std::vector<Eigen::Index> counting;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] != 0) counting.push_back(static_cast<Eigen::Index>(i));
   }
-  mean_column = offset ? mean_column / n : 0.0;
-  mean_force = offset ? mean_force / n : 0.0;
-  double squares = 0.0;
-  double product = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (counts[i] == 0) continue;
-    squares += (column[i] - mean_column) * (column[i] - mean_column);
-    product += (column[i] - mean_column) * (force[i] - mean_force);
+  using Column = Eigen::Map<const Eigen::VectorXd>;
+  Eigen::VectorXd x = Column(column.data(), std::ssize(column))(counting);
+  Eigen::VectorXd y = Column(force.data(), std::ssize(force))(counting);
+  if (offset) {
+    x.array() -= x.mean();
+    y.array() -= y.mean();
   }
-  Regression regression;
-  if (squares > 0) regression.factor = product / squares;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (counts[i] == 0) continue;
-    const double residual = (force[i] - mean_force) - regression.factor * (column[i] - mean_column);
-    regression.sum_of_squares += residual * residual;
-  }
-  return regression;
-}
-
-/// ±1, the direction of the motion from one reversal to the next.
-std::vector<double> SenseOfMotion(std::span<const double> displacement,
-                                  std::span<const std::size_t> reversals) {
-  std::vector<double> sense(displacement.size());
-  std::size_t begin = 0;
-  for (std::size_t stroke = 0; stroke <= reversals.size(); ++stroke) {
-    const std::size_t end = stroke < reversals.size() ? reversals[stroke] : displacement.size() - 1;
-    const double way = displacement[end] - displacement[begin];
-    std::fill(sense.begin() + static_cast<std::ptrdiff_t>(begin),
-              sense.begin() + static_cast<std::ptrdiff_t>(end) + 1, std::copysign(1.0, way));
-    begin = std::min(end + 1, displacement.size() - 1);
-  }
-  return sense;
+  const double squares = x.squaredNorm();
+  const double factor = squares > 0 ? x.dot(y) / squares : 0.0;
+  return {factor, (y - factor * x).squaredNorm()};
 }
 
 }  // namespace
@@ -125,7 +100,7 @@ SimplerLaws CompareSimplerLaws(const loop::RecordView& record, const FitOptions&
     score.rms = std::sqrt(regression.sum_of_squares / n);
   };
   add_limit("spring", record.displacement, /*is_spring=*/true);
-  add_limit("coulomb", SenseOfMotion(record.displacement, nearest.records.front().reversals),
+  add_limit("coulomb", DirectionsOf(record.displacement, nearest.records.front().reversals),
             /*is_spring=*/false);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     LawScore& score = result.scores.emplace_back();
@@ -169,12 +144,6 @@ SimplerLaws CompareSimplerLaws(const loop::RecordView& record, const FitOptions&
 using loop::RecordView;
 
 namespace {
-
-std::vector<std::size_t> Positions(std::size_t count) {
-  std::vector<std::size_t> positions(count);
-  for (std::size_t i = 0; i < count; ++i) positions[i] = i;
-  return positions;
-}
 
 std::string Label(const ModelScore& score) {
   return fmt::format("{}{}", score.model->name, score.rig ? " with a rig" : "");
@@ -354,7 +323,8 @@ void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> f
 /// The converged ones, the best first; without those that may not be chosen, unless nothing else is
 /// left.
 std::vector<std::size_t> Rank(std::span<const ModelScore> scores) {
-  std::vector<std::size_t> ranking = Positions(scores.size());
+  std::vector<std::size_t> ranking(scores.size());
+  std::iota(ranking.begin(), ranking.end(), std::size_t{0});
   std::erase_if(ranking, [&](std::size_t i) { return !scores[i].converged; });
   std::ranges::sort(ranking, {}, [&](std::size_t i) { return scores[i].aicc; });
   std::vector<std::size_t> eligible = ranking;

@@ -172,10 +172,7 @@ class SweepProblem {
     }
     if (held) start[*held] = value;
     ceres::Problem problem;
-    using Cost = ceres::AutoDiffCostFunction<SweepResiduals, ceres::DYNAMIC, 1, 1, 1>;
-    problem.AddResidualBlock(new Cost(new SweepResiduals(amplitude_, response_, options_, scale_),
-                                      static_cast<int>(amplitude_.size())),
-                             nullptr, &start[0], &start[1], &start[2]);
+    AddResiduals(start, problem);
     bool any_free = false;
     for (std::size_t k = 0; k < start.size(); ++k) {
       if (fixed_[k] || k == held) {
@@ -215,10 +212,7 @@ class SweepProblem {
   /// coordinate is held or the matrix has not the rank.
   [[nodiscard]] std::array<std::optional<double>, 3> Errors(Point at) const {
     ceres::Problem problem;
-    using Cost = ceres::AutoDiffCostFunction<SweepResiduals, ceres::DYNAMIC, 1, 1, 1>;
-    problem.AddResidualBlock(new Cost(new SweepResiduals(amplitude_, response_, options_, scale_),
-                                      static_cast<int>(amplitude_.size())),
-                             nullptr, &at[0], &at[1], &at[2]);
+    AddResiduals(at, problem);
     std::vector<std::pair<const double*, const double*>> blocks;
     for (std::size_t k = 0; k < at.size(); ++k) {
       if (fixed_[k] || at[k] <= lower_[k] || at[k] >= upper_[k]) {
@@ -243,6 +237,14 @@ class SweepProblem {
   }
 
  private:
+  /// @param at  parameter blocks, which must outlive the problem
+  void AddResiduals(Point& at, ceres::Problem& problem) const {
+    using Cost = ceres::AutoDiffCostFunction<SweepResiduals, ceres::DYNAMIC, 1, 1, 1>;
+    problem.AddResidualBlock(new Cost(new SweepResiduals(amplitude_, response_, options_, scale_),
+                                      static_cast<int>(amplitude_.size())),
+                             nullptr, &at[0], &at[1], &at[2]);
+  }
+
   std::span<const double> amplitude_;
   std::span<const double> response_;
   const SweepOptions& options_;
@@ -294,14 +296,6 @@ std::optional<double> IntervalEnd(const SweepProblem& problem, const Solved& bes
   return 0.5 * (inside + outside);
 }
 
-void RequirePositive(std::span<const double> values, const char* quantity) {
-  for (const double value : values) {
-    if (!std::isfinite(value) || !(value > 0)) {
-      ThrowInvalid(quantity, value, "must be finite and > 0");
-    }
-  }
-}
-
 /// Two-sided chance of the correlation r₁ of neighbours, of which √n·r₁ is normal for white noise.
 double CorrelationPValue(std::span<const double> amplitude, std::span<const double> residuals) {
   std::vector<std::size_t> order(amplitude.size());
@@ -336,19 +330,18 @@ const ParameterEstimate& SweepFit::parameter(std::string_view name) const {
 
 double SweepStiffnessAt(const SweepOptions& options, double sigma, double alpha, double slip_force,
                         double amplitude) {
-  RequirePositive(std::array{sigma, slip_force, amplitude},
-                  "stiffness [N/m], slip force [N] or amplitude");
-  if (!std::isfinite(alpha) || alpha < 0) {
-    ThrowInvalid("shape exponent [-]", alpha, "must be finite and >= 0");
+  for (const double value : {sigma, slip_force, amplitude}) {
+    RequirePositive("stiffness [N/m], slip force [N] or amplitude", value);
   }
+  RequireNonNegative("shape exponent [-]", alpha);
   return sigma * ReducedStiffness(options, sigma, alpha, slip_force, amplitude);
 }
 
 SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> response,
                   const SweepOptions& options) {
   RequireSameSize("amplitudes", amplitude.size(), "responses", response.size());
-  RequirePositive(amplitude, "amplitude of a sweep");
-  RequirePositive(response, "response of a sweep");
+  for (const double value : amplitude) RequirePositive("amplitude of a sweep", value);
+  for (const double value : response) RequirePositive("response of a sweep", value);
   for (const auto& [name, value] : options.fixed) {
     if (std::ranges::find(kSweepNames, name) == kSweepNames.end()) {
       throw InvalidArgument("a sweep has no parameter " + name +
@@ -358,9 +351,7 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
       ThrowInvalid(name.c_str(), value, "must be finite and > 0, alpha >= 0");
     }
   }
-  if (options.response_noise) {
-    RequirePositive(std::array{*options.response_noise}, "noise of the response");
-  }
+  if (options.response_noise) RequirePositive("noise of the response", *options.response_noise);
   const SweepProblem problem(amplitude, response, options);
   const std::size_t free = problem.free();
   if (amplitude.size() <= free) {

@@ -267,12 +267,12 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
   for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
-  columns_ = JacobianAt(problem, theta, response_, inside, residual_);
+  at_fit_ = LinearizeAt(problem, theta, response_, inside);
 }
 
 TermScore TermScores::OfFit() const {
   Eigen::VectorXd step;
-  return Solve(columns_, step);
+  return Solve(at_fit_.jacobian, step);
 }
 
 std::optional<TermScore> TermScores::Of(const FitOptions& with) {
@@ -294,21 +294,21 @@ std::optional<TermScore> TermScores::Of(const FitOptions& with) {
   const auto exponent =
       std::ranges::find_if(added, [&](std::size_t p) { return IsExponent(parameters[p]); });
   const bool is_tried = exponent != added.end() && shapes_new;
+  const Eigen::MatrixXd& fitted = at_fit_.jacobian;
   std::optional<TermScore> best;
   for (const double tried : kTriedExponents) {
     if (is_tried) theta[*exponent] = tried;
-    Eigen::VectorXd residual;
-    const Eigen::MatrixXd derivatives = JacobianAt(problem, theta, response_, added, residual);
+    const Eigen::MatrixXd derivatives = LinearizeAt(problem, theta, response_, added).jacobian;
     std::vector<Eigen::Index> effective;
     for (Eigen::Index c = 0; c < derivatives.cols(); ++c) {
       if (derivatives.col(c).squaredNorm() > 0) effective.push_back(c);
     }
     if (effective.empty()) return std::nullopt;
     const auto more = static_cast<Eigen::Index>(effective.size());
-    Eigen::MatrixXd columns(columns_.rows(), columns_.cols() + more);
-    columns.leftCols(columns_.cols()) = columns_;
+    Eigen::MatrixXd columns(fitted.rows(), fitted.cols() + more);
+    columns.leftCols(fitted.cols()) = fitted;
     for (Eigen::Index c = 0; c < more; ++c) {
-      columns.col(columns_.cols() + c) = derivatives.col(effective[static_cast<std::size_t>(c)]);
+      columns.col(fitted.cols() + c) = derivatives.col(effective[static_cast<std::size_t>(c)]);
     }
     Eigen::VectorXd step;
     TermScore score = Solve(columns, step);
@@ -316,13 +316,13 @@ std::optional<TermScore> TermScores::Of(const FitOptions& with) {
     if (!best || score.rms < best->rms) {
       for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
         const auto place = std::ranges::find(names_, name) - names_.begin();
-        if (place < columns_.cols()) score.law.emplace(name, step(place));
+        if (place < fitted.cols()) score.law.emplace(name, step(place));
       }
       for (const std::size_t p : added) score.values[parameters.NameOf(p)] = theta[p];
       for (Eigen::Index c = 0; c < more; ++c) {
         const std::size_t p =
             added[static_cast<std::size_t>(effective[static_cast<std::size_t>(c)])];
-        score.values[parameters.NameOf(p)] += step(columns_.cols() + c);
+        score.values[parameters.NameOf(p)] += step(fitted.cols() + c);
       }
       for (const std::size_t p : added) {
         const Parameter& parameter = parameters[p];
@@ -365,8 +365,8 @@ std::optional<double> TermScores::TestEffects(const Eigen::MatrixXd& added) cons
   const auto terms = static_cast<std::size_t>(added.cols());
   const std::size_t parts = parts_.size();
   if (parts < terms + kLeastDegrees) return std::nullopt;
-  const Eigen::MatrixXd freed = LeftOver(columns_, added);
-  const Eigen::VectorXd before = LeftOver(columns_, residual_);
+  const Eigen::MatrixXd freed = LeftOver(at_fit_.jacobian, added);
+  const Eigen::VectorXd before = LeftOver(at_fit_.jacobian, at_fit_.residual);
   const Eigen::VectorXd after = LeftOver(freed, before);
   const auto rows = RowsOfParts();
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(added.cols(), added.cols());
@@ -394,7 +394,8 @@ TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& ste
       columns.colwise().norm().transpose().unaryExpr([](double n) { return n > 0 ? n : 1.0; });
   const Eigen::MatrixXd unit = columns * norms.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd whole = TransposedProduct(unit, unit);
-  const Eigen::VectorXd wanted = -(unit.transpose() * residual_);
+  const Eigen::VectorXd& residual = at_fit_.residual;
+  const Eigen::VectorXd wanted = -(unit.transpose() * residual);
   const auto solve = [&](Eigen::MatrixXd matrix, const Eigen::VectorXd& vector) {
     matrix.diagonal().array() += kOwnSquare;
     return Eigen::VectorXd(SolveSymmetric(matrix, vector));
@@ -402,7 +403,7 @@ TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& ste
   TermScore score;
   const Eigen::VectorXd solution = solve(whole, wanted);
   step = solution.cwiseQuotient(norms);
-  score.rms = data_.force * std::sqrt((residual_ + unit * solution).squaredNorm() /
+  score.rms = data_.force * std::sqrt((residual + unit * solution).squaredNorm() /
                                       static_cast<double>(data_.counted));
   const auto rows_of_parts = RowsOfParts();
   score.predictions.resize(parts_.size());
@@ -413,13 +414,13 @@ TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& ste
       const auto [first, count] = rows_of_parts[c];
       const auto rows = unit.middleRows(first, count);
       matrix -= TransposedProduct(rows, rows);
-      vector.noalias() += rows.transpose() * residual_.segment(first, count);
+      vector.noalias() += rows.transpose() * residual.segment(first, count);
     }
     const Eigen::VectorXd without = solve(std::move(matrix), vector);
     for (std::size_t c = fold; c < parts_.size(); c += folds_) {
       const auto [first, count] = rows_of_parts[c];
       const double squares =
-          (residual_.segment(first, count) + unit.middleRows(first, count) * without).squaredNorm();
+          (residual.segment(first, count) + unit.middleRows(first, count) * without).squaredNorm();
       score.predictions[c] = squares * data_.force * data_.force / parts_[c].samples;
     }
   }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/local.h"
 #include "identification/problem/problem.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
@@ -147,9 +148,8 @@ class TermScores {
   std::map<std::string, double> values_;  // of its parameters
   std::set<std::string> free_;            // of these
   models::InitialState state_ = models::InitialState::kSteady;
-  Eigen::MatrixXd columns_;         // of those that are inside their bounds
+  Linearization at_fit_;            // in those that are inside their bounds
   std::vector<std::string> names_;  // of these
-  Eigen::VectorXd residual_;
   std::span<const Part> parts_;
   std::size_t folds_ = 0;
 };

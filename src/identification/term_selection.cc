@@ -249,6 +249,15 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   });
 }
 
+/// Gives the options the values of what a fit has found, to begin with.
+void StartFrom(const FitResult& fit, FitOptions& options) {
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.status != ParameterStatus::kFixed) {
+      options.start[parameter.name] = parameter.value;
+    }
+  }
+}
+
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -285,8 +294,6 @@ class Selection {
   void Add(TermCandidate& candidate, CandidateModel model, double gain);
   bool MoveWithout(const std::vector<std::string_view>& dropped, std::string_view instead);
   void Simplify();
-  [[nodiscard]] std::optional<FitOptions> WithinMeasuredForce(const FitResult& fit,
-                                                              const FitOptions& options) const;
   [[nodiscard]] bool MayBeVirgin(const FitOptions& options);
   void FitLast();
   void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
@@ -330,10 +337,7 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
   options.preparation.held_out = held_out_;
   options.starts = 1;
   options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  for (const ParameterEstimate& parameter : base.fit.parameters) {
-    if (parameter.status != ParameterStatus::kFixed)
-      options.start[parameter.name] = parameter.value;
-  }
+  StartFrom(base.fit, options);
   for (const auto& [name, value] : starts) options.start[name] = value;
   try {
     ++result_.estimates;
@@ -343,28 +347,14 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
     return std::nullopt;  // not identifiable here, or the rig is softer than the loop
   }
   if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
-  if (const std::optional<FitOptions> within = WithinMeasuredForce(model.fit, model.options)) {
+  if (const std::optional<FitOptions> within =
+          WithinMeasuredForce(facts_, load_ratio_, model.fit.law.slip_force, model.options)) {
     std::map<std::string, double> at_bound = starts;
     at_bound["slip_force"] = within->bounds.at("slip_force").upper;
     return FitFrom(model, *within, at_bound);
   }
   model.sum_of_squares = SquaresOf(model.fit.rms);
   return model;
-}
-
-/// Returns the options with a slip force no larger than the largest force of a loop that slides
-/// over most of its stroke, where the fit has a slip force that it carries nowhere.
-std::optional<FitOptions> Selection::WithinMeasuredForce(const FitResult& fit,
-                                                         const FitOptions& options) const {
-  const double peak_force = facts_.peak_force / load_ratio_;
-  if (!SlidesOverMostOfStroke(facts_, options.thresholds) ||
-      options.bounds.contains("slip_force") || options.fixed.contains("slip_force") ||
-      peak_force >= options.thresholds.mobilised_by_asymptote * fit.law.slip_force) {
-    return std::nullopt;
-  }
-  FitOptions within = options;
-  within.bounds["slip_force"] = {0.0, peak_force};
-  return within;
 }
 
 /// Prepares the records for all candidates at once. What a lag leaves out is left out for all: else
@@ -807,11 +797,7 @@ bool Selection::MayBeVirgin(const FitOptions& options) {
 /// measured force is let go where the model is adequate.
 void Selection::FitLast() {
   FitOptions from_here = base_.options;
-  for (const ParameterEstimate& parameter : base_.fit.parameters) {
-    if (parameter.status != ParameterStatus::kFixed) {
-      from_here.start[parameter.name] = parameter.value;
-    }
-  }
+  StartFrom(base_.fit, from_here);
   if (MayBeVirgin(from_here)) from_here = base_.options;  // from all starts
   const auto fit = [&] {
     ++result_.estimates;

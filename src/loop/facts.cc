@@ -205,14 +205,19 @@ std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
   return steady;
 }
 
-std::optional<double> MedianSlope(const RecordView& record, std::span<const Points> cycles,
-                                  double from, double to) {
-  std::vector<double> slopes;
+std::vector<Stroke> StrokesOf(const RecordView& record, std::span<const Points> cycles) {
+  std::vector<Stroke> strokes;
   for (const Points& cycle : cycles) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto slope = SlopeBetween(StrokeOf(record, cycle[k], cycle[k + 1]), from, to);
-      if (slope) slopes.push_back(*slope);
-    }
+    strokes.push_back(StrokeOf(record, cycle[0], cycle[1]));
+    strokes.push_back(StrokeOf(record, cycle[1], cycle[2]));
+  }
+  return strokes;
+}
+
+std::optional<double> MedianSlope(std::span<const Stroke> strokes, double from, double to) {
+  std::vector<double> slopes;
+  for (const Stroke& stroke : strokes) {
+    if (const auto slope = SlopeBetween(stroke, from, to)) slopes.push_back(*slope);
   }
   if (slopes.empty()) return std::nullopt;
   return Median(slopes);
@@ -287,19 +292,16 @@ std::optional<Flat> FlatOf(std::span<const Passage> passages) {
   return flat;
 }
 
-std::optional<Backlash> FindBacklash(const RecordView& record, std::span<const Points> cycles,
-                                     double centre, double half_gap, double amplitude) {
+std::optional<Backlash> FindBacklash(std::span<const Stroke> strokes, double centre,
+                                     double half_gap, double amplitude) {
   // Narrower ones are within what a few samples, or the digits of the force, make of a steep
   // branch.
   constexpr double kLeastGap = 0.03;
   std::array<std::vector<Passage>, 2> passages;
-  for (const Points& cycle : cycles) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Stroke stroke = StrokeOf(record, cycle[k], cycle[k + 1]);
-      const auto passage = PassageOf(stroke, centre, half_gap);
-      if (!passage) return std::nullopt;
-      passages[stroke.rises() ? 0 : 1].push_back(*passage);
-    }
+  for (const Stroke& stroke : strokes) {
+    const auto passage = PassageOf(stroke, centre, half_gap);
+    if (!passage) return std::nullopt;
+    passages[stroke.rises() ? 0 : 1].push_back(*passage);
   }
   Backlash backlash;
   for (std::size_t direction = 0; direction < 2; ++direction) {
@@ -313,22 +315,19 @@ std::optional<Backlash> FindBacklash(const RecordView& record, std::span<const P
   return backlash;
 }
 
-std::optional<double> SlidingFraction(const RecordView& record, std::span<const Points> cycles,
-                                      double centre, double half_gap) {
+std::optional<double> SlidingFraction(std::span<const Stroke> strokes, double centre,
+                                      double half_gap) {
   constexpr double kNearly = 0.9;  // of the half gap
   std::vector<double> fractions;
-  for (const Points& cycle : cycles) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Stroke stroke = StrokeOf(record, cycle[k], cycle[k + 1]);
-      const double sense = stroke.rises() ? 1.0 : -1.0;
-      double left = 0.0;
-      for (std::size_t i = 0; i < stroke.force.size(); ++i) {
-        if (sense * (stroke.force[i] - centre) < kNearly * half_gap) continue;
-        left = std::abs(stroke.displacement.back() - stroke.displacement[i]) / stroke.width();
-        break;
-      }
-      fractions.push_back(std::min(left, 1.0));
+  for (const Stroke& stroke : strokes) {
+    const double sense = stroke.rises() ? 1.0 : -1.0;
+    double left = 0.0;
+    for (std::size_t i = 0; i < stroke.force.size(); ++i) {
+      if (sense * (stroke.force[i] - centre) < kNearly * half_gap) continue;
+      left = std::abs(stroke.displacement.back() - stroke.displacement[i]) / stroke.width();
+      break;
     }
+    fractions.push_back(std::min(left, 1.0));
   }
   if (fractions.empty()) return std::nullopt;
   return Median(fractions);
@@ -464,16 +463,17 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   Summarise(facts);
   const std::vector<Points> steady = SteadyCycles(facts, points);
   facts.steady_cycles = steady.size();
-  facts.slope_after_reversal = MedianSlope(record, steady, 0.0, 0.1);
-  facts.plateau_slope = MedianSlope(record, steady, 2.0 / 3, 1.0);
+  const std::vector<Stroke> strokes = StrokesOf(record, steady);
+  facts.slope_after_reversal = MedianSlope(strokes, 0.0, 0.1);
+  facts.plateau_slope = MedianSlope(strokes, 2.0 / 3, 1.0);
   facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
   if (facts.half_gap && *facts.half_gap > 0) {
     const double centre =
         Mean(SeriesOf(facts, [](const CycleFacts& cycle) {
                return cycle.half_gap ? std::optional(cycle.centre_force) : std::nullopt;
              }).values);
-    facts.sliding_fraction = SlidingFraction(record, steady, centre, *facts.half_gap);
-    facts.backlash = FindBacklash(record, steady, centre, *facts.half_gap, facts.amplitude);
+    facts.sliding_fraction = SlidingFraction(strokes, centre, *facts.half_gap);
+    facts.backlash = FindBacklash(strokes, centre, *facts.half_gap, facts.amplitude);
   }
   facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
   if (!record.normal_load.empty()) {

@@ -213,6 +213,10 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
 void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const LoadedHistory& history,
                                              double unloaded, std::span<double> t,
                                              const NormalizedGradient& gradient) {
+  if (gradient.empty()) {
+    Evaluate(law, history, unloaded, t);
+    return;
+  }
   RequireLawUnderLoad(law, history, t);
   const auto keep = [](std::span<double> column, std::size_t i, double value) {
     if (!column.empty()) column[i] = value;
@@ -220,26 +224,25 @@ void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const Loa
   const RimLaw rim(std::log(law.rate), law.shape_exponent);
   using Share = ShareOfWidth<backbone::GeneralShape<double>>;
   const Share share{backbone::GeneralShape<double>{law.shape_exponent}, law.shape_exponent};
-  std::ranges::fill(gradient.log_spring_travel, 0.0);
-  if (!history.before.empty() || gradient.unloaded_displacement.empty()) {
-    std::ranges::fill(gradient.unloaded_displacement, 0.0);
-    const Tangent<2> at_rest(history.before.empty() ? unloaded : 0.0);
-    Follow(history, rim, share, at_rest, buffers_->by_law,
-           [&](std::size_t i, const Tangent<2>& force) {
+  const auto follow = [&]<std::size_t kDirections>(const Tangent<kDirections>& at_rest,
+                                                   auto& zones) {
+    Follow(history, rim, share, at_rest, zones,
+           [&](std::size_t i, const Tangent<kDirections>& force) {
              t[i] = force.value;
              keep(gradient.log_rate, i, force.slope[kLogRate]);
              keep(gradient.shape_exponent, i, force.slope[kShapeExponent]);
+             if constexpr (kDirections > kUnloadedDisplacement) {
+               keep(gradient.unloaded_displacement, i, force.slope[kUnloadedDisplacement]);
+             }
            });
-    return;
+  };
+  std::ranges::fill(gradient.log_spring_travel, 0.0);
+  if (!history.before.empty() || gradient.unloaded_displacement.empty()) {
+    std::ranges::fill(gradient.unloaded_displacement, 0.0);
+    follow(Tangent<2>(history.before.empty() ? unloaded : 0.0), buffers_->by_law);
+  } else {
+    follow(Tangent<3>::Along(unloaded, kUnloadedDisplacement), buffers_->by_all);
   }
-  const auto at_rest = Tangent<3>::Along(unloaded, kUnloadedDisplacement);
-  Follow(history, rim, share, at_rest, buffers_->by_all,
-         [&](std::size_t i, const Tangent<3>& force) {
-           t[i] = force.value;
-           keep(gradient.log_rate, i, force.slope[kLogRate]);
-           keep(gradient.shape_exponent, i, force.slope[kShapeExponent]);
-           keep(gradient.unloaded_displacement, i, force.slope[kUnloadedDisplacement]);
-         });
 }
 
 }  // namespace mindahl::models

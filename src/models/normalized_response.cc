@@ -157,6 +157,10 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
                                        const LoadingPath& path,
                                        std::span<const double> displacement, std::span<double> t,
                                        const NormalizedGradient& gradient) {
+  if (gradient.empty()) {
+    Evaluate(model, law, path, displacement, t);
+    return;
+  }
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
   RequireResponseSizes(path, displacement, t);
@@ -186,12 +190,7 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
                         .log_spring_travel = part(gradient.log_spring_travel)});
     }
   };
-  if (law.spring_travel == 0) {
-    differentiate(DirectShape{law.shape_exponent});
-  } else {
-    differentiate(
-        SprungShape{backbone::GeneralShape<double>{law.shape_exponent}, law.spring_travel});
-  }
+  WithDifferentiableShape(law.shape_exponent, law.spring_travel, differentiate);
 }
 
 void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
@@ -241,12 +240,7 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
       }
     }
   };
-  if (law.spring_travel == 0) {
-    differentiate(DirectShape{law.shape_exponent});
-  } else {
-    differentiate(
-        SprungShape{backbone::GeneralShape<double>{law.shape_exponent}, law.spring_travel});
-  }
+  WithDifferentiableShape(law.shape_exponent, law.spring_travel, differentiate);
 }
 
 /// @returns false at slip and beyond

@@ -166,15 +166,11 @@ void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
   RequireSizes(path, displacement, force);
   RequireSameSize("gradient", gradient.size(), "displacement times gradient columns",
                   displacement.size() * kGradientColumns);
-  if (models::IsRigid(rig)) {
-    EvaluateWithGradient(model, law, path, BranchScaling(model, law),
-                         DirectShape{law.shape_exponent}, displacement, force, gradient);
-    return;
-  }
-  const double travel = models::SpringTravel(model, law, rig);
-  EvaluateWithGradient(model, law, path, BranchScaling(model, law, travel),
-                       SprungShape{backbone::GeneralShape<double>{law.shape_exponent}, travel},
-                       displacement, force, gradient);
+  const double travel = models::IsRigid(rig) ? 0.0 : models::SpringTravel(model, law, rig);
+  WithDifferentiableShape(law.shape_exponent, travel, [&](const auto& shape) {
+    EvaluateWithGradient(model, law, path, BranchScaling(model, law, travel), shape, displacement,
+                         force, gradient);
+  });
 }
 
 namespace {

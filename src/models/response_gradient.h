@@ -33,6 +33,17 @@ struct DirectShape {
   }
 };
 
+/// Calls use(shape) with the shape that derivatives are of: behind a spring unless it is rigid.
+/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+template <typename Use>
+void WithDifferentiableShape(double shape_exponent, double spring_travel, const Use& use) {
+  if (spring_travel == 0) {
+    use(DirectShape{shape_exponent});
+  } else {
+    use(SprungShape{backbone::GeneralShape<double>{shape_exponent}, spring_travel});
+  }
+}
+
 /// The derivatives of a model's branches and of the forces on them.
 /// @tparam Shape  DirectShape, or a SprungShape
 template <typename Shape>

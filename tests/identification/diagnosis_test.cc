@@ -123,8 +123,6 @@ TEST(FoundRigAlternative, HasBothReadings) {
   const Finding finding = FoundRigAlternative(Made(), {3e6, 2e7}, {});
   EXPECT_EQ(finding.Number("rig_stiffness"), 3e6);
   EXPECT_EQ(finding.Number("alpha"), 0.4);
-  EXPECT_EQ(FoundTurningPoints(2e-8).Number("overshoot"), 2e-8);
-  EXPECT_EQ(FoundTurningPoints(2e-8).severity, Severity::kNote);
 }
 
 TEST(FindSearchLimit, IsNoneOfAnOriginFromWhichTheContactSlidBeforeItsRecord) {

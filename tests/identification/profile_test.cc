@@ -102,10 +102,11 @@ FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape
 
 TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
   // The records' units are 1: σ and Tc are exp θ, α is θ.
-  const FitResult result = Widened({.ranges = {.slip_force = {std::log(0.95), std::log(1.5)},
-                                               .shape_exponent = {0.5, 1.05},
-                                               .stiffness = {std::log(0.95), std::log(1.05)}}},
-                                   0.0);
+  SlipForceProfile profile;
+  profile.ranges[kStiffness] = {std::log(0.95), std::log(1.05)};
+  profile.ranges[kShape] = {0.5, 1.05};
+  profile.ranges[kSlipForce] = {std::log(0.95), std::log(1.5)};
+  const FitResult result = Widened(profile, 0.0);
   const ParameterEstimate& sigma = result.parameters[0];
   EXPECT_EQ(*sigma.lower95, 0.9);
   EXPECT_EQ(*sigma.upper95, 1.1);
@@ -122,9 +123,9 @@ TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
 
 TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
   SlipForceProfile open{.open_above = true};
-  open.ranges.slip_force = {std::log(0.8), std::log(20)};
-  open.ranges.shape_exponent = {0.2, 5.0};
-  open.ranges.stiffness = {0.0, 0.0};
+  open.ranges[kSlipForce] = {std::log(0.8), std::log(20)};
+  open.ranges[kShape] = {0.2, 5.0};
+  open.ranges[kStiffness] = {0.0, 0.0};
   const FitResult result = Widened(open, 0.97);
   EXPECT_NEAR(*result.parameters[2].lower95, 0.97, 1e-12);
   EXPECT_FALSE(result.parameters[2].upper95 || result.parameters[2].standard_error);
@@ -152,7 +153,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const SlipForceProfile profile =
         ProfileSlipForce({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
     EXPECT_FALSE(profile.open_above);
-    for (const double end : {profile.ranges.slip_force.lower, profile.ranges.slip_force.upper}) {
+    for (const double end : {profile.ranges[kSlipForce].lower, profile.ranges[kSlipForce].upper}) {
       FitOptions held;
       held.fixed["slip_force"] = stages.problem.parameters[kSlipForce].ToValue(end);
       const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
@@ -161,11 +162,11 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
       EXPECT_LT(cost / variance * share, critical * 1.001);
       EXPECT_GT(cost / variance * share, critical * 0.7);
     }
-    EXPECT_LT(profile.ranges.slip_force.lower, best.theta[kSlipForce]);
-    EXPECT_GT(profile.ranges.slip_force.upper, best.theta[kSlipForce]);
-    EXPECT_LT(profile.ranges.shape_exponent.lower, best.theta[kShape]);
-    EXPECT_GT(profile.ranges.shape_exponent.upper, best.theta[kShape]);
-    EXPECT_LT(profile.ranges.stiffness.lower, best.theta[kStiffness]);
+    EXPECT_LT(profile.ranges[kSlipForce].lower, best.theta[kSlipForce]);
+    EXPECT_GT(profile.ranges[kSlipForce].upper, best.theta[kSlipForce]);
+    EXPECT_LT(profile.ranges[kShape].lower, best.theta[kShape]);
+    EXPECT_GT(profile.ranges[kShape].upper, best.theta[kShape]);
+    EXPECT_LT(profile.ranges[kStiffness].lower, best.theta[kStiffness]);
   }
 }
 
@@ -182,7 +183,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
     const SlipForceProfile profile =
         ProfileSlipForce({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
     if (variance > 1e-5) {
-      EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.ranges.shape_exponent.upper),
+      EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.ranges[kShape].upper),
                 BoundSide::kUpper);
     }
     EXPECT_EQ(profile.open_above, variance > 1e-5);
@@ -227,8 +228,8 @@ TEST(Profile, OfASmallShapeReachesAsFarAsTheIntervalsAtZero) {
         ProfileSmallShape({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
     if (!ranges) continue;
     ++at_zero;
-    for (const auto& [p, range] :
-         {std::pair(kStiffness, ranges->stiffness), std::pair(kSlipForce, ranges->slip_force)}) {
+    for (const std::size_t p : {kStiffness, kSlipForce}) {
+      const Range& range = (*ranges)[p];
       const double half = estimates.quantile() * estimates.ErrorOfTheta(p);
       ASSERT_TRUE(half > 0 && std::isfinite(half));
       EXPECT_LE(range.lower, best.theta[p] - 0.999 * half) << seed;

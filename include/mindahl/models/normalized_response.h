@@ -24,6 +24,12 @@ struct NormalizedGradient {
   std::span<double> unloaded_displacement;  ///< ∂t/∂δ₀ [1/m], of a virgin contact
   std::span<double> log_spring_travel;      ///< ∂t/∂ln c
   std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
+
+  /// True if no derivative is wanted.
+  [[nodiscard]] bool empty() const {
+    return log_rate.empty() && shape_exponent.empty() && unloaded_displacement.empty() &&
+           log_spring_travel.empty() && asymmetry.empty();
+  }
 };
 
 /// Derivatives of forces over Tc by the points where branches start, for fits of these points.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,25 +18,13 @@
 namespace mindahl::identification {
 
 double ColumnCorrelation(std::span<const double> one, std::span<const double> other) {
-  double mean_of_one = 0.0;
-  double mean_of_other = 0.0;
-  const auto count = static_cast<double>(one.size());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    mean_of_one += one[i] / count;
-    mean_of_other += other[i] / count;
-  }
-  double product = 0.0;
-  double squares_of_one = 0.0;
-  double squares_of_other = 0.0;
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    const double a = one[i] - mean_of_one;
-    const double b = other[i] - mean_of_other;
-    product += a * b;
-    squares_of_one += a * a;
-    squares_of_other += b * b;
-  }
-  const double norm = std::sqrt(squares_of_one) * std::sqrt(squares_of_other);
-  return norm > 0 ? product / norm : 0.0;
+  using Column = Eigen::Map<const Eigen::VectorXd>;
+  Eigen::VectorXd a = Column(one.data(), std::ssize(one));
+  Eigen::VectorXd b = Column(other.data(), std::ssize(other));
+  a.array() -= a.mean();
+  b.array() -= b.mean();
+  const double norm = a.norm() * b.norm();
+  return norm > 0 ? a.dot(b) / norm : 0.0;
 }
 
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force) {

@@ -99,18 +99,6 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceP
   return findings;
 }
 
-Finding FoundOpenStiffness() { return {.code = "sigma_bounded_below", .parameters = {"sigma"}}; }
-
-std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
-  if (apart.empty()) return std::nullopt;
-  return Finding{.code = "initial_state_undecided", .parameters = std::move(apart)};
-}
-
-std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart) {
-  if (apart.empty()) return std::nullopt;
-  return Finding{.code = "several_minima", .parameters = std::move(apart)};
-}
-
 std::optional<Finding> FindContradictedPrior(const FitResult& result,
                                              const Thresholds& thresholds) {
   Finding finding{.code = "prior_contradicted"};
@@ -378,10 +366,6 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
     finding.severity = Severity::kNote;
   }
   return finding;
-}
-
-Finding FoundTurningPoints(double longest_overshoot) {
-  return {.code = "turning_points_between_samples", .numbers = {{"overshoot", longest_overshoot}}};
 }
 
 namespace {

@@ -22,14 +22,6 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
 /// A slip force, and α with it, that the loop leaves open above.
 std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile);
 
-Finding FoundOpenStiffness();
-
-/// Parameters that the other past of the contact has elsewhere; nothing without any.
-std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
-
-/// Parameters that another minimum has outside their intervals; nothing without any.
-std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart);
-
 /// `prior_contradicted`: parameters whose prior lies far from what the records say without it.
 std::optional<Finding> FindContradictedPrior(const FitResult& result, const Thresholds& thresholds);
 
@@ -68,8 +60,6 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
 /// Another shape, or a rig in series.
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
                             const Thresholds& thresholds);
-
-Finding FoundTurningPoints(double longest_overshoot);
 
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -16,12 +16,6 @@
 
 namespace mindahl::identification {
 namespace {
-
-/// Returns the place of a parameter among those that are free, their number where it is not.
-std::size_t PlaceOf(const Problem& problem, std::size_t parameter) {
-  const auto& free = problem.parameters.free();
-  return static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
-}
 
 constexpr std::size_t kParts = 6;  // thirds of the stroke, up and down
 
@@ -104,10 +98,8 @@ double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
 double SpreadOf(std::span<const double> steps, double confidence) {
   const auto count = static_cast<double>(steps.size());
   if (count < 2) return 0.0;
-  const double mean = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
-  double squares = 0.0;
-  for (const double step : steps) squares += (step - mean) * (step - mean);
-  return StudentQuantile(count - 1, confidence) * std::sqrt(squares / (count - 1));
+  const double variance = boost::math::statistics::sample_variance(steps.begin(), steps.end());
+  return StudentQuantile(count - 1, confidence) * std::sqrt(variance);
 }
 
 }  // namespace
@@ -115,7 +107,7 @@ double SpreadOf(std::span<const double> steps, double confidence) {
 std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
                                      const Thresholds& thresholds) {
   std::vector<double> steps;
-  const std::size_t place = PlaceOf(problem, kSlipForce);
+  const std::size_t place = problem.parameters.PlaceAmongFree(kSlipForce);
   if (place == problem.parameters.free().size() || problem.data->is_forced()) return steps;
   const auto& column = estimates.jacobian().col(static_cast<Eigen::Index>(place));
   std::array<ColumnSums, kParts> sums{};
@@ -285,7 +277,7 @@ void CoverShape(const FittedProblem& fitted, const Thresholds& thresholds,
   const std::vector<double> spread = SpreadWithoutParts(problem, estimates, thresholds);
   for (const std::size_t p : {kStiffness, kShape}) {
     ParameterEstimate& estimate = parameters[p];
-    const std::size_t place = PlaceOf(problem, p);
+    const std::size_t place = problem.parameters.PlaceAmongFree(p);
     if (place >= spread.size() || !estimate.lower95 || !estimate.upper95) continue;
     const Parameter& parameter = problem.parameters[p];
     constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
@@ -388,7 +380,7 @@ ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Threshold
       is_adequate ? std::vector<double>() : ErrorsBetweenCycles(problem, estimates, thresholds);
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const std::size_t p = problem.parameters.reported()[k];
-    const std::size_t place = PlaceOf(problem, p);
+    const std::size_t place = problem.parameters.PlaceAmongFree(p);
     ParameterEstimate& estimate = parameters[k];
     if (is_adequate) {
       estimate.repeat_error = estimate.standard_error;

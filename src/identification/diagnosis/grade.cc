@@ -8,6 +8,7 @@
 #include "identification/intervals.h"
 
 namespace mindahl::identification {
+
 double WhiteVariance(const FitResult& result) {
   constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
   double squares = 0.0;
@@ -38,6 +39,20 @@ bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
     return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
   };
   return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
+}
+
+std::optional<FitOptions> WithinMeasuredForce(const loop::LoopFacts& facts, double load_ratio,
+                                              double slip_force, const FitOptions& options) {
+  constexpr const char* kName = "slip_force";
+  const double peak_force = facts.peak_force / load_ratio;
+  if (options.bounds.contains(kName) || options.fixed.contains(kName) ||
+      !SlidesOverMostOfStroke(facts, options.thresholds) ||
+      peak_force >= options.thresholds.mobilised_by_asymptote * slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = options;
+  within.bounds[kName] = {0.0, peak_force};
+  return within;
 }
 
 std::optional<double> MeasuredHalfGap(const FitResult& result) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/facts.h"
@@ -22,6 +23,14 @@ bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thre
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
+
+/// Returns the options with a slip force no larger than the largest force of a loop that slides
+/// over most of its stroke, where a law carries its slip force nowhere: the loop has carried it.
+/// Nothing where that is not so or the user limits Tc.
+/// @param load_ratio  of the loop's record
+/// @param slip_force  [N] of the law
+std::optional<FitOptions> WithinMeasuredForce(const loop::LoopFacts& facts, double load_ratio,
+                                              double slip_force, const FitOptions& options);
 
 /// Returns half the gap between the strokes of the widest record [N], as it would be at the mean
 /// load of all; empty in a fit of the displacement, and where none was measured or it is not > 0.

@@ -62,16 +62,6 @@ Eigen::MatrixXd OrthonormalOf(const Eigen::MatrixXd& one, const Eigen::MatrixXd&
   return OrthonormalBasis(both);
 }
 
-/// AᵀRA of noise that is not white.
-Eigen::MatrixXd CorrelatedProducts(const ScaledRecords& data, const Noise& noise,
-                                   const Autocorrelation& autocorrelation,
-                                   const DisplacementEffect& displacement,
-                                   const Eigen::MatrixXd& columns) {
-  return displacement.residuals.size() > 0
-             ? CorrelatedProduct(data, autocorrelation, noise, displacement, columns)
-             : CorrelatedProduct(data, autocorrelation, columns);
-}
-
 }  // namespace
 
 ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
@@ -123,10 +113,10 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   } else {
     autocorrelation_ = AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
   }
-  is_white_ = autocorrelation_.order == 0 && displacement.residuals.size() == 0;
+  is_white_ = autocorrelation_.order == 0 && !has_drawn_;
   correlated_ =
       is_white_ ? plain_
-                : CorrelatedProducts(*problem.data, noise, autocorrelation_, displacement, columns);
+                : CorrelatedProduct(*problem.data, autocorrelation_, noise, displacement, columns);
   if (!is_white_) free_correlated_ = FreedOfLaw(correlated_);
 
   // A fit absorbs more of correlated noise than the number of its parameters.
@@ -191,9 +181,7 @@ ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
   if (part.columns == 0 || !(variance_ > 0)) return part;
   const Eigen::VectorXd explained = basis.transpose() * free_residual_;
   const Eigen::MatrixXd correlated = CorrelationOf(basis);
-  const double f = is_white_
-                       ? explained.squaredNorm() / static_cast<double>(basis.cols()) / variance_
-                       : WaldF(explained, correlated, variance_);
+  const double f = WaldF(explained, correlated, variance_);
   const double of_noise = variance_ * correlated.trace();
   part.rms = std::sqrt(std::max(0.0, explained.squaredNorm() - of_noise) / samples_);
   // If nothing is explained, or less by rounding, noise alone makes it.
@@ -336,19 +324,9 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   return Ask(problem, restored, departures, before, thresholds);
 }
 
-namespace {
-
-/// Returns the place of a parameter among those that are free, their number where it is not.
-std::size_t PlaceAmongFree(const Problem& problem, std::size_t parameter) {
-  const auto& free = problem.parameters.free();
-  return static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
-}
-
-}  // namespace
-
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
               std::size_t parameter, const ParameterEstimate& estimate) {
-  const std::size_t place = PlaceAmongFree(problem, parameter);
+  const std::size_t place = problem.parameters.PlaceAmongFree(parameter);
   if (place == fit.step.size() || !estimate.lower95 || !estimate.upper95) return 0.0;
   const double half = (*estimate.upper95 - *estimate.lower95) / 2;
   const double moved =
@@ -364,7 +342,7 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
     const std::size_t p = reported[k];
     const Parameter& parameter = problem.parameters[p];
     ParameterEstimate& estimate = estimates[k];
-    const std::size_t place = PlaceAmongFree(problem, p);
+    const std::size_t place = problem.parameters.PlaceAmongFree(p);
     for (const DepartureFit& fit : fits) {
       if (place == fit.step.size()) continue;
       // Beyond a factor of e³ a linear step says only that little is known; short of it, it errs

@@ -110,6 +110,42 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
 
 namespace {
 
+std::vector<double> ResidualsOf(std::span<const FittedSample> samples) {
+  std::vector<double> residuals;
+  residuals.reserve(samples.size());
+  for (const FittedSample& sample : samples) residuals.push_back(sample.residual);
+  return residuals;
+}
+
+std::size_t CountingSamples(std::span<const FittedSample> samples) {
+  return static_cast<std::size_t>(std::ranges::count_if(samples, &FittedSample::counts));
+}
+
+/// Returns the sum of squares of a value a sample, of those that count.
+double SquaresOf(std::span<const FittedSample> samples, std::span<const double> values) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].counts) squares += values[i] * values[i];
+  }
+  return squares;
+}
+
+/// Weighs fits by the independent samples among what one of them leaves.
+Evidence EvidenceOf(std::span<const FittedSample> samples, std::span<const double> left) {
+  std::vector<unsigned char> counts;
+  for (const FittedSample& sample : samples) counts.push_back(sample.counts ? 1 : 0);
+  const std::span<const unsigned char> mask = counts;
+  const std::size_t counted = CountingSamples(samples);
+  const double correlated = EstimateAutocorrelation({&left, 1}, {&mask, 1}).SquaredCorrelations();
+  return Evidence(counted, static_cast<double>(counted) / correlated);
+}
+
+double PeakOf(std::span<const FittedSample> samples) {
+  double peak = 0.0;
+  for (const FittedSample& sample : samples) peak = std::max(peak, std::abs(sample.response));
+  return peak;
+}
+
 constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
 constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
 constexpr double kFar = 6.0;                          // of their widths
@@ -193,13 +229,8 @@ std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samp
     of_the_off += samples[here.sample].residual * samples[here.sample].residual;
   }
   if (count == 0) return std::nullopt;
-  double all = 0.0;
-  double counted = 0.0;
-  for (const FittedSample& sample : samples) {
-    if (!sample.counts) continue;
-    all += sample.residual * sample.residual;
-    ++counted;
-  }
+  const double all = SquaresOf(samples, ResidualsOf(samples));
+  const auto counted = static_cast<double>(CountingSamples(samples));
   IrregularityFit fit;
   const auto off = static_cast<double>(count);
   fit.p_value = PoissonAbove(off - 1, kChance * static_cast<double>(differences.size()));
@@ -231,8 +262,7 @@ struct Step {
 };
 
 std::vector<Step> StepsOfSliding(std::span<const FittedSample> samples) {
-  double peak = 0.0;
-  for (const FittedSample& sample : samples) peak = std::max(peak, std::abs(sample.response));
+  const double peak = PeakOf(samples);
   std::vector<Step> steps;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const FittedSample& here = samples[i];
@@ -260,9 +290,8 @@ struct Teeth {
 
 Teeth FitTeeth(std::span<const FittedSample> samples, std::span<const Step> steps,
                const std::vector<bool>& is_drop) {
-  Teeth teeth;
+  Teeth teeth{.left = ResidualsOf(samples)};
   std::vector<double> way(samples.size());  // from the tooth's middle
-  for (const FittedSample& sample : samples) teeth.left.push_back(sample.residual);
   double xx = 0.0;
   double xr = 0.0;
   for (std::size_t k = 0; k < steps.size(); ++teeth.count) {
@@ -312,28 +341,15 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
   }
   if (drops.empty()) return std::nullopt;
   const Teeth teeth = FitTeeth(samples, steps, is_drop);
-  std::vector<unsigned char> counts;
-  double before = 0.0;
-  double after = 0.0;
-  std::size_t counted = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    counts.push_back(samples[i].counts ? 1 : 0);
-    if (!samples[i].counts) continue;
-    before += samples[i].residual * samples[i].residual;
-    after += teeth.left[i] * teeth.left[i];
-    ++counted;
-  }
+  const double before = SquaresOf(samples, ResidualsOf(samples));
+  const double after = SquaresOf(samples, teeth.left);
   IrregularityFit fit;
   const auto count = static_cast<double>(drops.size());
   fit.p_value = BinomialAbove(count - 1, count + static_cast<double>(rises), 0.5);
   fit.size = boost::math::statistics::median(drops.begin(), drops.end());
   fit.explains = before > 0 ? std::clamp(1 - after / before, 0.0, 1.0) : 0.0;
   // The teeth autocorrelate the residuals: the rest determines how many are independent.
-  const std::span<const double> left = teeth.left;
-  const std::span<const unsigned char> mask = counts;
-  const double effective = static_cast<double>(counted) /
-                           EstimateAutocorrelation({&left, 1}, {&mask, 1}).SquaredCorrelations();
-  const Evidence evidence(counted, effective);
+  const Evidence evidence = EvidenceOf(samples, teeth.left);
   const double parameters = static_cast<double>(teeth.count) + 1;  // a mean a tooth, and the slope
   fit.delta_aicc = 2 * parameters - evidence.LikelihoodRatio(before, after);
   return fit;
@@ -368,26 +384,18 @@ struct Plateau {
 };
 
 void TakeOffLine(std::span<const double> x, std::span<double> y) {
-  const auto count = static_cast<double>(x.size());
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / count;
-    mean_y += y[i] / count;
-  }
-  double xx = 0.0;
-  double xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-  }
-  const double slope = xx > 0 ? xy / xx : 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) y[i] -= mean_y + slope * (x[i] - mean_x);
+  const auto count = static_cast<Eigen::Index>(x.size());
+  Eigen::Map<Eigen::VectorXd> values(y.data(), count);
+  const Eigen::Map<const Eigen::VectorXd> places(x.data(), count);
+  const Eigen::VectorXd away = places.array() - places.mean();
+  const double squares = away.squaredNorm();
+  const double slope = squares > 0 ? away.dot(values) / squares : 0.0;
+  values.array() -= values.mean();
+  values -= slope * away;
 }
 
 std::vector<Plateau> PlateausOf(std::span<const FittedSample> samples) {
-  double peak = 0.0;
-  for (const FittedSample& sample : samples) peak = std::max(peak, std::abs(sample.response));
+  const double peak = PeakOf(samples);
   const auto slides = [&](const FittedSample& at) {
     return at.counts && std::abs(at.response) > kOnPlateau * peak;
   };
@@ -454,8 +462,7 @@ PhaseFit ExplainedAt(double frequency, std::span<const Plateau> plateaus) {
 /// for each stroke, which is no part of the ripple, is left in.
 std::vector<double> WithoutRipple(std::span<const FittedSample> samples,
                                   std::span<const Plateau> plateaus, double frequency) {
-  std::vector<double> left;
-  for (const FittedSample& sample : samples) left.push_back(sample.residual);
+  std::vector<double> left = ResidualsOf(samples);
   for (const bool rises : {true, false}) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(2 * kHarmonics, 2 * kHarmonics);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * kHarmonics);
@@ -485,16 +492,6 @@ std::vector<double> WithoutRipple(std::span<const FittedSample> samples,
     }
   }
   return left;
-}
-
-double IndependentSamples(std::span<const FittedSample> samples, const std::vector<double>& left,
-                          std::size_t counted) {
-  std::vector<unsigned char> counts;
-  for (const FittedSample& sample : samples) counts.push_back(sample.counts ? 1 : 0);
-  const std::span<const double> values = left;
-  const std::span<const unsigned char> mask = counts;
-  return static_cast<double>(counted) /
-         EstimateAutocorrelation({&values, 1}, {&mask, 1}).SquaredCorrelations();
 }
 
 }  // namespace
@@ -538,26 +535,18 @@ std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples)
   }
 
   const std::vector<double> left = WithoutRipple(samples, plateaus, best);
-  double before = 0.0;
-  double after = 0.0;
-  std::size_t counted = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!samples[i].counts) continue;
-    before += samples[i].residual * samples[i].residual;
-    after += left[i] * left[i];
-    ++counted;
-  }
-  const double effective = IndependentSamples(samples, left, counted);
+  const double before = SquaresOf(samples, ResidualsOf(samples));
+  const double after = SquaresOf(samples, left);
+  const Evidence evidence = EvidenceOf(samples, left);
   constexpr double kColumns = 4.0 * kHarmonics;
-  const double degrees = effective - kColumns;
+  const double degrees = evidence.effective() - kColumns;
   if (!(degrees > 1) || !(after > 0) || !(before > after)) return std::nullopt;
   const double f = (before - after) / kColumns / (after / degrees);
   IrregularityFit ripple;
   ripple.p_value = std::min(1.0, tried * PValueOfF(f, kColumns, degrees));
   ripple.size = 1 / best;
   ripple.explains = 1 - after / before;
-  ripple.delta_aicc =
-      2 * (kColumns + 1) - Evidence(counted, effective).LikelihoodRatio(before, after);
+  ripple.delta_aicc = 2 * (kColumns + 1) - evidence.LikelihoodRatio(before, after);
   return ripple;
 }
 

@@ -132,8 +132,7 @@ std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& 
   if (present.size() < 2) return {};
 
   const Eigen::MatrixXd& jacobian = estimates.jacobian();
-  const auto shape_column = static_cast<Eigen::Index>(
-      std::ranges::find(problem.parameters.free(), kShape) - problem.parameters.free().begin());
+  const auto shape_column = static_cast<Eigen::Index>(problem.parameters.PlaceAmongFree(kShape));
   // α's column in parts, the first in its place, the others at the end.
   const auto parts = static_cast<Eigen::Index>(present.size());
   Eigen::MatrixXd split(jacobian.rows(), jacobian.cols() + parts - 1);
@@ -157,7 +156,8 @@ std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& 
   const Eigen::MatrixXd normal = TransposedProduct(split, split);
   const Eigen::MatrixXd factor = PseudoInverse(normal);
   const Eigen::VectorXd step = -factor * (split.transpose() * values);
-  const Eigen::MatrixXd correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, split);
+  const Eigen::MatrixXd correlated =
+      CorrelatedProduct(*problem.data, noise.autocorrelation, noise, {}, split);
   // The misfit of one law for all branches is not noise here.
   const double sum_of_squares = values.squaredNorm();
   if (!(sum_of_squares > 0)) return {};

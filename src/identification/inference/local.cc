@@ -94,42 +94,43 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   return at;
 }
 
-Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta,
-                           Response& response, std::span<const std::size_t> columns,
-                           Eigen::VectorXd& residual) {
-  Linearization at = LinearizeAt(problem, theta, response, columns);
-  residual = std::move(at.residual);
-  return std::move(at.jacobian);
+namespace {
+
+/// Residuals, and which of them count, one series a record.
+struct RecordSeries {
+  std::pmr::vector<std::span<const double>> residuals;
+  std::pmr::vector<std::span<const unsigned char>> counts;
+};
+
+RecordSeries SeriesOf(const ScaledRecords& data, std::span<const double> residual,
+                      std::span<const unsigned char> tells, std::pmr::memory_resource* memory) {
+  RecordSeries series{decltype(RecordSeries::residuals)(memory),
+                      decltype(RecordSeries::counts)(memory)};
+  series.residuals.reserve(data.records.size());
+  series.counts.reserve(data.records.size());
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    series.residuals.push_back(residual.subspan(begin, record.size()));
+    series.counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
+                                          : tells.subspan(begin, record.size()));
+    begin += record.size();
+  }
+  return series;
 }
+
+}  // namespace
 
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
                                   std::span<const unsigned char> tells,
                                   std::pmr::memory_resource* memory) {
-  std::pmr::vector<std::span<const double>> series(memory);
-  std::pmr::vector<std::span<const unsigned char>> counts(memory);
-  series.reserve(data.records.size());
-  counts.reserve(data.records.size());
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.push_back(residual.subspan(begin, record.size()));
-    counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
-                                   : tells.subspan(begin, record.size()));
-    begin += record.size();
-  }
-  return EstimateAutocorrelation(series, counts);
+  const auto [residuals, counts] = SeriesOf(data, residual, tells, memory);
+  return EstimateAutocorrelation(residuals, counts);
 }
 
 Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
                                       const Eigen::MatrixXd& columns) {
-  std::vector<std::span<const double>> series;
-  std::vector<std::span<const unsigned char>> counts;
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.push_back(residual.subspan(begin, record.size()));
-    counts.emplace_back(record.counts);
-    begin += record.size();
-  }
-  return EstimateAutocorrelationBeside(series, counts, columns);
+  const auto [residuals, counts] = SeriesOf(data, residual, {}, std::pmr::get_default_resource());
+  return EstimateAutocorrelationBeside(residuals, counts, columns);
 }
 
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
@@ -146,25 +147,24 @@ double EffectiveSamples(const Problem& problem, std::span<const double> theta, R
 }
 
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
+                                  const Noise& noise, const DisplacementEffect& displacement,
                                   const Eigen::MatrixXd& jacobian) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  Eigen::MatrixXd of_force = jacobian;
+  if (displacement.residuals.size() > 0) {
+    const Eigen::MatrixXd drawn = TransposedProduct(jacobian, displacement.residuals);
+    product = Product(drawn, drawn.transpose()) /
+              (static_cast<double>(drawn.cols()) * displacement.variance);
+    const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
+    of_force = share.asDiagonal() * jacobian;
+  }
   Eigen::Index begin = 0;
   for (const ScaledRecord& record : data.records) {
     const auto rows = static_cast<Eigen::Index>(record.size());
-    product += autocorrelation.Quadratic(jacobian.middleRows(begin, rows));
+    product += autocorrelation.Quadratic(of_force.middleRows(begin, rows));
     begin += rows;
   }
   return product;
-}
-
-Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
-                                  const Noise& noise, const DisplacementEffect& displacement,
-                                  const Eigen::MatrixXd& jacobian) {
-  const Eigen::MatrixXd drawn = TransposedProduct(jacobian, displacement.residuals);
-  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
-  return Product(drawn, drawn.transpose()) /
-             (static_cast<double>(drawn.cols()) * displacement.variance) +
-         CorrelatedProduct(data, autocorrelation, share.asDiagonal() * jacobian);
 }
 
 LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
@@ -207,10 +207,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   if (!is_white) {
     const Eigen::MatrixXd orthonormal = Product(jacobian, inverse_norms.asDiagonal() * half);
     Eigen::MatrixXd product =
-        displacement.residuals.size() > 0
-            ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,
-                                orthonormal)
-            : CorrelatedProduct(*problem.data, noise.autocorrelation, orthonormal);
+        CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, orthonormal);
     result.absorbed = product.trace();
     const Eigen::MatrixXd of_priors = Product(priors, inverse_norms.asDiagonal() * half);
     product += TransposedProduct(of_priors, of_priors);

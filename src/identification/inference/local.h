@@ -41,12 +41,6 @@ struct Linearization {
 Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
                           std::span<const std::size_t> columns);
 
-/// Returns the weighted Jacobian at θ, by columns; of a record whose turning points were fitted
-/// too, freed of what these explain.
-Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta,
-                           Response& response, std::span<const std::size_t> columns,
-                           Eigen::VectorXd& residual);
-
 /// Holds the uncertainty that errors of the displacement add to a fit.
 struct DisplacementEffect {
   Eigen::MatrixXd residuals;  // drawn, weighted: rows as the Jacobian's; none where exact
@@ -74,12 +68,8 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// (JᵀRJ) of all records.
-Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
-                                  const Eigen::MatrixXd& jacobian);
-
-/// The same where the displacement has errors: JᵀSRSJ + JᵀEEᵀJ/(K s²), as of LocalUncertainty.
-/// @param displacement  with residuals drawn
+/// JᵀRJ of all records; where the displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of
+/// LocalUncertainty.
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
                                   const Noise& noise, const DisplacementEffect& displacement,
                                   const Eigen::MatrixXd& jacobian);

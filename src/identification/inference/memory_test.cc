@@ -171,38 +171,9 @@ struct Spread {
   [[nodiscard]] double range() const { return count > 0 ? highest - lowest : 0.0; }
 };
 
-class DifferenceColumns {
- public:
-  DifferenceColumns(const Samples& samples, MemoryColumns& result)
-      : samples_(samples), result_(result) {}
-
-  template <typename Value>
-  void Add(std::string_view code, const Value& value) {
-    for (std::size_t i = 0; i < samples_.places.size(); ++i) {
-      values_.push_back(value(samples_.places[i], samples_.way_since_return[i]));
-    }
-    result_.of.push_back(code);
-    if (result_.compared.empty() || result_.compared.back() != code) {
-      result_.compared.push_back(code);
-    }
-  }
-
-  void Finish() {
-    const auto rows = static_cast<Eigen::Index>(samples_.places.size());
-    result_.differences = Eigen::Map<const Eigen::MatrixXd>(
-        values_.data(), rows, static_cast<Eigen::Index>(result_.of.size()));
-  }
-
- private:
-  const Samples& samples_;
-  MemoryColumns& result_;
-  std::vector<double> values_;
-};
-
 /// @param rate  σ/Tc in units of the data
 void AddDifferences(const Samples& samples, std::size_t waves, double rate, MemoryColumns& result) {
   const Extent& extent = samples.extent;
-  DifferenceColumns columns(samples, result);
   Spread virgin;
   Spread after_reversal;
   Spread directions;
@@ -213,40 +184,45 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
   }
   const bool has_virgin = virgin.range() > kSeenWay;
   const bool has_heights = after_reversal.range() > kOneForce * extent.force;
-  if (has_virgin) {
-    for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kVirginBranch, [&](const BranchPlace& at, double) {
-        return at.virgin ? at.direction * Wave(k, at.along) : 0.0;
-      });
+  std::vector<double> values;
+  const auto add = [&](std::string_view code, const auto& value) {
+    for (std::size_t i = 0; i < samples.places.size(); ++i) {
+      values.push_back(value(samples.places[i], samples.way_since_return[i]));
     }
+    result.of.push_back(code);
+    if (result.compared.empty() || result.compared.back() != code) result.compared.push_back(code);
+  };
+  const auto add_waves = [&](std::string_view code, const auto& size) {
+    for (std::size_t k = 0; k < waves; ++k) {
+      add(code, [&](const BranchPlace& at, double) { return size(at) * Wave(k, at.along); });
+    }
+  };
+  if (has_virgin) {
+    add_waves(kVirginBranch, [](const BranchPlace& at) { return at.virgin ? at.direction : 0.0; });
   }
   if (directions.range() > 0) {
-    for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kDirections, [&](const BranchPlace& at, double) { return Wave(k, at.along); });
-    }
+    add_waves(kDirections, [](const BranchPlace&) { return 1.0; });
   }
   if (has_heights) {
-    for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kAmplitudes, [&](const BranchPlace& at, double) {
-        if (at.virgin) return 0.0;
-        return at.direction * (HeightOf(at) - after_reversal.mean()) * Wave(k, at.along);
-      });
-    }
+    add_waves(kAmplitudes, [&](const BranchPlace& at) {
+      return at.virgin ? 0.0 : at.direction * (HeightOf(at) - after_reversal.mean());
+    });
   }
+  const auto early = [&](double way) { return std::exp(-way / (kEarly * extent.stroke)); };
   if (has_virgin || has_heights) {
-    columns.Add(kSlopeAtReversal, [&](const BranchPlace& at, double) {
-      const double way = Way(at);
-      return at.direction * HeightOf(at) * rate * way * std::exp(-way / (kEarly * extent.stroke));
+    add(kSlopeAtReversal, [&](const BranchPlace& at, double) {
+      return at.direction * HeightOf(at) * rate * Way(at) * early(Way(at));
     });
   }
   if (std::ranges::any_of(samples.way_since_return, [](double way) { return way >= 0; })) {
-    columns.Add(kReturnPoint,
-                [&](const BranchPlace& at, double way) { return way >= 0 ? at.direction : 0.0; });
-    columns.Add(kReturnPoint, [&](const BranchPlace& at, double way) {
-      return way >= 0 ? at.direction * std::exp(-way / (kEarly * extent.stroke)) : 0.0;
+    add(kReturnPoint,
+        [](const BranchPlace& at, double way) { return way >= 0 ? at.direction : 0.0; });
+    add(kReturnPoint, [&](const BranchPlace& at, double way) {
+      return way >= 0 ? at.direction * early(way) : 0.0;
     });
   }
-  columns.Finish();
+  result.differences = Eigen::Map<const Eigen::MatrixXd>(values.data(), std::ssize(samples.places),
+                                                         std::ssize(result.of));
 }
 
 double WidestStroke(const ScaledRecords& data) {
@@ -385,9 +361,10 @@ class MemoryTrial {
         noise_(noise),
         displacement_(displacement),
         columns_(ColumnsOfMemory(*law.problem, law.solution->theta, response, resolution,
-                                 other != nullptr ? Eigen::VectorXd(other->residual - law.residual)
-                                                  : Eigen::VectorXd())),
-        basis_(BasisOf(law.jacobian, columns_.shape)),
+                                 other != nullptr
+                                     ? Eigen::VectorXd(other->at.residual - law.at.residual)
+                                     : Eigen::VectorXd())),
+        basis_(BasisOf(law.at.jacobian, columns_.shape)),
         test_(Test(nullptr)) {}
 
   /// Tests with its own noise, or with that of the other law where that is less.
@@ -399,8 +376,8 @@ class MemoryTrial {
 
  private:
   [[nodiscard]] ColumnTest Test(const ColumnTest* quieter) const {
-    return {*law_.problem,        noise_,        displacement_, basis_,
-            columns_.differences, law_.residual, quieter};
+    return {*law_.problem,        noise_,           displacement_, basis_,
+            columns_.differences, law_.at.residual, quieter};
   }
 
   [[nodiscard]] std::vector<Eigen::Index> PlacesOf(std::string_view code) const {
@@ -417,7 +394,7 @@ class MemoryTrial {
     const ScaledRecords& data = *law_.problem->data;
     // A law that leaves nothing but rounding errors describes the record, whatever their form.
     const bool only_rounding =
-        law_.residual.norm() < kOnlyRounding * std::sqrt(static_cast<double>(data.counted));
+        law_.at.residual.norm() < kOnlyRounding * std::sqrt(static_cast<double>(data.counted));
     if (!only_rounding) answer.p_value = test.p_value();
     for (const std::string_view code : columns_.compared) {
       const std::vector<Eigen::Index> places = PlacesOf(code);

@@ -46,12 +46,11 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
                               Response& response, const MemoryResolution& resolution,
                               const Eigen::VectorXd& other);
 
-/// A law that was fitted: its Jacobian by all free parameters and its weighted residuals.
+/// A law that was fitted, linearized in all free parameters.
 struct FittedLaw {
   const Problem* problem;
   const Solution* solution;
-  Eigen::MatrixXd jacobian;
-  Eigen::VectorXd residual;
+  Linearization at;
 };
 
 /// True if branches may be copies of each other: an imposed displacement, a constant load, no lag

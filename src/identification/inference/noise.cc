@@ -198,8 +198,8 @@ double Autocorrelation::SquaredCorrelations() const {
   return sum;
 }
 
-Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
+Eigen::MatrixXd Autocorrelation::FilterBackwards(
+    const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
   // A column a sample, so that those of one time lie side by side; the latest first.
   const Eigen::Index rows = columns.rows();
   Eigen::MatrixXd filtered(columns.cols(), rows + 64);
@@ -225,43 +225,25 @@ Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixX
       break;
     }
   }
-  return innovation_share * SquareOf(filtered.leftCols(i));
+  filtered.conservativeResize(Eigen::NoChange, i);
+  return filtered;
+}
+
+Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
+  return innovation_share * SquareOf(FilterBackwards(columns));
 }
 
 Eigen::MatrixXd Autocorrelation::Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
   if (order == 0 || columns.cols() == 0) return columns;
-  const Eigen::Index rows = columns.rows();
+  Eigen::MatrixXd filtered = FilterBackwards(columns);
   const auto depth = static_cast<Eigen::Index>(order);
-  // A column a sample; the latest first, on into the past until all has died away.
-  Eigen::MatrixXd filtered(columns.cols(), rows + 64);
-  double largest = 0.0;
-  Eigen::Index count = 0;
-  for (; count < rows + static_cast<Eigen::Index>(kLongest); ++count) {
-    if (count == filtered.cols()) filtered.conservativeResize(Eigen::NoChange, 2 * count);
-    auto out = filtered.col(count);
-    if (count < rows) {
-      out = columns.row(rows - 1 - count).transpose();
-    } else {
-      out.setZero();
-    }
-    for (Eigen::Index k = 0; k < std::min(depth, count); ++k) {
-      out += coefficients[static_cast<std::size_t>(k)] * filtered.col(count - 1 - k);
-    }
-    largest = std::max(largest, out.cwiseAbs().maxCoeff());
-    if (count < rows) continue;
-    const Eigen::Index recent = std::min(depth, count + 1);
-    if (filtered.middleCols(count + 1 - recent, recent).cwiseAbs().maxCoeff() <
-        kForgotten * largest) {
-      ++count;
-      break;
-    }
-  }
-  for (Eigen::Index i = count - 1; i >= 0; --i) {
-    for (Eigen::Index k = 0; k < std::min(depth, count - 1 - i); ++k) {
+  for (Eigen::Index i = filtered.cols() - 1; i >= 0; --i) {
+    for (Eigen::Index k = 0; k < std::min(depth, filtered.cols() - 1 - i); ++k) {
       filtered.col(i) += coefficients[static_cast<std::size_t>(k)] * filtered.col(i + 1 + k);
     }
   }
-  return innovation_share * filtered.leftCols(rows).rowwise().reverse().transpose();
+  return innovation_share * filtered.leftCols(columns.rows()).rowwise().reverse().transpose();
 }
 
 double Noise::effective_samples() const {

@@ -26,14 +26,19 @@ struct Autocorrelation {
   /// independent one does (Bartlett 1946).
   [[nodiscard]] double SquaredCorrelations() const;
 
-  /// R·columns with R that matrix: filtered backwards, then forwards.
+  /// R·columns with R that matrix: filters backwards, then forwards.
   [[nodiscard]] Eigen::MatrixXd Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 
-  /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it: the
-  /// columns are filtered backwards by 1/φ, on to earlier times until they have decayed.
+  /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it.
   /// @param columns  J of one record, a row a sample in order of time
   /// @returns columns², relative error below 1e-8
   [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+
+ private:
+  /// Filters columns backwards by 1/φ, on to earlier times until they have decayed.
+  /// @returns a column a sample, the latest first
+  [[nodiscard]] Eigen::MatrixXd FilterBackwards(
+      const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 };
 
 /// @param residuals  one series a record
@@ -80,6 +85,8 @@ class Evidence {
 
   /// Takes the sample size over the variance inflation from autocorrelation.
   explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
+
+  [[nodiscard]] double effective() const { return effective_; }
 
   /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
   /// sums that are both no less than rounding errors leave.

@@ -94,32 +94,24 @@ models::BranchLaw LawOf(const Parameters& parameters, const std::vector<double>&
 }
 
 void Include(ProfiledRanges& ranges, const std::vector<double>& theta) {
-  const auto include = [](Range& range, double value) {
-    range.lower = std::min(range.lower, value);
-    range.upper = std::max(range.upper, value);
-  };
-  include(ranges.slip_force, theta[kSlipForce]);
-  include(ranges.shape_exponent, theta[kShape]);
-  include(ranges.stiffness, theta[kStiffness]);
+  for (std::size_t p = 0; p < ranges.size(); ++p) {
+    ranges[p].lower = std::min(ranges[p].lower, theta[p]);
+    ranges[p].upper = std::max(ranges[p].upper, theta[p]);
+  }
 }
 
 /// Returns the best fit alone.
 ProfiledRanges RangesAt(const Solution& best) {
-  const auto at = [&](std::size_t p) { return Range{best.theta[p], best.theta[p]}; };
-  return {.slip_force = at(kSlipForce), .shape_exponent = at(kShape), .stiffness = at(kStiffness)};
+  ProfiledRanges ranges;
+  for (std::size_t p = 0; p < ranges.size(); ++p) ranges[p] = {best.theta[p], best.theta[p]};
+  return ranges;
 }
 
-/// Widens an interval to a likelihood range; its standard error follows where it was too small.
-void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range& range,
-           double quantile) {
-  if (!estimate.lower95 || !estimate.upper95) return;
-  Include(estimate, {.source = IntervalSource::kProfile,
-                     .lower = parameter.ToValue(range.lower),
-                     .upper = parameter.ToValue(range.upper)});
-  if (estimate.standard_error) {
-    const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
-    estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
-  }
+/// Returns a range in the parameter's unit as a part of its interval.
+IntervalPart IntervalPartOf(const Parameter& parameter, const Range& range, IntervalSource source) {
+  return {.source = source,
+          .lower = parameter.ToValue(range.lower),
+          .upper = parameter.ToValue(range.upper)};
 }
 
 }  // namespace
@@ -234,7 +226,7 @@ SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions&
                     [](const ProfilePoint& point) { return point.law.slip_force; });
   // α rises with Tc along the valley: where its bound ends the valley, the data do not.
   const Parameter& shape = problem.parameters[kShape];
-  if (!shape.fixed && SideOf(shape, profile.ranges.shape_exponent.upper) == BoundSide::kUpper) {
+  if (!shape.fixed && SideOf(shape, profile.ranges[kShape].upper) == BoundSide::kUpper) {
     profile.open_above = true;
   }
   return profile;
@@ -257,14 +249,6 @@ bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options
   start[kStiffness] += std::log(kRigid);
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
 }
-
-namespace {
-
-ParameterEstimate& FindIn(ParameterEstimates& parameters, std::string_view name) {
-  return *std::ranges::find(parameters, name, &ParameterEstimate::name);
-}
-
-}  // namespace
 
 ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
                             SearchBuffers& buffers) {
@@ -319,14 +303,12 @@ std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
     const double middle = allowed + (std::min(next, shape.upper) - allowed) / 2;
     (is_allowed(middle) ? allowed : next) = middle;
   }
-  const auto widen = [&](Range& range, std::size_t parameter) {
-    const double error = estimates.ErrorOfTheta(parameter);
+  for (const std::size_t p : {kStiffness, kSlipForce}) {
+    const double error = estimates.ErrorOfTheta(p);
     const double half = std::isfinite(error) ? estimates.quantile() * error : 0.0;
-    range.lower -= half;
-    range.upper += half;
-  };
-  widen(ranges.stiffness, kStiffness);
-  widen(ranges.slip_force, kSlipForce);
+    ranges[p].lower -= half;
+    ranges[p].upper += half;
+  }
   return ranges;
 }
 
@@ -493,7 +475,7 @@ ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOption
     if (problem.parameters[p].fixed || !is_inside || !std::isfinite(estimates.ErrorOfTheta(p))) {
       continue;
     }
-    ParameterEstimate& estimate = FindIn(parameters, problem.parameters.NameOf(p));
+    ParameterEstimate& estimate = parameters[p];
     if (!estimate.lower95 || !estimate.upper95) continue;
     HeldParameters held(fitted, p, SolverOptionsOf(options), buffers);
     IntervalPart part{.source = IntervalSource::kProfile};
@@ -522,25 +504,23 @@ std::vector<ConfidenceRegion> FindConfidenceRegions(const FittedProblem& fitted,
 
 ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,
                                      ParameterEstimates parameters) {
-  const auto include = [&](const char* name, std::size_t p, const Range& range) {
-    Include(FindIn(parameters, name), {.source = IntervalSource::kSmallShape,
-                                       .lower = problem.parameters[p].ToValue(range.lower),
-                                       .upper = problem.parameters[p].ToValue(range.upper)});
-  };
-  include("sigma", kStiffness, ranges.stiffness);
-  include("alpha", kShape, ranges.shape_exponent);
-  include("slip_force", kSlipForce, ranges.slip_force);
+  for (std::size_t p = 0; p < ranges.size(); ++p) {
+    Include(parameters[p],
+            IntervalPartOf(problem.parameters[p], ranges[p], IntervalSource::kSmallShape));
+  }
   return parameters;
 }
 
 ParameterEstimates WidenByRanges(const Problem& problem, const ProfiledRanges& ranges,
                                  double quantile, ParameterEstimates parameters) {
-  const auto widen = [&](const char* name, std::size_t p, const Range& range) {
-    Widen(FindIn(parameters, name), problem.parameters[p], range, quantile);
-  };
-  widen("sigma", kStiffness, ranges.stiffness);
-  widen("alpha", kShape, ranges.shape_exponent);
-  widen("slip_force", kSlipForce, ranges.slip_force);
+  for (std::size_t p = 0; p < ranges.size(); ++p) {
+    ParameterEstimate& estimate = parameters[p];
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    Include(estimate, IntervalPartOf(problem.parameters[p], ranges[p], IntervalSource::kProfile));
+    if (!estimate.standard_error) continue;
+    const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
+    estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
+  }
   return parameters;
 }
 
@@ -564,8 +544,8 @@ ParameterEstimates WidenByProfile(const Problem& problem, const SlipForceProfile
                                   double quantile, double carried, ParameterEstimates parameters) {
   parameters = WidenByRanges(problem, profile.ranges, quantile, std::move(parameters));
   if (!profile.open_above) return parameters;
-  ParameterEstimate& alpha = FindIn(parameters, "alpha");
-  ParameterEstimate& slip_force = FindIn(parameters, "slip_force");
+  ParameterEstimate& alpha = parameters[kShape];
+  ParameterEstimate& slip_force = parameters[kSlipForce];
   OpenAbove(slip_force, IntervalSource::kProfile);
   // A contact that carried T* has at least that slip force, unless the fit is too poor to say; and
   // no more where it is the bound of α that ends the valley.

@@ -17,12 +17,9 @@ struct Range {
   double upper = 0.0;
 };
 
-/// Holds the ranges of the points of a profile that are not rejected.
-struct ProfiledRanges {
-  Range slip_force = {};      // ln Tc
-  Range shape_exponent = {};  // α
-  Range stiffness = {};       // ln σ
-};
+/// Ranges of ln σ, α and ln Tc over the points of a profile that are not rejected: of kStiffness,
+/// kShape and kSlipForce.
+using ProfiledRanges = std::array<Range, 3>;
 
 /// The likelihood along the one direction in which hysteresis loops are badly determined.
 ///
@@ -96,7 +93,8 @@ std::vector<ConfidenceRegion> FindConfidenceRegions(const FittedProblem& fitted,
 ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,
                                      ParameterEstimates parameters);
 
-/// Puts the ranges into the intervals where these are narrower.
+/// Puts the ranges into the intervals where these are narrower; a standard error that was too small
+/// follows.
 ParameterEstimates WidenByRanges(const Problem& problem, const ProfiledRanges& ranges,
                                  double quantile, ParameterEstimates parameters);
 

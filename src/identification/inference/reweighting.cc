@@ -165,14 +165,11 @@ class Weighting {
     response.Bind(problem_);
     Predict(problem_, theta, response, residual);
     std::vector<double> from_displacement(residual.size(), 0.0);  // variance
-    std::size_t i = 0;
-    for (const ScaledRecord& record : data_.records) {
-      for (const double measured : record.response()) residual[i++] -= measured;
-    }
+    TakeOffMeasured(data_, residual);
     if (errors_.any()) {
       const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
       const auto draws = static_cast<double>(drawn.cols());
-      for (i = 0; i < residual.size(); ++i) {
+      for (std::size_t i = 0; i < residual.size(); ++i) {
         from_displacement[i] = drawn.row(static_cast<Eigen::Index>(i)).squaredNorm() / draws;
       }
     }
@@ -216,13 +213,9 @@ class Weighting {
 
   /// Takes the robust loss out of the weights: what is left are those of the displacement's noise.
   void UseWeightsWithoutLoss() {
-    std::size_t i = 0;
-    for (ScaledRecord& record : data_.records) {
-      for (double& weight : record.root_weight) {
-        if (counts_[i] != 0) weight = without_loss_[i];
-        ++i;
-      }
-    }
+    ForEachWeight([&](std::size_t i, double& weight) {
+      if (counts_[i] != 0) weight = without_loss_[i];
+    });
   }
   /// Scale of the weighted residuals, for a loss of them over it [units of the data].
   [[nodiscard]] double scale() const { return scale_; }
@@ -236,19 +229,23 @@ class Weighting {
   }
   /// Moves only a fraction of the distance from the last weights.
   void GoOnlyPartOfTheWay(std::span<const double> last, double share) {
-    std::size_t i = 0;
-    for (ScaledRecord& record : data_.records) {
-      for (double& weight : record.root_weight) {
-        weight = last[i] + share * (weight - last[i]);
-        ++i;
-      }
-    }
+    ForEachWeight(
+        [&](std::size_t i, double& weight) { weight = last[i] + share * (weight - last[i]); });
   }
 
   /// True if the last weights leave no sample of any weight.
   [[nodiscard]] bool is_lost() const { return is_lost_; }
 
  private:
+  /// Calls visit(number, root weight) for every sample of all records.
+  template <typename Visit>
+  void ForEachWeight(const Visit& visit) {
+    std::size_t i = 0;
+    for (ScaledRecord& record : data_.records) {
+      for (double& weight : record.root_weight) visit(i++, weight);
+    }
+  }
+
   /// σ_F of each record, none below a thousandth of the largest, and of all of them.
   void SetNoiseOfRecords(const std::vector<double>& residual,
                          const std::vector<double>& from_displacement, Loss loss,
@@ -332,21 +329,16 @@ class Weighting {
     double influence_squares = 0.0;
     double slopes = 0.0;
     double weights = 0.0;
-    std::size_t i = 0;
-    for (ScaledRecord& record : data_.records) {
-      for (double& weight : record.root_weight) {
-        if (counts_[i] != 0) {
-          const double z = standardised[i] / scale;
-          const Influence influence = InfluenceOf(loss, z);
-          if (influence.weight < 0.5) ++noise.outliers;
-          influence_squares += influence.weight * influence.weight * z * z;
-          slopes += influence.slope;
-          weights += influence.weight;
-          weight = root_weight[i] * std::sqrt(influence.weight);
-        }
-        ++i;
-      }
-    }
+    ForEachWeight([&](std::size_t i, double& weight) {
+      if (counts_[i] == 0) return;
+      const double z = standardised[i] / scale;
+      const Influence influence = InfluenceOf(loss, z);
+      if (influence.weight < 0.5) ++noise.outliers;
+      influence_squares += influence.weight * influence.weight * z * z;
+      slopes += influence.slope;
+      weights += influence.weight;
+      weight = root_weight[i] * std::sqrt(influence.weight);
+    });
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
     // weight.
     const auto count = static_cast<double>(data_.counted);

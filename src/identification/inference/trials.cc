@@ -18,6 +18,30 @@ namespace mindahl::identification {
 
 namespace {
 
+std::vector<DepartureFit>::iterator FindFit(AdequacyTest& test, std::string_view code) {
+  return std::ranges::find_if(test.fits, [code](const DepartureFit& tried) {
+    return Departures()[tried.departure].code == code;
+  });
+}
+
+/// Puts what a term explains, everything else searched again, in the place of what its first order
+/// does. The first order did not determine the errors.
+/// @param data    the samples of both fits, which may be fewer than those of the test
+/// @param before  sum of squares without the term
+/// @param free    positions of the parameters that the test had
+/// @param theta   from which these are moved
+void PutInPlace(const ScaledRecords& data, double before, const Solution& after,
+                std::span<const std::size_t> free, std::span<const double> theta,
+                const AdequacyTest& test, DepartureFit& fit) {
+  const Evidence evidence(data.counted, test.effective_samples);
+  fit.explains = 1 - after.sum_of_squares / before;
+  fit.delta_aicc = 2 - evidence.LikelihoodRatio(before, after.sum_of_squares);
+  fit.p_value =
+      PValueOfF(evidence.FStatistic(before, after.sum_of_squares, test.noise * test.noise),
+                test.degrees_of_freedom);
+  for (std::size_t j = 0; j < free.size(); ++j) fit.step[j] = after.theta[free[j]] - theta[free[j]];
+}
+
 /// θ of least cost among stiffer contacts: what was the gap's was taken for theirs.
 std::vector<double> StifferLook(std::span<const double> theta, const Parameters& parameters,
                                 Solver& solver) {
@@ -48,12 +72,10 @@ void TryBacklash(const Problem& problem, const Solution& solution,
                  SearchBuffers& buffers, AdequacyTest& test) {
   const bool all = std::ranges::all_of(gaps, [](const auto& gap) { return gap.has_value(); });
   if (gaps.empty() || !all || problem.parameters.moves_contact()) return;
-  const auto has = [](std::string_view code) {
-    return [code](const DepartureFit& tried) { return Departures()[tried.departure].code == code; };
-  };
-  if (std::ranges::none_of(test.fits, has("backlash"))) return;
-  std::erase_if(test.fits, has("force_saturates"));
-  const auto fit = std::ranges::find_if(test.fits, has("backlash"));
+  if (FindFit(test, "backlash") == test.fits.end()) return;
+  const auto saturation = FindFit(test, "force_saturates");
+  if (saturation != test.fits.end()) test.fits.erase(saturation);
+  const auto fit = FindFit(test, "backlash");
   Problem behind = problem;
   const std::size_t gap = problem.parameters.PositionOf("backlash", 0);
   std::vector<double> start = solution.theta;
@@ -65,7 +87,6 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   start = StifferLook(start, behind.parameters, buffers.solver);
   buffers.solver.Solve(start, options, after);
   buffers.response.Bind(problem);
-  const double before = solution.sum_of_squares;
   fit->size = gaps.front()->width;
   fit->size_p_value = 0.0;
   fit->unit = Departures()[fit->departure].unit;
@@ -74,16 +95,8 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   fit->step.resize(free.size(), 0.0);
   fit->error.resize(free.size(), 0.0);
   // Other effects in addition to the gap may leave a fit behind it no better than one without.
-  if (!after.converged || !(after.sum_of_squares < before)) return;
-  const Evidence evidence(problem.data->counted, test.effective_samples);
-  fit->explains = 1 - after.sum_of_squares / before;
-  fit->delta_aicc = 2 - evidence.LikelihoodRatio(before, after.sum_of_squares);
-  fit->p_value =
-      PValueOfF(evidence.FStatistic(before, after.sum_of_squares, test.noise * test.noise),
-                test.degrees_of_freedom);
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    fit->step[j] = after.theta[free[j]] - solution.theta[free[j]];
-  }
+  if (!after.converged || !(after.sum_of_squares < solution.sum_of_squares)) return;
+  PutInPlace(*problem.data, solution.sum_of_squares, after, free, solution.theta, test, *fit);
 }
 
 namespace {
@@ -154,24 +167,18 @@ double KneeDuration(const Problem& problem, const Solution& solution, Response& 
   return strokes > 0 ? duration / strokes : std::numeric_limits<double>::infinity();
 }
 
-auto FindLag(AdequacyTest& test) {
-  return std::ranges::find_if(test.fits, [](const DepartureFit& tried) {
-    return Departures()[tried.departure].code == "channel_lag";
-  });
-}
-
 }  // namespace
 
 void DenyLagBeyondKnee(const Problem& problem, const Solution& solution, Response& response,
                        AdequacyTest& test) {
-  const auto lag = FindLag(test);
+  const auto lag = FindFit(test, "channel_lag");
   if (lag == test.fits.end() || problem.data->is_forced()) return;
   if (std::abs(lag->size) > KneeDuration(problem, solution, response)) test.fits.erase(lag);
 }
 
 void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
             SearchBuffers& buffers, AdequacyTest& test) {
-  const auto fit = FindLag(test);
+  const auto fit = FindFit(test, "channel_lag");
   if (fit == test.fits.end() || problem.parameters.moves_contact()) return;
   ScaledRecords data(*problem.data);
   if (!MayHaveClocks(data)) return;
@@ -196,24 +203,15 @@ void TryLag(const Problem& problem, const Solution& solution, const SolverOption
   buffers.solver.Solve(BestLook(before.theta, lag, parameter, buffers.solver), options, after);
   buffers.response.Bind(problem);
   if (!before.converged || !after.converged || !(before.sum_of_squares > 0)) return;
-  const double explains = 1 - after.sum_of_squares / before.sum_of_squares;
-  if (!(explains > fit->explains)) return;
+  if (!(1 - after.sum_of_squares / before.sum_of_squares > fit->explains)) return;
 
-  const Evidence evidence(data.counted, test.effective_samples);
-  fit->explains = explains;
-  fit->delta_aicc = 2 - evidence.LikelihoodRatio(before.sum_of_squares, after.sum_of_squares);
-  fit->p_value = PValueOfF(
-      evidence.FStatistic(before.sum_of_squares, after.sum_of_squares, test.noise * test.noise),
-      test.degrees_of_freedom);
   fit->size = parameter.ToValue(after.theta[lag]);
   const bool timed = !data.records.front().velocity.empty();
   fit->unit = timed ? parameter.term->unit : parameter.term->unit_by_sample;
   const auto& free = problem.parameters.free();
   fit->step.resize(free.size(), 0.0);
-  fit->error.resize(free.size(), 0.0);  // the first order did not determine it
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    fit->step[j] = after.theta[free[j]] - solution.theta[free[j]];
-  }
+  fit->error.resize(free.size(), 0.0);
+  PutInPlace(data, before.sum_of_squares, after, free, solution.theta, test, *fit);
 }
 
 }  // namespace mindahl::identification

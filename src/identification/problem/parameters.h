@@ -134,6 +134,10 @@ class Parameters {
 
   /// Positions of the free ones.
   [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
+  /// Returns the place of a parameter among the free ones, their number where it is not free.
+  [[nodiscard]] std::size_t PlaceAmongFree(std::size_t i) const {
+    return static_cast<std::size_t>(std::ranges::find(free_, i) - free_.begin());
+  }
   /// Positions of those with a prior, held ones included.
   [[nodiscard]] const std::pmr::vector<std::size_t>& with_prior() const { return with_prior_; }
   /// Σ of the squared residuals of the priors.

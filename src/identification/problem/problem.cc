@@ -280,9 +280,6 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
     return;
   }
   const models::NormalizedLaw law = LawUnder(*problem_, at, record);
-  const bool wants_any = !columns.log_rate.empty() || !columns.shape_exponent.empty() ||
-                         !columns.unloaded.empty() || !columns.log_spring_travel.empty() ||
-                         !columns.asymmetry.empty();
   const models::NormalizedGradient gradient{
       .log_rate = columns.log_rate,
       .shape_exponent = columns.shape_exponent,
@@ -290,17 +287,10 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
       .log_spring_travel = columns.log_spring_travel,
       .asymmetry = HasPathAsymmetry(*problem_) ? columns.asymmetry : std::span<double>()};
   if (!record.load_ratio.empty() && HasPathAsymmetry(*problem_)) {
-    const double unloaded = at.theta[unloaded_[r]];
-    if (wants_any) {
-      loaded_response_.Differentiate(law, histories_[r], unloaded, t, gradient);
-    } else {
-      loaded_response_.Evaluate(law, histories_[r], unloaded, t);
-    }
-  } else if (wants_any) {
+    loaded_response_.Differentiate(law, histories_[r], at.theta[unloaded_[r]], t, gradient);
+  } else {
     response_.Differentiate(*problem_->model, law, PathOf(r, at.theta), record.displacement, t,
                             gradient);
-  } else {
-    response_.Evaluate(*problem_->model, law, PathOf(r, at.theta), record.displacement, t);
   }
 }
 
@@ -332,18 +322,12 @@ void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<d
   const auto places_if_wanted = [&](std::size_t column) {
     return wanted[column].empty() ? std::span<double>() : PlacesOf(moved, 1 + column);
   };
-  const bool wants_any =
-      std::ranges::any_of(wanted, [](std::span<double> column) { return !column.empty(); });
-  if (wants_any) {
-    response_.Differentiate(*problem_->model, law, moved.path(), moved.displacement(), forces,
-                            {.log_rate = places_if_wanted(0),
-                             .shape_exponent = places_if_wanted(1),
-                             .unloaded_displacement = places_if_wanted(2),
-                             .log_spring_travel = places_if_wanted(3),
-                             .asymmetry = places_if_wanted(4)});
-  } else {
-    response_.Evaluate(*problem_->model, law, moved.path(), moved.displacement(), forces);
-  }
+  response_.Differentiate(*problem_->model, law, moved.path(), moved.displacement(), forces,
+                          {.log_rate = places_if_wanted(0),
+                           .shape_exponent = places_if_wanted(1),
+                           .unloaded_displacement = places_if_wanted(2),
+                           .log_spring_travel = places_if_wanted(3),
+                           .asymmetry = places_if_wanted(4)});
   moved.TakeForces(forces);
   moved.Gather(forces, t);
   for (std::size_t column = 0; column < wanted.size(); ++column) {

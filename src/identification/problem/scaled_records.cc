@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <string_view>
 
@@ -18,20 +18,15 @@ namespace mindahl::identification {
 bool AreOneChannel(const ScaledRecords& data, std::size_t one, std::size_t other) {
   constexpr double kOwnPart = 0.1;
   return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
-    const auto& x = record.covariates[one];
-    const auto& y = record.covariates[other];
-    const auto count = static_cast<double>(x.size());
-    const double mean_x = std::accumulate(x.begin(), x.end(), 0.0) / count;
-    const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / count;
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      xx += (x[i] - mean_x) * (x[i] - mean_x);
-      xy += (x[i] - mean_x) * (y[i] - mean_y);
-      yy += (y[i] - mean_y) * (y[i] - mean_y);
-    }
-    return xy * xy >= (1 - kOwnPart * kOwnPart) * xx * yy;
+    const auto deviations = [&](std::size_t covariate) {
+      const auto& column = record.covariates[covariate];
+      const Eigen::Map<const Eigen::ArrayXd> values(column.data(), std::ssize(column));
+      return Eigen::VectorXd(values - values.mean());
+    };
+    const Eigen::VectorXd x = deviations(one);
+    const Eigen::VectorXd y = deviations(other);
+    const double xy = x.dot(y);
+    return xy * xy >= (1 - kOwnPart * kOwnPart) * x.squaredNorm() * y.squaredNorm();
   });
 }
 
@@ -97,18 +92,6 @@ void FillAcceleration(ScaledRecord& record, double unit) {
     const double duration = units * (record.time[after] - record.time[before]);
     record.acceleration[i] =
         duration > 0 ? (record.velocity[after] - record.velocity[before]) / duration : 0.0;
-  }
-}
-
-/// Fills the direction of the stroke that ends at a reversal, or begins at the last one.
-void FillDirection(ScaledRecord& record) {
-  record.direction.resize(record.size());
-  std::size_t begin = 0;
-  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
-    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
-    const double direction = record.displacement[end] >= record.displacement[begin] ? 1.0 : -1.0;
-    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) record.direction[i] = direction;
-    begin = end;
   }
 }
 
@@ -481,6 +464,19 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   return scaled;
 }
 
+std::vector<double> DirectionsOf(std::span<const double> displacement,
+                                 std::span<const std::size_t> reversals) {
+  std::vector<double> directions(displacement.size());
+  std::size_t begin = 0;
+  for (std::size_t s = 0; s <= reversals.size(); ++s) {
+    const std::size_t end = s < reversals.size() ? reversals[s] : displacement.size() - 1;
+    const double direction = displacement[end] >= displacement[begin] ? 1.0 : -1.0;
+    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) directions[i] = direction;
+    begin = end;
+  }
+  return directions;
+}
+
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
   const bool asks_slip_speed =
       HasTerm(options, "slip_speed_exponent") || HasTerm(options, "drag_exponent");
@@ -497,7 +493,10 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
       FillLogSpeed(record);
     }
     if (asks_acceleration && !record.velocity.empty()) FillAcceleration(record, unit);
-    if (asks_direction) FillDirection(record);
+    if (asks_direction) {
+      const std::vector<double> directions = DirectionsOf(record.displacement, record.reversals);
+      record.direction.assign(directions.begin(), directions.end());
+    }
   }
   if (!asks_slip_speed) return;
   const double reference = SpeedInTheMiddle(data);

@@ -152,6 +152,11 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 void AddCovariates(std::span<const std::string> fitted, bool with_others,
                    const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
 
+/// Returns +1 for samples of strokes of growing displacement, −1 for others: of the stroke that
+/// ends at a reversal, or begins at the last one.
+std::vector<double> DirectionsOf(std::span<const double> displacement,
+                                 std::span<const std::size_t> reversals);
+
 /// Adds what terms need beyond the columns of every fit: accelerations, directions of strokes, and
 /// the resolution of the velocity.
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data);

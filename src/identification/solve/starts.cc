@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/draws.h"
@@ -41,16 +43,32 @@ constexpr std::size_t kStartsAmongKinks = 4;
 constexpr double kHighestDrawnShape = 3.0;
 constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of them
 
+/// A term with which a loop looks like one of another shape: the best look of each shape is tried
+/// with it.
+struct TermOfLook {
+  std::string_view name;
+  std::size_t count;
+  std::array<double, 10> trials;  // θ
+  bool is_of_bound = false;       // times the bound on that side
+  double stiffest = 1.0;          // what a gap takes of a stroke looked like compliance
+};
+constexpr std::array kTermsOfLook = {
+    TermOfLook{.name = "lag",
+               .count = 10,
+               .trials = {-0.06, -0.15, -0.3, -0.6, -1.0, 0.06, 0.15, 0.3, 0.6, 1.0},
+               .is_of_bound = true},
+    TermOfLook{.name = "asymmetry", .count = 4, .trials = {-0.6, -0.3, 0.3, 0.6}},
+    TermOfLook{
+        .name = "backlash", .count = 5, .trials = {0.02, 0.05, 0.1, 0.2, 0.4}, .stiffest = 8.0}};
+
 /// A point of the plane and its cost.
 struct Look {
   double cost = std::numeric_limits<double>::infinity();
   double reach = 0.0;  // σX/Tc; T*/Tc of an imposed force
   double shape = 0.0;
   double rig_ratio = 1.0;
-  std::size_t guess = 0;   // of where the contact was unloaded
-  double lag = 0.0;        // θ; ignored where none is fitted
-  double asymmetry = 0.0;  // likewise
-  double backlash = 0.0;   // likewise
+  std::size_t guess = 0;                            // of where the contact was unloaded
+  std::array<double, kTermsOfLook.size()> terms{};  // θ; of one that is not fitted it is ignored
 };
 
 class Plane {
@@ -61,16 +79,16 @@ class Plane {
     const Parameters& parameters = problem.parameters;
     theta_.resize(parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
-    lag_ = parameters.PositionOf("lag", 0);
-    asymmetry_ = parameters.PositionOf("asymmetry", 0);
-    backlash_ = parameters.PositionOf("backlash", 0);
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      terms_[k] = parameters.PositionOf(kTermsOfLook[k].name, 0);
+    }
     FindGuesses(memory);
   }
 
-  [[nodiscard]] bool lag_is_open() const { return !problem_.parameters[lag_].fixed; }
-  [[nodiscard]] bool asymmetry_is_open() const { return !problem_.parameters[asymmetry_].fixed; }
-  [[nodiscard]] bool backlash_is_open() const { return !problem_.parameters[backlash_].fixed; }
-  [[nodiscard]] const Parameter& lag() const { return problem_.parameters[lag_]; }
+  /// Returns the parameter of kTermsOfLook.
+  [[nodiscard]] const Parameter& TermOf(std::size_t term) const {
+    return problem_.parameters[terms_[term]];
+  }
   [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
 
   /// Writes the look's cost, and what it found into theta().
@@ -95,16 +113,9 @@ class Plane {
       if (parameters[p].term->name != OriginTerm(problem_.data->excitation)) continue;
       theta_[p] = guesses_[look.guess][record++];
     }
-    if (lag_is_open()) {
-      theta_[lag_] = std::clamp(look.lag, parameters[lag_].lower, parameters[lag_].upper);
-    }
-    if (backlash_is_open()) {
-      const Parameter& backlash = parameters[backlash_];
-      theta_[backlash_] = std::clamp(look.backlash, backlash.lower, backlash.upper);
-    }
-    if (asymmetry_is_open()) {
-      const Parameter& asymmetry = parameters[asymmetry_];
-      theta_[asymmetry_] = std::clamp(look.asymmetry, asymmetry.lower, asymmetry.upper);
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      const Parameter& term = TermOf(k);
+      if (!term.fixed) theta_[terms_[k]] = std::clamp(look.terms[k], term.lower, term.upper);
     }
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
@@ -206,9 +217,7 @@ class Plane {
   Solver& solver_;
   std::pmr::vector<double> theta_;
   std::pmr::vector<Guess> guesses_;
-  std::size_t lag_ = 0;  // position of the parameter
-  std::size_t asymmetry_ = 0;
-  std::size_t backlash_ = 0;
+  std::array<std::size_t, kTermsOfLook.size()> terms_{};  // positions of the parameters
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
@@ -236,37 +245,15 @@ void Refine(Look& best, Plane& plane) {
   }
 }
 
-/// A loop that is late looks like one of another shape, so that each shape is tried with its own
-/// lag: over all that are allowed, closest about none.
-void LookForLag(Look& best, Plane& plane) {
-  constexpr std::array kShares = {0.06, 0.15, 0.3, 0.6, 1.0};  // of the longest
+void LookForTerm(std::size_t term, Look& best, Plane& plane) {
+  const TermOfLook& of = kTermsOfLook[term];
+  const Parameter& parameter = plane.TermOf(term);
   const Look none = best;
-  for (const double end : {plane.lag().lower, plane.lag().upper}) {
-    for (const double share : kShares) {
+  for (const double trial : std::span(of.trials).first(of.count)) {
+    const double bound = trial < 0 ? -parameter.lower : parameter.upper;
+    for (double stiffer = 1.0; stiffer <= of.stiffest; stiffer *= 2) {
       Look look = none;
-      look.lag = share * end;
-      KeepBetter(best, plane, look);
-    }
-  }
-}
-
-/// Tries asymmetries: for a loop far off its centre all symmetric starts are poor.
-void LookForAsymmetry(Look& best, Plane& plane) {
-  const Look none = best;
-  for (const double asymmetry : {-0.6, -0.3, 0.3, 0.6}) {
-    Look look = none;
-    look.asymmetry = asymmetry;
-    KeepBetter(best, plane, look);
-  }
-}
-
-/// Tries gaps, each with stiffer contacts: what the gap takes of a stroke looked like compliance.
-void LookForBacklash(Look& best, Plane& plane) {
-  const Look none = best;
-  for (const double gap : {0.02, 0.05, 0.1, 0.2, 0.4}) {
-    for (const double stiffer : {1.0, 2.0, 4.0, 8.0}) {
-      Look look = none;
-      look.backlash = gap;
+      look.terms[term] = of.is_of_bound ? trial * bound : trial;
       look.reach = none.reach * stiffer;
       KeepBetter(best, plane, look);
     }
@@ -339,10 +326,9 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
     }
   }
   for (Look& look : best) {
-    if (!std::isfinite(look.cost)) continue;
-    if (plane.lag_is_open()) LookForLag(look, plane);
-    if (plane.asymmetry_is_open()) LookForAsymmetry(look, plane);
-    if (plane.backlash_is_open()) LookForBacklash(look, plane);
+    for (std::size_t k = 0; std::isfinite(look.cost) && k < kTermsOfLook.size(); ++k) {
+      if (!plane.TermOf(k).fixed) LookForTerm(k, look, plane);
+    }
   }
   std::ranges::sort(best, {}, &Look::cost);
   return best;

@@ -238,8 +238,10 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
   return turned;
 }
 
-TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const double> theta,
-                                         Response& response) {
+namespace {
+
+SparseColumns ColumnsOfTurns(const Problem& problem, std::span<const double> theta,
+                             Response& response) {
   const LawPoint point = PointAt(problem, theta);
   const double slip_force = std::exp(theta[kSlipForce]);
   std::vector<Eigen::Triplet<double>> entries;
@@ -269,8 +271,19 @@ TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const
     first += record.reversals.size();
     row += record.size();
   }
-  columns_.resize(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(first));
-  columns_.setFromTriplets(entries.begin(), entries.end());
+  SparseColumns columns(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(first));
+  columns.setFromTriplets(entries.begin(), entries.end());
+  return columns;
+}
+
+}  // namespace
+
+TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const double> theta,
+                                         Response& response)
+    : TurningPointColumns(ColumnsOfTurns(problem, theta, response)) {}
+
+TurningPointColumns::TurningPointColumns(Eigen::SparseMatrix<double> columns)
+    : columns_(std::move(columns)) {
   // A turn without samples after it has an empty column.
   SparseColumns normal = columns_.transpose() * columns_;
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {
@@ -282,16 +295,18 @@ TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const
   normal_.compute(normal);
 }
 
+Eigen::VectorXd TurningPointColumns::Fit(const Eigen::VectorXd& column) const {
+  return normal_.solve(Eigen::VectorXd(columns_.transpose() * column));
+}
+
 void TurningPointColumns::ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const {
-  const Eigen::VectorXd share = normal_.solve(Eigen::VectorXd(columns_.transpose() * column));
-  column -= columns_ * share;
+  column -= columns_ * Fit(column);
 }
 
 namespace {
 
-/// Normal equations of the parameters (dense) and the overshoots (sparse).
+/// The residuals with their derivatives by the parameters (dense) and the overshoots (sparse).
 struct ArrowSystem {
-  std::vector<std::size_t> free;
   Eigen::MatrixXd jacobian;
   SparseColumns overshoots;
   Eigen::VectorXd residual;
@@ -299,49 +314,15 @@ struct ArrowSystem {
 
 ArrowSystem Linearise(const Problem& problem, std::span<const double> theta, Response& response) {
   ArrowSystem system;
-  system.free.assign(problem.parameters.free().begin(), problem.parameters.free().end());
+  const auto& free = problem.parameters.free();
   const auto rows = static_cast<Eigen::Index>(problem.size());
-  system.jacobian.resize(rows, static_cast<Eigen::Index>(system.free.size()));
+  system.jacobian.resize(rows, static_cast<Eigen::Index>(free.size()));
   system.residual.resize(rows);
   response.Bind(problem);
-  Differentiate(problem, theta, response, system.free, {system.residual.data(), problem.size()},
+  Differentiate(problem, theta, response, free, {system.residual.data(), problem.size()},
                 {system.jacobian.data(), static_cast<std::size_t>(system.jacobian.size())});
-  system.overshoots = TurningPointColumns(problem, theta, response).columns();
+  system.overshoots = ColumnsOfTurns(problem, theta, response);
   return system;
-}
-
-struct ArrowStep {
-  Eigen::VectorXd left;  // of the residual after the step
-  Eigen::VectorXd overshoot;
-  bool found = false;
-};
-
-/// Solves the normal equations, overshoots eliminated first: their matrix is as sparse as the
-/// history is shallow, so that the cost grows with their number, not with its square.
-ArrowStep GaussNewtonStep(const ArrowSystem& system) {
-  constexpr double kRidge = 1e-14;  // for directions without effect
-  const auto damp = [&](double own) { return own > 0 ? own * (1 + kRidge) : 1.0; };
-  SparseColumns sparse = system.overshoots.transpose() * system.overshoots;
-  for (Eigen::Index k = 0; k < sparse.cols(); ++k) sparse.coeffRef(k, k) = damp(sparse.coeff(k, k));
-  sparse.makeCompressed();
-  ArrowStep step;
-  const Eigen::SimplicialLDLT<SparseColumns> eliminated(sparse);
-  if (eliminated.info() != Eigen::Success) return step;
-  const Eigen::MatrixXd cross = system.overshoots.transpose() * system.jacobian;
-  const Eigen::VectorXd sparse_right = -(system.overshoots.transpose() * system.residual);
-  const Eigen::VectorXd dense_right = -(system.jacobian.transpose() * system.residual);
-  Eigen::MatrixXd dense = TransposedProduct(system.jacobian, system.jacobian);
-  for (Eigen::Index j = 0; j < dense.cols(); ++j) dense(j, j) = damp(dense(j, j));
-  const Eigen::MatrixXd solved_cross = eliminated.solve(cross);
-  const Eigen::VectorXd solved_right = eliminated.solve(sparse_right);
-  const Eigen::VectorXd of_parameters =
-      SolveSymmetric(dense - TransposedProduct(cross, solved_cross),
-                     dense_right - cross.transpose() * solved_right);
-  step.overshoot = solved_right - solved_cross * of_parameters;
-  step.left =
-      system.residual + system.jacobian * of_parameters + system.overshoots * step.overshoot;
-  step.found = step.left.allFinite() && step.overshoot.allFinite();
-  return step;
 }
 
 /// The residuals of all parameters and overshoots, evaluated once for all strokes: Ceres asks each
@@ -486,12 +467,22 @@ TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solut
   Problem at_samples = problem;
   at_samples.data = &turned->data;
   const ArrowSystem system = Linearise(at_samples, solution.theta, response);
-  const ArrowStep step = GaussNewtonStep(system);
-  if (!step.found) return {.left = system.residual, .overshoot = longest};
-  TurningPointStep result{.left = step.left, .overshoot = {}};
+  // Overshoots are eliminated first: their matrix is as sparse as the history is shallow, so that
+  // the cost grows with their number, not with its square.
+  const TurningPointColumns turning(system.overshoots);
+  Eigen::MatrixXd jacobian = system.jacobian;
+  for (Eigen::Index c = 0; c < jacobian.cols(); ++c) turning.ProjectOut(jacobian.col(c));
+  Eigen::VectorXd residual = system.residual;
+  turning.ProjectOut(residual);
+  const Eigen::VectorXd step = -SolveLeastSquares(jacobian, residual);
+  const Eigen::VectorXd of_overshoots = -turning.Fit(system.residual + system.jacobian * step);
+  TurningPointStep result{.left = residual + jacobian * step, .overshoot = longest};
+  if (!result.left.allFinite() || !of_overshoots.allFinite()) {
+    return {.left = system.residual, .overshoot = longest};
+  }
   for (std::size_t k = 0; k < longest.size(); ++k) {
-    result.overshoot.push_back(
-        std::clamp(overshoot[k] + step.overshoot[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
+    result.overshoot[k] =
+        std::clamp(overshoot[k] + of_overshoots[static_cast<Eigen::Index>(k)], 0.0, longest[k]);
   }
   return result;
 }

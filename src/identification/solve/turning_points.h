@@ -45,9 +45,12 @@ class TurningPointColumns {
  public:
   /// @param problem  of turned records; θ as of the problem
   TurningPointColumns(const Problem& problem, std::span<const double> theta, Response& response);
+  explicit TurningPointColumns(Eigen::SparseMatrix<double> columns);
 
   [[nodiscard]] const Eigen::SparseMatrix<double>& columns() const { return columns_; }
 
+  /// Returns the factors of the columns that explain most of another.
+  [[nodiscard]] Eigen::VectorXd Fit(const Eigen::VectorXd& column) const;
   /// Takes off a column what those of the turning points explain of it.
   void ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
 
