@@ -1,10 +1,13 @@
 #include "mindahl/identification/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "identification/inference/estimates.h"
@@ -26,17 +29,16 @@ namespace {
 
 using models::InitialState;
 
-/// @throws InvalidArgument for a term whose column no protocol says
+/// Lists the terms whose columns the motion of a protocol determines.
+constexpr std::array<std::string_view, 4> kPlanned = {"rig_stiffness", "plateau_slope", "viscous",
+                                                      "force_drift"};
+
+/// @throws InvalidArgument for a term that is not planned for
 void RequireTerms(const FitOptions& options) {
   for (const std::string& name : options.terms) {
-    const Term* term = FindTerm(name);
-    if (term != nullptr && (ContactMotionOf(*term) != ContactMotion::kMeasured ||
-                            name == "load_exponent" || name == "asymmetry" || term->of_column)) {
-      throw InvalidArgument(fmt::format(
-          "'{}' cannot be planned for: must be one of rig_stiffness, plateau_slope, viscous, "
-          "force_drift",
-          name));
-    }
+    if (FindTerm(name) == nullptr || std::ranges::find(kPlanned, name) != kPlanned.end()) continue;
+    throw InvalidArgument(fmt::format("'{}' cannot be planned for: must be one of {}", name,
+                                      fmt::join(kPlanned, ", ")));
   }
   if (!options.covariates.empty()) {
     throw InvalidArgument("a covariate cannot be planned for: it is not known before");

@@ -709,5 +709,35 @@ TEST(IdentifyContact, RefusesAFrictionCoefficientThatNoDoubleHolds) {
   EXPECT_THROW(IdentifyContact(FittedStiffness(), FittedSlipForce(), known), InvalidArgument);
 }
 
+TEST(MissingInputs, NameEachConstantOfEachBodyThatIsNotKnown) {
+  const KnownBody whole{.youngs_modulus = UncertainValue{2e11, 0.0},
+                        .poisson_ratio = UncertainValue{0.3, 0.0}};
+  const auto missing = [](const KnownBody& body_1, const KnownBody& body_2) {
+    KnownContact known{.normal_load = UncertainValue{10.0, 0.0}};
+    known.body_1 = body_1;
+    known.body_2 = body_2;
+    return MissingInputs(known, ContactQuantity::kEquivalentRadius);
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(missing(whole, whole), ::testing::IsEmpty());
+  KnownBody without_modulus = whole;
+  without_modulus.youngs_modulus.reset();
+  KnownBody without_ratio = whole;
+  without_ratio.poisson_ratio.reset();
+  EXPECT_THAT(missing(without_modulus, whole), ElementsAre("Young's modulus of body 1"));
+  EXPECT_THAT(missing(whole, without_modulus), ElementsAre("Young's modulus of body 2"));
+  EXPECT_THAT(missing(without_ratio, whole), ElementsAre("the Poisson ratio of body 1"));
+  EXPECT_THAT(missing(without_modulus, without_ratio),
+              ElementsAre("Young's modulus of body 1", "the Poisson ratio of body 2"));
+  EXPECT_THAT(missing({}, without_ratio),
+              ElementsAre("Young's modulus of body 1", "the Poisson ratio of body 1",
+                          "the Poisson ratio of body 2"));
+  EXPECT_THAT(missing({}, {}), ElementsAre("E and ν of both bodies"));
+  EXPECT_THAT(MissingInputs({}, ContactQuantity::kFrictionCoefficient),
+              ElementsAre("the normal load"));
+  EXPECT_THAT(MissingInputs({}, ContactQuantity::kTangentialCompliance),
+              ElementsAre("the contact radius"));
+}
+
 }  // namespace
 }  // namespace mindahl::contact::mindlin_dahl_mapping_test

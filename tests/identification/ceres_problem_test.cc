@@ -255,5 +255,22 @@ TEST(CeresProblem, RefusesANameThatItDoesNotHave) {
                InvalidArgument);
 }
 
+TEST(CeresProblem, BeginsAtTheFitAndHoldsWhatTheOptionsHold) {
+  const Record record = TimedLoop("mindlin-dahl", 1.0, 1);
+  const RecordView view(record);
+  Fitter fitter(OptionsOf("mindlin-dahl", ""));
+  const FitResult& fit = fitter.Fit(view, Depth::kEstimate);
+  FitOptions held = OptionsOf("mindlin-dahl", "");
+  held.fixed["alpha"] = 0.125;
+  held.bounds["slip_force"] = {0.1 * kLaw.slip_force, 0.5 * kLaw.slip_force};
+  CeresProblem problem({&view, 1}, held, fit);
+  EXPECT_NEAR(problem.Find("sigma").Value() / fit.Find("sigma")->value, 1.0, 1e-12);
+  EXPECT_TRUE(problem.Find("alpha").fixed);
+  EXPECT_NEAR(problem.Find("alpha").Value(), 0.125, 1e-12);
+  EXPECT_NE(fit.Find("alpha")->value, 0.125);
+  // An estimate beyond a bound begins at the bound.
+  EXPECT_NEAR(problem.Find("slip_force").Value() / (0.5 * kLaw.slip_force), 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::ceres_problem_test

@@ -241,5 +241,96 @@ TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
   }
 }
 
+TEST(Fit, KnowsItsPastFromTheSecondTurningPointOn) {
+  // Parts of a steady loop that begin in the middle of a stroke, of as many turning points.
+  const History displacement = Cycling(Wave::kSine, kReach, 4.0, 200);
+  const Record loop = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  const auto part = [&](std::size_t begin, std::size_t end) {
+    Record cut;
+    for (std::size_t i = begin; i < end; ++i) {
+      cut.displacement.push_back(loop.displacement[i]);
+      cut.force.push_back(loop.force[i]);
+    }
+    return FitOne(cut);
+  };
+  // A sine turns at a quarter and three quarters of 200 samples.
+  const FitResult one = part(310, 430);
+  ASSERT_EQ(one.records[0].reversals.size(), 1U);
+  ASSERT_NE(one.FindFinding("unknown_past"), nullptr);
+  EXPECT_EQ(one.FindFinding("unknown_past")->kind, "cut");
+  const FitResult two = part(310, 520);
+  ASSERT_EQ(two.records[0].reversals.size(), 2U);
+  EXPECT_EQ(two.FindFinding("unknown_past"), nullptr);
+}
+
+/// What a fit reports that does not depend on the order of its records.
+void ExpectSameFit(const FitResult& one, const FitResult& other) {
+  constexpr double kSolved = 1e-5;  // of a minimum that is reached from another place
+  for (const ParameterEstimate& estimate : one.parameters) {
+    const std::string& name = estimate.name;
+    if (name.find("offset") != std::string::npos) continue;  // one a record
+    const ParameterEstimate* same = other.Find(name);
+    ASSERT_NE(same, nullptr) << name;
+    EXPECT_NEAR(same->value, estimate.value, kSolved * std::abs(estimate.value)) << name;
+    ASSERT_EQ(same->standard_error.has_value(), estimate.standard_error.has_value()) << name;
+    if (estimate.standard_error) {
+      EXPECT_NEAR(*same->standard_error / *estimate.standard_error, 1.0, 1e-2) << name;
+    }
+    EXPECT_EQ(same->identifiability, estimate.identifiability) << name;
+  }
+  EXPECT_NEAR(other.residuals.rms / one.residuals.rms, 1.0, kSolved);
+  EXPECT_EQ(other.adequacy.verdict, one.adequacy.verdict);
+  EXPECT_NEAR(std::log(other.adequacy.p_value), std::log(one.adequacy.p_value),
+              0.02 * std::abs(std::log(one.adequacy.p_value)) + 0.01);
+  ASSERT_EQ(other.memory.has_value(), one.memory.has_value());
+  if (!one.memory) return;
+  EXPECT_EQ(other.memory->verdict, one.memory->verdict);
+  EXPECT_NEAR(std::log(other.memory->p_value), std::log(one.memory->p_value), 0.1);
+  EXPECT_NEAR(std::log(other.memory->dahl_p_value), std::log(one.memory->dahl_p_value), 0.1);
+}
+
+TEST(Fit, DoesNotDependOnTheOrderOfItsRecords) {
+  Generator generator(3);
+  std::vector<Record> records;
+  for (const double reach : {1.0, 0.6}) {
+    const History displacement = Cycling(Wave::kSine, reach * kReach, 3.0, 150);
+    records.push_back(testing::WithForceNoise(
+        testing::Shifted(
+            MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)),
+            (1 - reach) * kReach, reach * kLaw.slip_force),
+        0.01 * kLaw.slip_force, generator));
+  }
+  const FitResult one = Fit(records, {}, Depth::kThorough);
+  ASSERT_TRUE(one.memory);
+  std::ranges::reverse(records);
+  ExpectSameFit(one, Fit(records, {}, Depth::kThorough));
+}
+
+TEST(Fit, HasOneRippleInSpaceForRecordsWithOtherCentres) {
+  // Of a screw of a quarter of the reach: a record that is a third of its period off has its crests
+  // at the same places.
+  const double period = kReach / 4;
+  constexpr double kHeight = 0.03;  // of Tc
+  std::vector<Record> records;
+  for (const double off : {0.0, 1.0 / 3}) {
+    History displacement = Cycling(Wave::kSine, kReach, 2.0, 400);
+    for (double& x : displacement) x += off * period;
+    Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] +=
+          kHeight * kLaw.slip_force * std::cos(2 * M_PI * record.displacement[i] / period);
+    }
+    records.push_back(record);
+  }
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  options.terms = {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
+                   "ripple_sine_down"};
+  options.start["ripple_period"] = period;
+  const FitResult fit = Fit(records, options, Depth::kEstimate);
+  EXPECT_LT(fit.residuals.rms, 1e-3 * kHeight * kLaw.slip_force);
+  EXPECT_NEAR(fit.Find("ripple_period")->value / period, 1.0, 1e-3);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::fit_test

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"
@@ -304,6 +305,24 @@ TEST(Plan, RefusesWhatMeansNothing) {
   const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
+}
+
+TEST(Plan, RefusesEveryTermButThoseThatItCanPlanFor) {
+  for (const Term& term : Terms()) {
+    if (term.presence == Presence::kOffsets) continue;  // are in every fit
+    const std::string name(term.name);
+    const bool is_planned = name == "rig_stiffness" || name == "plateau_slope" ||
+                            name == "viscous" || name == "force_drift";
+    FitOptions options;
+    options.terms = {name};
+    Expectation expected = Quiet();
+    expected.rig.stiffness = 8e7;
+    if (is_planned) {
+      EXPECT_NO_THROW(ExpectFit(expected, Loop(1.2), options)) << name;
+    } else {
+      EXPECT_THROW(ExpectFit(expected, Loop(1.2), options), InvalidArgument) << name;
+    }
+  }
 }
 
 }  // namespace

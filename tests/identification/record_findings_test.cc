@@ -2,6 +2,7 @@
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
@@ -225,6 +226,27 @@ TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
   ASSERT_EQ(findings.size(), 1U);
   // The variance of 0.5, 0.3 and 0.1 is 0.08/3.
   EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
+}
+
+TEST(FindEnergyContradiction, IsSilentWithEachTermThatLosesOrShiftsEnergyAndWithNoOther) {
+  for (const std::string& name :
+       {std::string("viscous"), std::string("lag"), NameOfCovariate("p")}) {
+    FitResult fit = FitThatLoses(0.5);
+    fit.parameters.emplace_back().name = name;
+    EXPECT_TRUE(FindEnergyContradiction(fit, {})) << name << " held at 0";
+    fit.parameters.back().value = -2.0;
+    EXPECT_FALSE(FindEnergyContradiction(fit, {})) << name;
+  }
+  FitResult sloping = FitThatLoses(0.5);
+  sloping.parameters.emplace_back().name = "plateau_slope";  // conserves energy
+  sloping.parameters.back().value = 2.0;
+  EXPECT_TRUE(FindEnergyContradiction(sloping, {}));
+  FitResult robust = FitThatLoses(0.5);
+  robust.outliers = 1;
+  EXPECT_FALSE(FindEnergyContradiction(robust, {}));
+  FitResult loaded = FitThatLoses(0.5);
+  loaded.records[0].load_varies = true;
+  EXPECT_FALSE(FindEnergyContradiction(loaded, {}));
 }
 
 }  // namespace

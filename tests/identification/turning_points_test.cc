@@ -67,8 +67,11 @@ TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
       const testing::History history = Nested();
       FitOptions options;
       options.model = &Model(model);
-      Stages stages(Sparse(MakeRecord(history, Respond(Model(model), law, history)), 3, 7), options,
-                    state);
+      // The second record of Masing's law bears three times the load.
+      const bool is_series = std::string(model) == "mindlin-dahl";
+      if (is_series) options.normal_loads = {20.0, 60.0};
+      const Record sparse = Sparse(MakeRecord(history, Respond(Model(model), law, history)), 3, 7);
+      Stages stages(std::vector<Record>(is_series ? 2 : 1, sparse), options, state);
       const Parameters& parameters = stages.problem.parameters;
       std::vector<double> theta;
       for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
@@ -77,8 +80,10 @@ TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
       theta[kShape] = law.shape_exponent;
       // Unloaded off the middle: else the second extreme is the mirror of the first, and the
       // contact there at the corner where it comes back to its virgin curve.
-      theta[parameters.PositionOf("displacement_offset", 0)] =
-          state == InitialState::kVirgin ? -0.2 : 0.0;
+      for (std::size_t r = 0; r < stages.data.records.size(); ++r) {
+        theta[parameters.PositionOf("displacement_offset", r)] =
+            state == InitialState::kVirgin ? -0.2 : 0.0;
+      }
       std::vector<double> overshoot;
       for (const double longest : LongestOvershoots(stages.data)) {
         overshoot.push_back(0.3 * longest + 0.001 * static_cast<double>(overshoot.size()));
@@ -92,7 +97,8 @@ TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
         return values;
       };
       const auto turned = PutInTurningPoints(stages.data, overshoot);
-      EXPECT_EQ(turned->data.records[0].size(), stages.data.records[0].size() + overshoot.size());
+      EXPECT_EQ(turned->data.records[0].size(),
+                stages.data.records[0].size() + stages.data.records[0].reversals.size());
       stages.problem.data = &turned->data;
       Response response;
       response.Bind(stages.problem);

@@ -50,6 +50,8 @@ def arrays_of(path):
      ["--fix", f"alpha={1 / 3!r}", "--bound", "slip_force=5:50", "--start", "sigma=3e7"]),
     ({"rig_stiffness": 1e9, "drift": True, "cycles": (1, 2)},
      ["--rig-stiffness", "1e9", "--drift", "--cycles", "1:2"]),
+    ({"slip_trend": 0.01, "inertia": 0.001, "viscous": 5.0},
+     ["--slip-trend", "0.01", "--inertia", "0.001", "--viscous", "5"]),
     ({"time_window": (0.2, 2.5), "loss": "huber", "samples": (1, 400)},
      ["--time-window", "0.2:2.5", "--loss", "huber", "--samples", "1:400"]),
 ])
@@ -171,6 +173,22 @@ def test_units_of_arrays_can_be_said(sphere):
     assert micrometres.input.units.displacement == "um"
     torsional = mindahl.fit(displacement, force, displacement_unit="rad")
     assert torsional.sigma.unit == "N m/rad"
+
+
+class ArrayWithAttributes(np.ndarray):
+    """An array that states its unit as those of xarray do."""
+
+    attrs: dict = {}
+
+
+def test_an_array_states_its_unit_as_an_attribute(sphere):
+    _, displacement, force = sphere
+    micrometres = (displacement * 1e6).view(ArrayWithAttributes)
+    micrometres.attrs = {"units": "um"}
+    result = mindahl.fit(micrometres, force)
+    assert result.input.units.displacement == "um"
+    expected = mindahl.fit(displacement * 1e6, force, displacement_unit="um")
+    assert result.sigma.value == expected.sigma.value
 
 
 def test_slip_forces_of_either_sense_can_be_fitted(sphere):

@@ -72,5 +72,19 @@ TEST(BackboneText, OfATorqueIsInItsUnits) {
   EXPECT_THAT(text, AllOf(HasSubstr("N m/rad"), HasSubstr("force at 1 µrad: 16 N m")));
 }
 
+TEST(BackboneText, SaysThatItsBranchesAreNoCopiesWhereTheirMemoryIsNotMasings) {
+  using identification::MemoryVerdict;
+  for (const MemoryVerdict verdict : {MemoryVerdict::kMasing, MemoryVerdict::kDahl,
+                                      MemoryVerdict::kNeither, MemoryVerdict::kUndecided}) {
+    identification::FitResult fit = MadeInput().fit;
+    fit.memory.emplace().verdict = verdict;
+    const bool is_denied = verdict == MemoryVerdict::kDahl || verdict == MemoryVerdict::kNeither;
+    EXPECT_EQ(BackboneText(Made(), fit, kUnitsOfForce).find("not of Masing's memory") !=
+                  std::string::npos,
+              is_denied);
+  }
+  EXPECT_THAT(TextOf(Made()), Not(HasSubstr("memory")));
+}
+
 }  // namespace
 }  // namespace mindahl::report::backbone_test

@@ -314,5 +314,32 @@ TEST(PageFigure, DrawsABackboneWithItsBandBesideTheLaw) {
   EXPECT_THAT(panel->series[1].y, ElementsAre(9, 13));
 }
 
+TEST(PageFigure, ShadesCyclesFromTheFirstToTheLast) {
+  const auto groups = [](std::size_t cycles) {
+    const Report report = ReportOfCycles(cycles, 40, {});
+    std::vector<std::pair<std::string, double>> all;
+    for (const PlotSeries& series :
+         LoopPanel(report, PlainUnits(report), LoopColours::kByCycle).series) {
+      if (series.label.starts_with("measured")) all.emplace_back(series.label, *series.shade);
+    }
+    return all;
+  };
+  // Turns at 10, 30, 50 …: a cycle begins at every second one, and the last ends the record.
+  EXPECT_THAT(groups(3), ElementsAre(std::pair(std::string("measured, cycle 1"), 0.0),
+                                     std::pair(std::string("measured, cycle 2"), 0.5),
+                                     std::pair(std::string("measured, cycle 3"), 1.0)));
+  // Ten cycles in eight groups: the fourth and the eighth have two.
+  const auto ten = groups(10);
+  ASSERT_THAT(ten, SizeIs(8));
+  for (std::size_t g = 0; g < 8; ++g) {
+    const std::size_t first = g * 10 / 8 + 1;
+    const std::size_t last = (g + 1) * 10 / 8;
+    EXPECT_EQ(ten[g].first, first == last ? "measured, cycle " + std::to_string(first)
+                                          : "measured, cycles " + std::to_string(first) + " to " +
+                                                std::to_string(last));
+    EXPECT_NEAR(ten[g].second, static_cast<double>(g) / 7, 1e-15);
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::report::figure_test

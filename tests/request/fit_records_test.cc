@@ -218,5 +218,40 @@ TEST(WarningsBesideText, OfAnInadequateFitAreThoseOfTheRecord) {
   EXPECT_THAT(WarningsBesideText(report), ElementsAre("3", "4", "5"));
 }
 
+TEST(FitRecords, ChoosesNoTermsByDefaultForSeveralLoads) {
+  // A spring of 5 N/µm next to the contact: of one load it is found, of a file of two it is not
+  // looked for unless that is asked.
+  const auto loop_under = [](const std::vector<double>& loads) {
+    io::RecordFile file;
+    for (const double load : loads) {
+      const std::size_t begin = file.record.size();
+      for (std::size_t i = 0; i < 600; ++i) {
+        file.record.displacement.push_back(
+            3e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 100));
+        file.record.normal_load.push_back(load);
+        file.lines.push_back(begin + i + 2);
+      }
+      const std::vector<double> x(
+          file.record.displacement.begin() + static_cast<std::ptrdiff_t>(begin),
+          file.record.displacement.end());
+      const std::vector<double> force = testing::Respond(
+          testing::Model("mindlin-dahl"), {4e7 * std::cbrt(load / 100), 1.0 / 3, 0.4 * load}, x);
+      Generator generator(5);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        file.record.force.push_back(force[i] + 5e6 * x[i] + 0.1 * testing::Normal(generator));
+      }
+    }
+    return file;
+  };
+  FitRequest request;
+  request.files = {"a.csv"};
+  const report::Report one = FitRecords(request, {loop_under({100.0})}, kIgnore);
+  ASSERT_TRUE(one.terms);
+  EXPECT_THAT(one.terms->added, Contains("plateau_slope"));
+  const report::Report two = FitRecords(request, {loop_under({100.0, 200.0})}, kIgnore);
+  ASSERT_EQ(two.records.size(), 2U);
+  EXPECT_FALSE(two.terms);
+}
+
 }  // namespace
 }  // namespace mindahl::request::fit_records_test

@@ -102,6 +102,13 @@ TEST(Validation, TextHasEveryNumberInItsRow) {
   EXPECT_THAT(text, HasSubstr("\n0 1.5 8 1.0e-02 9.0e-02 3.0e-02 4.0e-02 5.0e-02 6.0e-02 0 - "
                               "9.0e-02 0\n"));
   EXPECT_THAT(text, HasSubstr("\n0.5 2.5 0 - - - - - - 0 - - 0\n"));
+  for (double identification::ValidationRow::*worst :
+       {&identification::ValidationRow::worst_alpha_error,
+        &identification::ValidationRow::worst_slip_force_error}) {
+    Validation other = validation;
+    other.report.rows[1].*worst = 0.5;
+    EXPECT_THAT(ToText(other), HasSubstr("  5.0e-01      0\n"));
+  }
   EXPECT_THAT(text, HasSubstr("intervals: sigma 95.0 % of 100, alpha (Dahl) 25.0 % of 40.\n"));
   EXPECT_THAT(text, EndsWith("FAILED: 2 of 30 fits\nFAILED: 1 of the coverages\n"));
   validation.report.failures = 0;

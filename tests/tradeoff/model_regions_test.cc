@@ -203,5 +203,22 @@ TEST(ModelRegions, RefuseWhatHasNoLambdaAndOptionsOutOfRange) {
                InvalidArgument);
 }
 
+TEST(FindModelRegions, RefusesARangeThatIsEmpty) {
+  const auto study = [](double least, double greatest) {
+    return FindModelRegions(
+        {1, 0.5, 1},
+        {.tolerances = {0.5}, .cycles = 1, .least_lambda = least, .greatest_lambda = greatest});
+  };
+  try {
+    study(2.0, 2.0);
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("greatest lambda [-] = 2"));
+  }
+  EXPECT_THROW(study(0.0, 2.0), InvalidArgument);
+  EXPECT_THROW(study(1.0, std::numeric_limits<double>::infinity()), InvalidArgument);
+  EXPECT_NO_THROW(study(1.0, 2.0));
+}
+
 }  // namespace
 }  // namespace mindahl::tradeoff::model_regions_test
