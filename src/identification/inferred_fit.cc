@@ -296,12 +296,13 @@ void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const Solv
   };
   if (solved.rival && !solved.fits_turns()) {
     cover({solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState},
-          "initial_state_undecided");
+          FindingCode("initial_state_undecided"));
   }
   if (solved.fits_turns() || solved.is_weighted) return;  // other starts led to another problem
   for (const Descent& descent : solved.descents) {
     if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
-    cover({problem, descent.solution, IntervalSource::kOtherMinimum}, "several_minima");
+    cover({problem, descent.solution, IntervalSource::kOtherMinimum},
+          FindingCode("several_minima"));
     break;  // one says it
   }
 }
