@@ -37,8 +37,9 @@ std::from_chars_result FromChars(const char* begin, const char* end, Value& valu
 template <typename Value>
 std::optional<Value> NumberIn(std::string_view text) {
   Value value{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = FromChars(text.data(), end, value);
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto [stop, error] = FromChars(begin, end, value);
   return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 

@@ -39,6 +39,7 @@ inline std::vector<std::string_view> PartsOf(std::string_view text, char separat
 template <typename Rows, typename Member>
 std::vector<std::string_view> NamesOf(const Rows& rows, Member name) {
   std::vector<std::string_view> names;
+  names.reserve(std::size(rows));
   for (const auto& row : rows) names.push_back(row.*name);
   return names;
 }

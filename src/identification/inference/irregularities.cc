@@ -364,7 +364,7 @@ constexpr std::size_t kMostPoints = 256;     // that a stroke is looked at by
 constexpr std::size_t kMostStrokes = 64;     // that the period is looked for in
 constexpr double kFewestPeriods = 3.0;       // on the plateau
 constexpr double kReadingsAPeriod = 4.0;     // at least
-constexpr double kFinest = 1.0 / 10;         // of the step between frequencies, at last
+constexpr int kFinest = 10;                  // parts of the step between frequencies, at last
 constexpr double kOfFree = 0.8;              // of what a phase for each stroke explains
 constexpr double kOfAnyFree = 0.3;           // likewise of another period
 constexpr Eigen::Index kHarmonics = 3;
@@ -512,7 +512,7 @@ std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples)
   const double step = 1 / (2 * length);
   const double highest = points / kReadingsAPeriod / travel;
   double best = 0.0;
-  double tried = 0.0;
+  std::size_t tried = 0;
   PhaseFit most;
   double most_by_free = 0.0;  // at any frequency
   const auto look_at = [&](double frequency) {
@@ -522,13 +522,14 @@ std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples)
     most = explained;
     best = frequency;
   };
-  for (double frequency = kFewestPeriods / length; frequency <= highest; frequency += step) {
+  const double lowest = kFewestPeriods / length;
+  for (double frequency = lowest; frequency <= highest;) {
     look_at(frequency);
-    ++tried;
+    frequency = lowest + static_cast<double>(++tried) * step;
   }
   if (!(most.by_one > 0)) return std::nullopt;
   const double coarse = best;
-  for (double part = -1; part <= 1; part += kFinest) look_at(coarse + part * step);
+  for (int part = -kFinest; part <= kFinest; ++part) look_at(coarse + part * step / kFinest);
   // For noise, free phases explain more by a factor of the number of strokes.
   if (most.by_one < std::max(kOfFree * most.by_free, kOfAnyFree * most_by_free)) {
     return std::nullopt;
@@ -543,7 +544,7 @@ std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples)
   if (!(degrees > 1) || !(after > 0) || !(before > after)) return std::nullopt;
   const double f = (before - after) / kColumns / (after / degrees);
   IrregularityFit ripple;
-  ripple.p_value = std::min(1.0, tried * PValueOfF(f, kColumns, degrees));
+  ripple.p_value = std::min(1.0, static_cast<double>(tried) * PValueOfF(f, kColumns, degrees));
   ripple.size = 1 / best;
   ripple.explains = 1 - after / before;
   ripple.delta_aicc = 2 * (kColumns + 1) - evidence.LikelihoodRatio(before, after);

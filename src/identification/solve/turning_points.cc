@@ -282,8 +282,8 @@ TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const
                                          Response& response)
     : TurningPointColumns(ColumnsOfTurns(problem, theta, response)) {}
 
-TurningPointColumns::TurningPointColumns(Eigen::SparseMatrix<double> columns)
-    : columns_(std::move(columns)) {
+TurningPointColumns::TurningPointColumns(const Eigen::SparseMatrix<double>& columns)
+    : columns_(columns) {
   // A turn without samples after it has an empty column.
   SparseColumns normal = columns_.transpose() * columns_;
   for (Eigen::Index k = 0; k < normal.cols(); ++k) {

@@ -45,7 +45,7 @@ class TurningPointColumns {
  public:
   /// @param problem  of turned records; θ as of the problem
   TurningPointColumns(const Problem& problem, std::span<const double> theta, Response& response);
-  explicit TurningPointColumns(Eigen::SparseMatrix<double> columns);
+  explicit TurningPointColumns(const Eigen::SparseMatrix<double>& columns);
 
   [[nodiscard]] const Eigen::SparseMatrix<double>& columns() const { return columns_; }
 
