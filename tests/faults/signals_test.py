@@ -147,6 +147,9 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--kills", type=int, default=25)
     options = parser.parse_args()
+    # A test started in the background of a script ignores SIGINT, and so would the program.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
     with tempfile.TemporaryDirectory() as scratch:
         tests = Tests(options.program, scratch)
         kills = tests.kill(options.kills)

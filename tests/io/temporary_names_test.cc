@@ -23,6 +23,12 @@ TEST(TemporaryName, GoesWithItsObjectUnlessItIsKept) {
   }
 }
 
+/// Restores what signals do by default: a test started in the background of a script ignores
+/// SIGINT, one started by nohup SIGHUP, and so would the program.
+void RestoreDefaultSignals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+}
+
 TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TemporaryDirectory directory;
@@ -31,6 +37,7 @@ TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
+      RestoreDefaultSignals();
       RemoveTemporaryFilesOnSignals();
       const TemporaryName scratch((directory.path() / "scratch").string());
       std::filesystem::create_directory(scratch.name());
@@ -60,6 +67,7 @@ TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
+    RestoreDefaultSignals();
     RemoveTemporaryFilesOnSignals();
     RaiseNotedSignal();  // of none
     {
@@ -82,6 +90,7 @@ TEST(DeferredSignals, InterruptWhatWaitsForInput) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
+    RestoreDefaultSignals();
     RemoveTemporaryFilesOnSignals();
     const DeferredSignals deferred;
     ::raise(SIGINT);  // before the wait begins
