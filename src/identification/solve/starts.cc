@@ -304,20 +304,13 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
   }
 }
 
-/// Looks around all guesses: around the second only if the best look is nearly as good there.
+/// Looks around the first guess from which a look leads anywhere. Looks of several are not
+/// compared: this far from the minimum the better one often leads to the worse minimum.
 Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
   Looks best;
-  LookAround(plane, parameters, 0, hopeless, best);
-  for (std::size_t guess = 1; guess < plane.guesses(); ++guess) {
-    Look look = *std::ranges::min_element(best, {}, &Look::cost);
-    const double least = look.cost;
-    if (std::isfinite(least)) {  // else no look led anywhere yet, and there is none to repeat
-      look.guess = guess;
-      plane.At(look);
-      // A grid this coarse is at a distance from the minimum wherever the contact was unloaded.
-      constexpr double kWorthALook = 4.0;
-      if (!(look.cost < kWorthALook * least)) continue;
-    }
+  const auto leads_anywhere = [](const Look& look) { return std::isfinite(look.cost); };
+  for (std::size_t guess = 0; guess < plane.guesses() && std::ranges::none_of(best, leads_anywhere);
+       ++guess) {
     LookAround(plane, parameters, guess, hopeless, best);
   }
   if (parameters[kShape].fixed) {
