@@ -287,6 +287,14 @@ TEST(Recommend, OfARecordIsTheCheapestLawThatItDoesNotTellFromTheBest) {
   EXPECT_THAT(result["law_options"].get<std::string>(), HasSubstr("--model mindlin --sigma 4.8"));
 }
 
+TEST(Recommend, WarnsOfAContactThatIsDoubtful) {
+  const Outcome outcome =
+      RunCommand({"recommend", "--compliance", "0.2", "--contact-radius", "1e-4", "--normal-load",
+                  "50", "--friction", "6", "--lambda", "0.8", "--cycles", "2"});
+  EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("mindahl recommend: warning: friction coefficient"));
+}
+
 TEST(Recommend, ARecordThatNoLawDescribesEstablishesNothing) {
   // A force that is the same at either end of the motion.
   const TemporaryDirectory directory;

@@ -219,6 +219,22 @@ TEST(ModelTerms, SamplesOutsideTheLoadWindowStillMakeHistory) {
   EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
 }
 
+TEST(ModelTerms, SamplesHeldOutAtTheEndsOfTheLoadWindowTellTheLoad) {
+  Record record = Loop();
+  FitOptions options;
+  options.preparation.load_window = {99.9, 100.0};
+  std::vector<bool>& held_out = options.preparation.held_out.emplace_back();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    held_out.push_back(i >= record.size() / 2);
+    record.normal_load.push_back(!held_out[i] ? 99.95 : i % 3 == 0 ? 99.9 : 100.0);
+    sum += record.normal_load[i];
+  }
+  const FitResult fit = FitOne(record, options);
+  ASSERT_TRUE(fit.normal_load);
+  EXPECT_NEAR(*fit.normal_load, sum / static_cast<double>(record.size()), 1e-10);
+}
+
 TEST(ModelTerms, CyclesThatAreSkippedMayBeCorrupted) {
   Record record = Loop(3.0);
   const std::size_t first_cycle = 90;  // to its second reversal, 120 samples a cycle

@@ -41,6 +41,14 @@ TEST(ReadSweep, GoesByTheNameWhereNoUnitIsStated) {
   EXPECT_TRUE(Read("force,stiffness\n1,2\n", {}, {.column = "", .unit = "m/N"}).is_compliance);
 }
 
+TEST(ReadSweep, DoesNotTakeTheResponseForTheAmplitude) {
+  const SweepFile sweep =
+      Read("displacement [mm],force [N/mm]\n2,500\n", {}, {.column = "force", .unit = ""});
+  EXPECT_EQ(sweep.amplitude, (Numbers{2e-3}));
+  EXPECT_EQ(sweep.response, (Numbers{5e5}));
+  EXPECT_FALSE(sweep.over_force);
+}
+
 TEST(ReadSweep, RefusesAResponseThatIsNotPositiveByItsPlace) {
   EXPECT_NE(MessageOf<InputError>([] {
               Read("x [m],k [N/m]\n1,2\n1,0\n");

@@ -53,6 +53,12 @@ TEST(BackboneText, NamesTheNearestLaw) {
                                     HasSubstr("leaves the band at 1 of 3 displacements")));
 }
 
+TEST(BackboneText, HasFourDigitsOfTheLastDisplacement) {
+  BackboneEstimate backbone = Made();
+  backbone.points.back().displacement = 1.23456e-6;
+  EXPECT_THAT(TextOf(backbone), HasSubstr("force at 1.235 µm: "));
+}
+
 TEST(BackboneText, CountsALawOnEitherSideOfTheBand) {
   BackboneEstimate backbone = Made();
   backbone.points[1].law = 9.25;

@@ -76,5 +76,20 @@ TEST(Memory, ThatWasNotAskedForIsNullWithAReason) {
   EXPECT_THAT(ToText(MakeReport(MadeInput())), Not(HasSubstr("memory:")));
 }
 
+TEST(MemoryOfALoop, IsNullWhereItWasNotAskedForOrCannotBeCompared) {
+  for (const auto& [depth, why] :
+       {std::pair(identification::Depth::kFull, "the fit was not asked for it"),
+        std::pair(identification::Depth::kThorough, "branches are not compared before")}) {
+    ReportInput input = MadeInput();
+    input.fit.depth = depth;
+    input.fit.memory.reset();
+    const json fit = json::parse(ToJson(MakeReport(std::move(input))));
+    const auto null = std::ranges::find(fit["nulls"], "memory.verdict",
+                                        [](const json& each) { return each["path"]; });
+    ASSERT_NE(null, fit["nulls"].end());
+    EXPECT_THAT((*null)["why"].get<std::string>(), ::testing::StartsWith(why));
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::report::memory_test

@@ -273,6 +273,17 @@ TEST(RefittedParameters, AreThoseThatTheLawHas) {
   EXPECT_EQ(words("dahl"), "sigma = 2.5 N/m and Tc = 1.5 N");
 }
 
+TEST(MakeTradeoff, IsOfThePapersContactUnlessAnotherIsGiven) {
+  TradeoffRequest request;
+  request.displacement = {0.0, 1e-6, -1e-6};
+  request.path_name = "p.csv";
+  const Tradeoff made = MakeTradeoff(
+      request, [](std::string_view) {}, [](std::string_view) {});
+  EXPECT_DOUBLE_EQ(made.law.slip_force, 0.3 * 100);                        // mu N
+  EXPECT_DOUBLE_EQ(made.law.tangential_stiffness, 8 * 0.0027 / 4.42e-11);  // 8a/G*
+  EXPECT_DOUBLE_EQ(made.law.shape_exponent, 1.0 / 3);
+}
+
 TEST(MakeTradeoff, MeasuresThePathOrTheExcitationsThatAreChosen) {
   TradeoffRequest request;
   request.law.sigma = 4e7;
