@@ -6,8 +6,8 @@
 #include "cli/provenance.h"
 #include "io/input_file.h"
 #include "io/temporary_directory.h"
-#include "support/page_text.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 // --report of fit, batch and track: pages for people.
 namespace mindahl::cli::report_page_test {

@@ -263,7 +263,7 @@ TEST(Fit, KnowsItsPastFromTheSecondTurningPointOn) {
   EXPECT_EQ(two.FindFinding("unknown_past"), nullptr);
 }
 
-/// What a fit reports that does not depend on the order of its records.
+/// Compares what does not depend on the order of the records of a fit.
 void ExpectSameFit(const FitResult& one, const FitResult& other) {
   constexpr double kSolved = 1e-5;  // of a minimum that is reached from another place
   for (const ParameterEstimate& estimate : one.parameters) {
@@ -307,8 +307,8 @@ TEST(Fit, DoesNotDependOnTheOrderOfItsRecords) {
 }
 
 TEST(Fit, HasOneRippleInSpaceForRecordsWithOtherCentres) {
-  // Of a screw of a quarter of the reach: a record that is a third of its period off has its crests
-  // at the same places.
+  // The ripple has a period of a quarter of the reach; the second record is centred a third of that
+  // period away, and the crests stay where they are.
   const double period = kReach / 4;
   constexpr double kHeight = 0.03;  // of Tc
   std::vector<Record> records;

@@ -2,7 +2,7 @@
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 
-// Parts of records that are predicted by fits to the rest, and the mean of what is missed.
+// Fits predict parts of records that they have not seen, and terms are scored by first-order steps.
 namespace mindahl::identification::held_out_test {
 namespace {
 
@@ -163,6 +163,36 @@ TEST(PredictParts, LeaveOutWhatTheOptionsHoldOut) {
   ASSERT_THAT(predicted, SizeIs(2));
   // Noise of 0.2 N: of a mean of 100 squares the error is √(2/100).
   for (const double square : predicted) EXPECT_NEAR(square / (0.2 * 0.2), 1.0, 5 * std::sqrt(0.02));
+}
+
+TEST(TermScores, ValuesOfLinearTermsAreThoseOfTheFitWithThem) {
+  constexpr models::BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+  constexpr double kViscosity = 1e4;  // [N s/m]: 0.6 N at 6e-5 m/s
+  constexpr double kDrift = 0.8;      // [N/s]
+  const History displacement = Cycling(Wave::kSine, 2e-6, 3.0, 200);
+  loop::Record record =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double time = 0.2 * static_cast<double>(i) / 200;
+    record.time.push_back(time);
+    record.force[i] += kDrift * time;
+    record.force[i] +=
+        kViscosity * 2e-6 * 10 * std::numbers::pi * std::cos(10 * std::numbers::pi * time);
+  }
+  FitOptions options;
+  options.preparation.force_sense = 1;
+  const FitResult fit = FitOne(record, options);
+  FitOptions with = options;
+  with.terms = {"viscous", "force_drift"};
+  const std::vector<loop::RecordView> views = {record};
+  TermScores scores(views, options, with.terms, {});
+  scores.StepFrom(fit, options, {}, 0);
+  const std::optional<TermScore> score = scores.Of(with);
+  ASSERT_TRUE(score);
+  // The law moves, too, which one step does only to first order.
+  EXPECT_NEAR(score->values.at("viscous") / kViscosity, 1, 0.05);
+  EXPECT_NEAR(score->values.at("force_drift") / kDrift, 1, 0.05);
+  EXPECT_LT(score->rms, 0.1 * fit.residuals.rms);
 }
 
 }  // namespace

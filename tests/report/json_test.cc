@@ -68,20 +68,6 @@ TEST(Json, HasEachPartThatIsTrimmed) {
                               {"first_loading", true}}));
 }
 
-TEST(TrimNotes, CountCyclesInTheSingularToo) {
-  for (const auto& [cycles, words] :
-       {std::pair(1U, "1 cycle of running in"), std::pair(2U, "2 cycles of running in")}) {
-    ReportInput input = MadeInput();
-    input.trims = {{.samples = 9,
-                    .parts = {{.reason = loop::TrimReason::kRunningIn,
-                               .first = 1,
-                               .last = 5,
-                               .cycles = cycles,
-                               .at_start = true}}}};
-    EXPECT_THAT(ToText(MakeReport(std::move(input))), HasSubstr(words));
-  }
-}
-
 TEST(Json, HasTheTestsOfTheMapping) {
   report::ReportInput input = MadeInput();
   input.fit.parameters[1] = testing::MadeParameter("alpha", "-", 0.35, 0.01);

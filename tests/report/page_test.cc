@@ -5,8 +5,8 @@
 #include "report/made_report.h"
 #include "report/template.h"
 #include "support/histories.h"
-#include "support/page_text.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 namespace mindahl::report::page_test {
 namespace {

@@ -404,7 +404,7 @@ TEST(Sentence, OfTwoLawsHasTheEvidenceThatThereIs) {
   finding.parameters = {"alpha"};
   EXPECT_THAT(Say(finding), HasSubstr("(they give the same steady loop at any one amplitude); "
                                       "start from"));
-  // Of a law whose slip force is not known no number is given.
+  // The sentence gives no numbers of a law whose slip force is not known.
   finding.parameters = {"sigma", "slip_force"};
   FitResult fit = FitThat(false);
   fit.parameters = {testing::MadeParameter("slip_force", "N", 40, 0.1)};

@@ -7,8 +7,8 @@
 
 #include "mindahl/core/version.h"
 #include "support/histories.h"
-#include "support/page_text.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 namespace mindahl::request::batch_test {
 namespace {
@@ -280,7 +280,7 @@ TEST(BatchText, StatesRepeatsInARowEach) {
                                        {48, 1, 4 * kNormal95, "effective", 43}}),
                             "");
   EXPECT_THAT(text, StartsWith("2 of 2 files fitted\n\nif these are repeats:\n"));
-  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  text = WithSingleBlanks(text);
   // χ² = 64/10 of one degree of freedom: p = 0.0114.
   EXPECT_THAT(text, HasSubstr("\n slip_force 2 44 4.8 5.7 2.2 2.7 as the errors say, p 0.011\n"));
   EXPECT_THAT(text, HasSubstr("\n half_gap 2 42 1 1.4 - - without stated errors\n"));

@@ -269,7 +269,7 @@ TEST(FitRequest, TakesABoundWithBothItsEnds) {
   request.bound["slip_force"] = {1.0, 5.0};
   for (const double held : {1.0, 5.0, 3.0}) {
     request.fix["slip_force"] = held;
-    // What is held needs no bound; that it lies within is no contradiction.
+    // A held parameter may have a bound, as long as its value lies within.
     EXPECT_THAT(RefusalOf(request), Not(HasSubstr("outside"))) << held;
   }
   request.fix.clear();

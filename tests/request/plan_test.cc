@@ -4,6 +4,7 @@
 
 #include "support/histories.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 // These tests concern the loops that a plan expects.
 namespace mindahl::request::plan_test {
@@ -318,15 +319,12 @@ TEST(PlanText, HasEveryNumberInItsRow) {
                                "and 0.0625 m a\nsample; a sine of 3.5 cycles, 60 samples each\n\n"
                                "standard errors      | virgin"));
   EXPECT_THAT(text, EndsWith("Slip begins at 0.5 m.\n"));
-  const auto single = [](std::string words) {
-    for (std::size_t at = 0; (at = words.find("  ", at)) != std::string::npos;) words.erase(at, 1);
-    return words;
-  };
   // σ at an error of its value is open, and at one below it is said in percent.
-  EXPECT_THAT(single(text), HasSubstr("\n1.25 2.5 | - 0.25 2.5 % decided | - 0.25 - open \n"));
-  EXPECT_THAT(single(text),
+  EXPECT_THAT(WithSingleBlanks(text),
+              HasSubstr("\n1.25 2.5 | - 0.25 2.5 % decided | - 0.25 - open \n"));
+  EXPECT_THAT(WithSingleBlanks(text),
               HasSubstr("\n2.25 4.5 | 1e+02 % 0.25 2.5 % decided | 1e+02 % 0.25 - open \n"));
-  EXPECT_THAT(single(text),
+  EXPECT_THAT(WithSingleBlanks(text),
               HasSubstr("\nX [m] X/slip | sigma alpha Tc law | sigma alpha Tc law \n"));
   plan.expected.rig.stiffness = 8.5;
   plan.expected.autocorrelation = 0.25;

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "support/histories.h"
-#include "support/page_text.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 // These tests concern the model recommended for a motion or a record, and the stated reason.
 namespace mindahl::request::recommendation_test {
@@ -287,8 +287,7 @@ TEST(MotionRecommendation, TextHasEveryNumberInItsSentence) {
       "after 3 cycles\n",
       "mindlin-dahl by dopri5, tolerance 0.0001 100.00 50.0 0.0e+00 0.0e+00 0.0e+00 meets it\n",
       "mindlin-dahl by exact 20.00 10.0 0.0e+00 0.0e+00 0.0e+00 meets it\n"};
-  std::string single = text.substr(text.find("evidence"));
-  for (std::size_t at = 0; (at = single.find("  ", at)) != std::string::npos;) single.erase(at, 1);
+  const std::string single = WithSingleBlanks(text.substr(text.find("evidence")));
   for (const std::string& row : rows) EXPECT_THAT(single, HasSubstr("\n " + row));
 }
 
@@ -465,7 +464,7 @@ TEST(RecordRecommendation, TextHasARowForEachLaw) {
                                "25 N\nasked: the cheapest law that the record does not distinguish "
                                "from the best (dAICc below 5.5)\n\n-> spring: "));
   EXPECT_THAT(text, HasSubstr("\n   as options of simulate: --model spring --sigma 2.5 "));
-  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  text = WithSingleBlanks(text);
   EXPECT_THAT(text,
               HasSubstr("\n spring 3.50 2 1.25 0.75 4.5 3.5 0.062 not distinguished <- this"));
   EXPECT_THAT(text, HasSubstr("\n coulomb 2.25 1 8.5 7.5 16.5 18.5 <1e-99 distinguished\n"));

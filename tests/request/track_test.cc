@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "support/page_text.h"
 #include "support/prelude.h"
+#include "support/text.h"
 
 namespace mindahl::request::track_test {
 namespace {
@@ -245,7 +245,7 @@ TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
   test.shared_alpha = alpha;
   auto json = nlohmann::json::parse(ToJson(test, DescribedByHand()));
   for (const char* key : {"version", "quantities", "flags"}) json.erase(key);
-  // Of two values 4 apart with errors of 1: Q = 8, τ² = 7, √(1/2 + 7/2).
+  // Two values 4 apart, with errors of 1, have Q = 8, τ² = 7 and a mean known to √(1/2 + 7/2).
   const auto scatter = json["shared_alpha"]["scatter"].get<double>();
   EXPECT_NEAR(scatter, std::sqrt(7.0), 1e-14);
   json["shared_alpha"].erase("scatter");

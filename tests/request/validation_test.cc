@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/prelude.h"
+#include "support/text.h"
 
 // These tests concern the text and the JSON of a validation whose numbers are set by hand.
 namespace mindahl::request::validation_test {
@@ -93,7 +94,7 @@ TEST(Validation, JsonHasEveryNumberUnderItsName) {
 TEST(Validation, TextHasEveryNumberInItsRow) {
   Validation validation = MadeByHand();
   std::string text = ToText(validation);
-  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  text = WithSingleBlanks(text);
   EXPECT_THAT(text, StartsWith("Mindlin loops of 14 contacts (seed 9), fitted with free alpha: 30 "
                                "fits\n"));
   EXPECT_THAT(text, HasSubstr("\n0.125 0.25 7 1.0e-01 2.0e-01 3.0e-01 4.0e-01 5.0e-01 6.0e-01 3 "
