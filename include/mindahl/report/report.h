@@ -26,6 +26,14 @@ struct Warning {
   std::string message;
 };
 
+/// A change of the request that was fitted again and lowers the misfit.
+struct NextStep {
+  std::string text;     ///< in words: "a slip force that depends on the position"
+  std::string options;  ///< to add to the command: "--terms slip_position"
+  double misfit_before = 0.0;  ///< Adequacy::misfit_over_half_gap of the fit that is reported
+  double misfit_after = 0.0;   ///< of the fit with the options
+};
+
 /// Holds the inputs of a report.
 struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
@@ -40,6 +48,9 @@ struct ReportInput {
   std::optional<identification::ModelSelection> selection = {};   ///< if a model was chosen
   std::optional<identification::TermSelection> terms = {};        ///< if terms were chosen
   std::optional<identification::BackboneEstimate> backbone = {};  ///< if it was requested
+  /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
+  /// reported.
+  std::optional<NextStep> next = {};
 };
 
 /// Holds the answer of a fit: its inputs, and everything that follows from them. ToJson(),
