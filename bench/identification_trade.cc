@@ -151,7 +151,6 @@ int main(int argc, char** argv) {
                                  {.name = "errors", .depth = Depth::kErrors},
                                  {.name = "intervals", .depth = Depth::kIntervals},
                                  full,
-                                 {.name = "thorough", .depth = Depth::kThorough},
                                  {.name = "full, single precision", .is_single = true},
                                  {.name = "full, every 2nd sample", .every = 2},
                                  {.name = "full, every 4th", .every = 4},

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
       input.known.normal_load = *mean;
     }
     input.fit = mindahl::identification::Fit(records, {.offsets = true},
-                                             mindahl::identification::Depth::kThorough);
+                                             mindahl::identification::Depth::kFull);
     const mindahl::report::Report report = mindahl::report::MakeReport(std::move(input));
     std::fputs(mindahl::report::ToJson(report).c_str(), stdout);
     return report.fit.converged ? 0 : 3;

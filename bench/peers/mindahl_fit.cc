@@ -27,8 +27,7 @@ using namespace mindahl::models;
 /// How much of the answer is asked for, of a fitter that has fitted before.
 const std::vector<std::pair<const char*, Depth>> kDepths = {{"estimate", Depth::kEstimate},
                                                             {"intervals", Depth::kIntervals},
-                                                            {"full", Depth::kFull},
-                                                            {"thorough", Depth::kThorough}};
+                                                            {"full", Depth::kFull}};
 
 double MedianMilliseconds(int repeats, const std::function<void()>& call) {
   std::vector<double> times;

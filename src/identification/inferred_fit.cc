@@ -22,7 +22,6 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/irregularities.h"
 #include "identification/inference/law_tests.h"
-#include "identification/inference/memory_test.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
@@ -180,25 +179,6 @@ std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const 
   return tells;
 }
 
-/// Compares branches with each other, under the fitted law and the other one.
-MemoryTest CompareBranches(const FittedProblem& fitted_problem, const LawComparison& laws,
-                           const DisplacementEffect& displacement, const Thresholds& thresholds,
-                           Response& response) {
-  const auto& [problem, solution, noise, estimates] = fitted_problem;
-  const FittedLaw fitted{&problem, &solution, {estimates.jacobian(), estimates.residual()}};
-  if (!laws.other) return TestMemory(fitted, nullptr, noise, displacement, thresholds, response);
-  const Problem& problem_of_other = laws.other->problem;
-  const Solution& solution_of_other = laws.other->solution;
-  const FittedLaw other{&problem_of_other, &solution_of_other,
-                        LinearizeAt(problem_of_other, solution_of_other.theta, response,
-                                    problem_of_other.parameters.free())};
-  const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
-  const MemoryTest test = TestMemory(is_masing ? fitted : other, is_masing ? &other : &fitted,
-                                     noise, displacement, thresholds, response);
-  response.Bind(problem);
-  return test;
-}
-
 /// Estimates the noise and the statistics of the residuals.
 /// @param residual  weighted, of every sample
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
@@ -253,11 +233,10 @@ void WidenByProfiles(const FittedProblem& fitted, const FitOptions& options, Sea
   }
 }
 
-/// Tests α = 1/3, with a rig and branch by branch.
+/// Tests α = 1/3, also with a rig.
 void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
   const FitOptions& options = attempt.options;
   const Problem& problem = fitted.problem;
-  result.branch_shapes = FitBranchShapes(fitted, attempt.buffers.response);
   result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
   if (!result.mindlin_test) return;
   if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
@@ -307,18 +286,11 @@ void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const Solv
   }
 }
 
-/// Compares Masing's law with Dahl's own, and branches with each other.
-void CompareModels(const Attempt& attempt, const FittedProblem& fitted,
-                   const DisplacementEffect& displacement, FitResult& result) {
-  const Problem& problem = fitted.problem;
-  const LawComparison laws =
-      CompareLaws(problem, fitted.solution, result, attempt.options, attempt.buffers);
-  if (result.depth >= Depth::kThorough && laws.is_comparable && CanCompareBranches(problem)) {
-    result.memory = CompareBranches(fitted, laws, displacement, attempt.options.thresholds,
-                                    attempt.buffers.response);
-    Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
-  }
-  result.law_choice = ReportedLaw(laws.choice, result.adequacy.verdict);
+/// Compares Masing's law with Dahl's own.
+void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
+  const std::optional<LawChoice> choice =
+      CompareLaws(fitted.problem, fitted.solution, result, attempt.options, attempt.buffers);
+  result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
   result.parameters[kSlipForce] = CoverOtherLaw(attempt.options.thresholds, result);
   KeepMeasuredSlipForce(attempt.options.thresholds, result);
@@ -382,7 +354,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   if (is_judged && IsInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result), thresholds);
   }
-  if (is_tested) CompareModels(attempt, fitted, displacement, result);
+  if (is_tested) CompareModels(attempt, fitted, result);
   Judge(result.parameters, result.findings);
   return result;
 }

@@ -482,7 +482,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
     result.chosen = result.indistinguishable.front();
   }
   Fitter chosen(OptionsOf(result.scores[result.chosen], options));
-  result.fit = chosen.Fit(records, Depth::kThorough);
+  result.fit = chosen.Fit(records, Depth::kFull);
   result.verdict = VerdictOn(result, options.thresholds, ranking);
   return result;
 }

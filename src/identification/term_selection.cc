@@ -720,7 +720,7 @@ void Selection::Run(const FitOptions& options) {
   ++result_.estimates;
   Fitter first(options);
   result_.options = options;
-  result_.fit = first.Fit(records_, Depth::kThorough);
+  result_.fit = first.Fit(records_, Depth::kFull);
   const Adequacy& adequacy = result_.fit.adequacy;
   const bool is_described = adequacy.verdict == AdequacyVerdict::kAdequate ||
                             (selection_.only_for_use && adequacy.use == Use::kQuantitative &&
@@ -802,7 +802,7 @@ void Selection::FitLast() {
   const auto fit = [&] {
     ++result_.estimates;
     Fitter last(from_here);
-    result_.fit = last.Fit(records_, Depth::kThorough);
+    result_.fit = last.Fit(records_, Depth::kFull);
   };
   fit();
   const bool is_bounded_by_user = result_.options.bounds.contains("slip_force");
@@ -909,7 +909,7 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
   } else if (!options.start.empty() ||
              !Selection(records, selection, result).RunNamed(options, selection.named)) {
     Fitter all_at_once(options);
-    result.fit = all_at_once.Fit(records, Depth::kThorough);
+    result.fit = all_at_once.Fit(records, Depth::kFull);
   }
   return result;
 }

@@ -85,18 +85,6 @@ using identification::MindlinTest;
 
 namespace {
 
-const std::vector<Field<identification::BranchShape>>& BranchFields() {
-  using Item = identification::BranchShape;
-  const auto why = "this branch alone does not determine it";
-  static const std::vector<Field<Item>> fields = {
-      {"branch", "", "virgin, unloading or reloading", &Item::branch},
-      {"samples", "", "number of samples on these branches", &Item::samples},
-      {"alpha", "-", "α of these branches alone, the rest shared", &Item::shape_exponent, why},
-      {"standard_error", "-", "standard error of alpha", &Item::standard_error, why},
-  };
-  return fields;
-}
-
 std::string WhyStiffnessNotTested(const StiffnessTest& test) {
   return test.ratio.standard_error > 0 ? "sigma is not identifiable"
                                        : "neither sigma nor an input is uncertain";
@@ -184,8 +172,6 @@ void AddMappingFields(FieldTable& table) {
       {"mapping.tenable_with_rig_stiffness", "N/m", "rig with which α = 1/3 fits as well",
        At(&Report::fit, &identification::FitResult::mindlin_test, &MindlinTest::rig_stiffness),
        WhyNoRig},
-      {"mapping.alpha_by_branch", "", "α of each kind of branch alone",
-       [](const Report& report) { return List(BranchFields(), report.fit.branch_shapes); }},
       {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)", ratio(&UncertainValue::value),
        WhyNoRatio},
       {"mapping.sigma_over_hertz_mindlin_standard_error", "-", "standard error of σ/(8a/G*)",

@@ -256,7 +256,6 @@ void AddResidualFields(FieldTable& table);
 void AddSelectionFields(FieldTable& table);
 void AddSolverFields(FieldTable& table);
 void AddLawFields(FieldTable& table);
-void AddMemoryFields(FieldTable& table);
 void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);

@@ -175,7 +175,6 @@ FieldTable MakeTable() {
   AddParameterFields(table);
   AddSlipForceFields(table);
   AddLawFields(table);
-  AddMemoryFields(table);
   AddResidualFields(table);
   AddSelectionFields(table);
   AddSolverFields(table);

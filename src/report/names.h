@@ -37,9 +37,6 @@ inline constexpr auto kNamesOf<identification::AdequacyVerdict> =
 template <>
 inline constexpr auto kNamesOf<identification::Use> =
     std::to_array<std::string_view>({"quantitative", "indicative", "none"});
-template <>
-inline constexpr auto kNamesOf<identification::MemoryVerdict> =
-    std::to_array<std::string_view>({"masing", "dahl", "neither", "undecided"});
 
 template <typename Enum>
 constexpr std::string_view Name(Enum value) {

@@ -378,7 +378,6 @@ Json Fitted(const Report& report, const Provenance& provenance) {
                           fields("measured.", "measured.closed"))},
       {"closed", facts.closed},
       {"trends", TrendStatements(facts)},
-      {"memory", MemoryStatement(report)},
       Figure("residual-stroke", ResidualAlongStroke(report, units, LoopColours::kByCycle)),
       Figure("residual-time", ResidualInTime(report, units)),
       Figure("residual-distribution", ResidualDistribution(report, units)),

@@ -73,53 +73,6 @@ void AddAdequacyFields(FieldTable& table) {
   table.Describe("adequacy.causes[].", CauseFields());
 }
 
-using identification::MemoryComparison;
-using identification::MemoryTest;
-
-namespace {
-
-const std::vector<Field<MemoryComparison>>& ComparisonFields() {
-  using Item = MemoryComparison;
-  static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable name, for scripts", &Item::code},
-      {"p_value", "-",
-       "probability that noise alone makes this difference in a contact with Masing's memory rule",
-       &Item::p_value},
-      {"dahl_p_value", "-", "likewise with Dahl's memory rule", &Item::dahl_p_value},
-      {"size", "N", "rms difference beyond Masing's memory rule and beyond noise", &Item::size},
-  };
-  return fields;
-}
-
-std::string WhyNoMemory(const Report& report) {
-  if (report.fit.depth < identification::Depth::kThorough) return "the fit was not asked for it";
-  return "branches are not compared before the motion turns, where sigma or slip_force is held or "
-         "bounded, under loads that vary or differ, with a lag or an asymmetry, and in a fit of "
-         "the displacement";
-}
-
-}  // namespace
-
-void AddMemoryFields(FieldTable& table) {
-  const auto of_memory = [](auto member) {
-    return At(&Report::fit, &identification::FitResult::memory, member);
-  };
-  table.Add({
-      {"memory.verdict", "", "masing, dahl, neither or undecided", of_memory(&MemoryTest::verdict),
-       WhyNoMemory},
-      {"memory.p_value", "-", "p-value of Masing's memory rule, by all comparisons",
-       of_memory(&MemoryTest::p_value), WhyNoMemory},
-      {"memory.dahl_p_value", "-", "p-value of Dahl's memory rule, by all comparisons",
-       of_memory(&MemoryTest::dahl_p_value), WhyNoMemory},
-      {"memory.tests", "", "comparisons that the record allows; may be empty",
-       [](const Report& report) {
-         return report.fit.memory ? List(ComparisonFields(), report.fit.memory->comparisons)
-                                  : Value{.json = Json::array(), .is_absent = false};
-       }},
-  });
-  table.Describe("memory.tests[].", ComparisonFields());
-}
-
 using identification::RecordFit;
 using identification::ResidualStatistics;
 using identification::StrokeBin;

@@ -327,19 +327,6 @@ std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, con
       finding.kind);
 }
 
-std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const Units&) {
-  const bool fits_masing = finding.kind == "masing";
-  const char* const better = fits_masing ? "Masing's law" : "Dahl's own law";
-  const char* const other = fits_masing ? "Dahl's" : "Masing's";
-  return fmt::format(
-      "{} fits this record better (ΔAICc = {:.3g}), but the branches, compared with each other, "
-      "follow {} memory rule (p = {:.2g}, the other p = {:.2g}): neither law has the shape of the "
-      "record; use sigma of neither, and look at the plot",
-      better, Needed(finding, "delta_aicc"), other,
-      Needed(finding, fits_masing ? "dahl_p_value" : "p_value"),
-      Needed(finding, fits_masing ? "p_value" : "dahl_p_value"));
-}
-
 // --- what the model misses
 
 struct MisfitKind {
@@ -518,7 +505,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"prior_contradicted", PriorContradicted},
     {"law_undecided", LawUndecided},
     {"other_law_fits_better", OtherLawFitsBetter},
-    {"memory_contradicts_law", MemoryContradictsLaw},
     {"systematic_residual", SystematicResidual},
     {"slow_residuals", SlowResiduals},
     {"energy_contradiction", EnergyContradiction},

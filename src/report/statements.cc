@@ -38,29 +38,6 @@ std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
                      100 * trend->standard_error / std::abs(*mean), trend->p_value);
 }
 
-struct ComparisonWords {
-  std::string_view code;
-  std::string_view words;
-};
-
-constexpr std::array<ComparisonWords, 6> kComparisons = {{
-    {"virgin_branch", "first loading and later branches"},
-    {"directions", "up and down strokes"},
-    {"amplitudes", "amplitudes"},
-    {"slope_at_reversal", "slopes after reversals"},
-    {"return_point", "branches before and after inner loops"},
-    {"other_law", "this law and the other one"},
-}};
-
-std::string BranchShapesStatement(const FitResult& fit) {
-  std::string text;
-  for (const identification::BranchShape& shape : fit.branch_shapes) {
-    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "α branch by branch: " : ", ",
-                        shape.branch, shape.shape_exponent, shape.standard_error);
-  }
-  return text;
-}
-
 std::string_view TestVerdict(double p_value) {
   return p_value < kSignificance ? "rejected" : "tenable";
 }
@@ -294,57 +271,6 @@ std::string LawStatement(const Report& report) {
   return text;
 }
 
-std::string MemoryStatement(const Report& report) {
-  if (!report.fit.memory || report.fit.memory->comparisons.empty()) return "";
-  const identification::MemoryTest& memory = *report.fit.memory;
-  const auto p = [](double value) {
-    return value < 1e-6 ? std::string("p < 1e-6") : fmt::format("p = {:.2g}", value);
-  };
-  const std::string masing = fmt::format("Masing's ({})", p(memory.p_value));
-  const std::string dahl = fmt::format("Dahl's ({})", p(memory.dahl_p_value));
-  std::string text;
-  using enum identification::MemoryVerdict;
-  switch (memory.verdict) {
-    case kMasing:
-      text = masing + ", not " + dahl;
-      break;
-    case kDahl:
-      text = dahl + ", not " + masing;
-      break;
-    case kNeither:
-      text = "neither " + masing + " nor " + dahl;
-      break;
-    case kUndecided:
-      text = masing + " or " + dahl + ", undecided";
-      break;
-  }
-  std::vector<std::string> compared;
-  for (const ComparisonWords& row : kComparisons) {
-    const auto found =
-        std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
-    if (found == memory.comparisons.end()) continue;
-    if (memory.verdict == kNeither) {
-      compared.push_back(fmt::format("{} differ by {} ({})", row.words,
-                                     Quantity(found->size, report.units.force, 2),
-                                     p(found->p_value)));
-    } else {
-      compared.emplace_back(row.words);
-    }
-  }
-  text += fmt::format("; {}{}",
-                      memory.verdict == kNeither ? "" : "compared: ", fmt::join(compared, ", "));
-  if (memory.verdict == kUndecided) {
-    const auto has = [&](std::string_view code) {
-      return std::ranges::find(memory.comparisons, code, &identification::MemoryComparison::code) !=
-             memory.comparisons.end();
-    };
-    text += has("virgin_branch") || has("amplitudes")
-                ? "; amplitudes further apart, or less noise, would decide"
-                : "; a virgin branch, a second amplitude or an inner loop would decide";
-  }
-  return text;
-}
-
 std::vector<std::string> ExponentStatements(const Report& report) {
   std::vector<std::string> statements;
   const AlphaTest& test = report.alpha;
@@ -371,8 +297,6 @@ std::vector<std::string> ExponentStatements(const Report& report) {
         "α = 1/3 with a rig of {} in series fits as well: the record does not determine which",
         rig));
   }
-  const std::string shapes = BranchShapesStatement(report.fit);
-  if (!shapes.empty()) statements.push_back(shapes);
   return statements;
 }
 

@@ -81,10 +81,6 @@ std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
 /// Empty where they are not compared.
 std::string LawStatement(const Report& report);
 
-/// States which memory the record has, whatever the shape of its branches. Empty where that is not
-/// tested.
-std::string MemoryStatement(const Report& report);
-
 /// Tests whether the exponent is Mindlin's, α = 1/3. Empty where α was held.
 std::vector<std::string> ExponentStatements(const Report& report);
 

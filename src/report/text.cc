@@ -533,7 +533,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
       tables.rest + Wrapped(WideIntervalStatement(fit, report.units), 2) + OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
   rest += "\n" + FitText(report) + MeasuredText(report) +
-          Labelled("memory: ", MemoryStatement(report)) + ResidualText(report);
+          ResidualText(report);
   // For an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return text + rest + NotesText(report);

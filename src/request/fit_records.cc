@@ -262,7 +262,7 @@ identification::FitResult FitAsked(const FitRequest& request, FitOptions& option
       options = std::move(selected.options);
       return std::move(selected.fit);
     }
-    return identification::Fit(records, options, identification::Depth::kThorough);
+    return identification::Fit(records, options, identification::Depth::kFull);
   } catch (const identification::TooFewSamples& error) {
     throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
   }

@@ -145,21 +145,6 @@ TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheLikelihoodRatio) {
   EXPECT_FALSE(Warns(fit, "shape_or_rig"));
 }
 
-TEST_F(FitTerms, EachBranchIdentifiesItsOwnAlpha) {
-  const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
-  const json& branches = fit["mapping"]["alpha_by_branch"];
-  ASSERT_THAT(branches, SizeIs(3));
-  std::size_t samples = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(branches[i]["branch"], (Words{"virgin", "unloading", "reloading"})[i]);
-    samples += branches[i]["samples"].get<std::size_t>();
-    // Once in 10⁶ for normal errors.
-    EXPECT_LT(std::abs(branches[i]["alpha"].get<double>() - 1.0 / 3),
-              5 * branches[i]["standard_error"].get<double>());
-  }
-  EXPECT_EQ(samples, fit["input"]["samples"]);
-}
-
 TEST_F(FitTerms, SlopedPlateauHasASlopeOfItsOwn) {
   std::vector<Sample> loop = Simulate({"--cycles", "2"});
   for (Sample& sample : loop) sample.force += 1e6 * sample.displacement;

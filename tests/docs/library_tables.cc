@@ -105,12 +105,6 @@ Json ModelsTable() {
   return names;
 }
 
-Json ComparisonsTable() {
-  Json codes = Json::array();
-  for (const std::string_view code : identification::MemoryComparisonCodes()) codes.push_back(code);
-  return codes;
-}
-
 Json FlagsTable() {
   Json rows = Json::array();
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
@@ -142,7 +136,6 @@ int main() {
                                         {"findings", mindahl::FindingsTable()},
                                         {"causes", mindahl::CausesTable()},
                                         {"models", mindahl::ModelsTable()},
-                                        {"comparisons", mindahl::ComparisonsTable()},
                                         {"flags", mindahl::FlagsTable()},
                                         {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';

@@ -43,7 +43,6 @@ void ExpectSame(const FitResult& one, const FitResult& other) {
   EXPECT_EQ(one.residuals.effective_samples, other.residuals.effective_samples);
   EXPECT_EQ(one.residuals.durbin_watson, other.residuals.durbin_watson);
   EXPECT_EQ(one.starts.size(), other.starts.size());
-  EXPECT_EQ(one.branch_shapes.size(), other.branch_shapes.size());
   ASSERT_EQ(one.mindlin_test.has_value(), other.mindlin_test.has_value());
   if (one.mindlin_test) {
     EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
@@ -173,7 +172,6 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     EXPECT_EQ(errors.records.front().facts.closed, full.records.front().facts.closed);
     EXPECT_EQ(intervals.correlation.size(), full.correlation.size());
     EXPECT_FALSE(intervals.mindlin_test);
-    EXPECT_TRUE(intervals.branch_shapes.empty());
     EXPECT_EQ(errors.residuals.effective_samples, full.residuals.effective_samples);
     EXPECT_EQ(intervals.residuals.effective_samples, full.residuals.effective_samples);
     ExpectFindingsAmong(errors, intervals);

@@ -180,9 +180,7 @@ TEST(WithoutInadequate, IsNeverReportedWithZeroMisfit) {
   result.records.resize(1);
   result.records[0].structure.repeatable_share = 0.8;
   result.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
-  result.branch_shapes = {{.branch = "unloading", .samples = 100, .shape_exponent = 0.4}};
   result = WithoutInadequate(std::move(result), {});
-  EXPECT_TRUE(result.branch_shapes.empty()) << "an alpha of a model that is none of the record's";
   EXPECT_EQ(result.adequacy.verdict, AdequacyVerdict::kInadequate);
   EXPECT_NEAR(result.adequacy.misfit, 3.0 * std::sqrt(0.8), 1e-12);
   EXPECT_NEAR(result.adequacy.misfit_over_noise, std::sqrt(0.8 / 0.2), 1e-12);

@@ -53,7 +53,7 @@ TEST(TermSelection, AdequateLoopGetsNoTermAndKeepsEveryDigit) {
   ASSERT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   EXPECT_THAT(selection.added, IsEmpty());
   EXPECT_THAT(selection.considered, IsEmpty());
-  const FitResult plain = Fit(std::vector{record}, {}, Depth::kThorough);
+  const FitResult plain = Fit(std::vector{record}, {}, Depth::kFull);
   ASSERT_EQ(selection.fit.parameters.size(), plain.parameters.size());
   for (std::size_t i = 0; i < plain.parameters.size(); ++i) {
     EXPECT_EQ(selection.fit.parameters[i].value, plain.parameters[i].value);
@@ -267,7 +267,7 @@ TEST(TermSelection, ByDefaultLooksForTermsWhereAQuantitativeLawDoesNotKnowTheSli
     record.force[i] += kLaw.tangential_stiffness * record.displacement[i];
   }
   record = Noisy(record, 5);
-  const FitResult alone = Fit(std::vector{record}, {}, Depth::kThorough);
+  const FitResult alone = Fit(std::vector{record}, {}, Depth::kFull);
   ASSERT_EQ(alone.adequacy.use, Use::kQuantitative);
   const ParameterEstimate& wide = *alone.Find("slip_force");
   ASSERT_GT(wide.upper95.value_or(HUGE_VAL) - *wide.lower95, 0.5 * wide.value);
@@ -289,7 +289,7 @@ TEST(TermSelection, ByDefaultTermsThatLeaveMoreThanNoiseDoNotReplaceAQuantitativ
                        std::cos(0.05 * static_cast<double>(i));
   }
   record = Noisy(record, 6);
-  const FitResult alone = Fit(std::vector{record}, {}, Depth::kThorough);
+  const FitResult alone = Fit(std::vector{record}, {}, Depth::kFull);
   const TermSelection all = Select(record);
   ASSERT_EQ(alone.adequacy.use, Use::kQuantitative);
   ASSERT_NE(alone.adequacy.verdict, AdequacyVerdict::kAdequate);

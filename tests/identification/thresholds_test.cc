@@ -8,7 +8,6 @@
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/law_tests.h"
-#include "identification/inference/memory_test.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/sampled_time.h"
@@ -904,11 +903,6 @@ const std::map<std::string_view, Case>& Cases() {
       {"rival_law",
        [](const Thresholds& t) {
          return LawIsUndecided(-kBelow * 10, t) && !LawIsUndecided(kAbove * 10, t);
-       }},
-      {"memory_chance",
-       [](const Thresholds& t) {
-         return VerdictOf(kAbove * 0.01, kBelow * 0.01, t) == MemoryVerdict::kMasing &&
-                VerdictOf(kBelow * 0.01, kAbove * 0.01, t) == MemoryVerdict::kDahl;
        }},
       {"seen_loop",
        [](const Thresholds& t) {

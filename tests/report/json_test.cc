@@ -303,10 +303,6 @@ TEST(Json, HasTheResidualsAndWhatTheyLookLike) {
       .misfit_over_half_gap = 0.375,
       .use = identification::Use::kIndicative,
       .tried = 13};
-  report.fit.memory = {.verdict = identification::MemoryVerdict::kDahl,
-                       .p_value = 0.0625,
-                       .dahl_p_value = 0.625,
-                       .comparisons = {{"amplitudes", 0.1875, 0.3125, 14.5}}};
   identification::ResidualStructure& structure = report.fit.records[1].structure;
   structure.repeatable_share = 0.4375;
   structure.directions[0] = {1, 3, 15.5, 16.5, {}};
@@ -323,10 +319,6 @@ TEST(Json, HasTheResidualsAndWhatTheyLookLike) {
                   "size": 10.5, "unit": "s", "moves": 11.5},
                  {"code": "covariate", "try": null, "delta_aicc": 0.0, "explains": 0.0,
                   "size": null, "unit": null, "moves": 0.0}]})"));
-  EXPECT_EQ(fit["memory"], json::parse(R"({
-      "verdict": "dahl", "p_value": 0.0625, "dahl_p_value": 0.625,
-      "tests": [{"code": "amplitudes", "p_value": 0.1875, "dahl_p_value": 0.3125,
-                 "size": 14.5}]})"));
   EXPECT_EQ(fit["residual_structure"][1],
             json::parse(R"({"repeatable_share": 0.4375, "directions": [
       {"direction": "up", "strokes": 3, "mean": 15.5, "rms": 16.5, "along_stroke": []},
@@ -492,7 +484,6 @@ TEST(Json, HasTheContactAndTheTestsOfTheMapping) {
                   .p_value = 0.25,
                   .likelihood = {{23.5, 0.375, {}}}};
   report.fit.mindlin_test = {.likelihood_ratio = 0.0, .p_value = 0.0, .rig_stiffness = 24.5};
-  report.fit.branch_shapes = {{"unloading", 25, 0.5, 0.625}};
   report.stiffness = {{.radius = "given",
                        .ratio = MadeQuantity(26.5, "a"),
                        .interval95 = {{27.5, 28.5}},
@@ -529,8 +520,6 @@ TEST(Json, HasTheContactAndTheTestsOfTheMapping) {
   EXPECT_EQ(mapping, json::parse(R"({
       "alpha_minus_third": 0.125, "z": 22.5, "p_value": 0.25, "likelihood_ratio": 23.5,
       "likelihood_ratio_p_value": 0.375, "tenable_with_rig_stiffness": 24.5,
-      "alpha_by_branch": [{"branch": "unloading", "samples": 25, "alpha": 0.5,
-                           "standard_error": 0.625}],
       "sigma_over_hertz_mindlin": 26.5, "sigma_over_hertz_mindlin_standard_error": 1.25})"));
   ASSERT_EQ(tests.size(), 2U);
   EXPECT_EQ(tests[1]["radius"], "hertz");

@@ -165,10 +165,6 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
        "dahl",
        {"sigma, slip_force: Dahl's own law", "Masing's law", "ΔAICc = -31.5", "32.5 N/µm", "43.5 N",
         "--model dahl"}},
-      {"memory_contradicts_law",
-       "masing",
-       {"Masing's law", "ΔAICc = -31.5", "Dahl's memory rule", "0.25", "0.0035"}},
-      {"memory_contradicts_law", "dahl", {"Dahl's own law", "Masing's memory rule"}},
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
       {"prior_contradicted", "", {"4.5 standard deviations", "check the prior"}},
       {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "subtract its deflection"}},
@@ -411,13 +407,6 @@ TEST(Sentence, OfTwoLawsHasTheEvidenceThatThereIs) {
   fit.parameters[0].identifiability = Identifiability::kBoundedBelow;
   EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce),
               AllOf(HasSubstr("gives sigma = 32.5 N/µm;"), Not(HasSubstr("slip_force ="))));
-}
-
-TEST(Sentence, OfTheMemoryHasThePValuesInTheirPlaces) {
-  EXPECT_THAT(Say(Complete("memory_contradicts_law", "masing")),
-              HasSubstr("follow Dahl's memory rule (p = 0.25, the other p = 0.0035)"));
-  EXPECT_THAT(Say(Complete("memory_contradicts_law", "dahl")),
-              HasSubstr("follow Masing's memory rule (p = 0.0035, the other p = 0.25)"));
 }
 
 TEST(Sentence, OfAMisfitOfTheDisplacementSaysSo) {

@@ -73,7 +73,6 @@ inline constexpr auto kFindings = [] {
       // about the law: under its own law a parameter is as well known as before
       {"law_undecided", kIdentifiable, kNote},
       {"other_law_fits_better", kIdentifiable, kWarning, true},
-      {.code = "memory_contradicts_law"},
       // about the model discrepancy
       {"systematic_residual", kIdentifiable, kWarning, true},
       {.code = "slow_residuals"},

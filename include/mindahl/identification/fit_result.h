@@ -66,38 +66,6 @@ struct LawChoice {
   std::optional<double> likelihood_ratio;  ///< 2 ln Λ of the fitted law against the other
 };
 
-/// Names the variable on which the force along a branch depends.
-enum class MemoryVerdict {
-  kMasing,     ///< the travel since the last remembered reversal, for any backbone
-  kDahl,       ///< the force itself: slope = g(sT), for any g
-  kNeither,    ///< the record contradicts both
-  kUndecided,  ///< it contradicts neither
-};
-
-/// Compares parts of a record that lie on one curve under either memory rule.
-struct MemoryComparison {
-  /// Stable, for scripts; slopes after reversals are those of eq. 12 of Peyret et al. (2017), σ by
-  /// Masing's rule, σ(1 + T*/Tc)^α by Dahl's own law: "virgin_branch", "directions", "amplitudes",
-  /// "slope_at_reversal", "return_point", "other_law"
-  std::string_view code;
-  double p_value = 1.0;       ///< chance of such a difference under Masing's memory, by noise
-  double dahl_p_value = 1.0;  ///< likewise of Dahl's
-  double size = 0.0;          ///< [N] rms over the record of what is beyond Masing's memory
-};
-
-/// Tests whether a record follows Masing's memory rule, Dahl's, or neither, by comparing its
-/// branches with each other and with the virgin one. No shape of the law is assumed: each rule gets
-/// the backbone that fits best.
-struct MemoryTest {
-  MemoryVerdict verdict = MemoryVerdict::kUndecided;
-  double p_value = 1.0;                       ///< under Masing's memory, all comparisons together
-  double dahl_p_value = 1.0;                  ///< under Dahl's memory, likewise
-  std::vector<MemoryComparison> comparisons;  ///< those that the record has; may be empty
-};
-
-/// Codes of all comparisons, in the order of a test.
-std::vector<std::string_view> MemoryComparisonCodes();
-
 /// How the search of a fit ended, as Ceres reports it.
 struct SolverReport {
   /// "tiny_solver" (ceres::TinySolver), "solve" (ceres::Solve), or "none" where every parameter
@@ -119,8 +87,7 @@ enum class Depth {
                ///< and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
-  kFull,       ///< and tests of α and of the law
-  kThorough,   ///< and whether branches are copies of each other, of whatever shape
+  kFull,       ///< and tests of α and of the law: what the program asks for
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
@@ -181,15 +148,6 @@ struct ParameterEstimate {
   [[nodiscard]] bool is_known() const {
     return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;
   }
-};
-
-/// Holds α from one kind of branch, with the other parameters shared, to locate a discrepancy of
-/// the law. Linearised about the fit.
-struct BranchShape {
-  std::string branch;  ///< "virgin", "unloading" or "reloading"
-  std::size_t samples = 0;
-  double shape_exponent = 0.0;
-  double standard_error = 0.0;
 };
 
 /// Compares α = 1/3 with the fitted α, the other parameters refitted.
@@ -279,15 +237,9 @@ struct FitResult {
                                ///< displacement
   std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
-  std::vector<BranchShape> branch_shapes;   ///< α of each kind of branch; empty if α is fixed
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
-  /// At Depth::kThorough, whether the record is of Masing's memory, of whatever shape: also where
-  /// the model is inadequate. Empty where the motion does not turn, where σ or Tc is held or
-  /// bounded, under loads that differ or vary or a lag, where branches are no copies of each
-  /// other, and in a fit of the displacement.
-  std::optional<MemoryTest> memory;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
   /// Regions of σ and α and of Tc and α, with FitOptions::regions and from Depth::kFull on, if both

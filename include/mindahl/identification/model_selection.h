@@ -83,7 +83,7 @@ struct ModelSelection {
 /// @throws InvalidArgument as Fit does, for folds < 2, a largest ΔAICc that is negative, or a fit
 ///   of the displacement
 /// Deterministic. Cost: 8 fits at Depth::kIntervals, 8 a fold at Depth::kEstimate from where these
-/// are, and the chosen one at Depth::kThorough.
+/// are, and the chosen one at Depth::kFull.
 ModelSelection SelectModel(std::span<const loop::RecordView> records, const FitOptions& options,
                            const SelectionOptions& selection = {});
 ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptions& options,

@@ -67,7 +67,7 @@ struct TermSelection {
   std::size_t held_out_parts = 0;  ///< cycles or strokes, each predicted once; 0: AICc decided
   std::size_t estimates = 0;       ///< fits that were made, at any depth
   FitOptions options;              ///< with the terms that were added
-  FitResult fit;                   ///< with them, at Depth::kThorough
+  FitResult fit;                   ///< with them, at Depth::kFull
 };
 
 /// Fits a record with the terms that it requires and no others (forward selection).

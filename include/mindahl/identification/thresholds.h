@@ -57,7 +57,6 @@ struct Thresholds {
   double mobilised_by_asymptote = 0.9;
   double one_amplitude = 0.01;
   double rival_law = 10.0;
-  double memory_chance = 0.01;
   double seen_loop = 0.1;
   double load_difference = 0.01;
   double load_variation = 0.01;

@@ -159,7 +159,7 @@ void AddBackbone(const FitRequest& request, report::Report& report);
 /// Returns the warnings of a fit that its text does not have, one sentence each.
 std::vector<std::string> WarningsBesideText(const report::Report& report);
 
-/// Fits records together as one contact at Depth::kThorough, and reports.
+/// Fits records together as one contact at Depth::kFull, and reports.
 /// @param records  within the time window, called as request.files; one whose normal load goes in
 ///   steps becomes a record for each load
 /// @throws InvalidArgument or InputError naming record, line and column, or the option

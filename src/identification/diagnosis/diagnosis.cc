@@ -395,19 +395,4 @@ std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
   return finding;
 }
 
-std::optional<Finding> FindContradictedLaw(const MemoryTest& memory,
-                                           const std::optional<LawChoice>& choice,
-                                           const models::FrictionModel& fitted) {
-  if (!choice || choice->preferred == nullptr || !choice->delta_aicc) return std::nullopt;
-  const bool prefers_masing = choice->preferred->memory == models::Memory::kReturnPoint;
-  const MemoryVerdict opposite = prefers_masing ? MemoryVerdict::kDahl : MemoryVerdict::kMasing;
-  if (memory.verdict != opposite) return std::nullopt;
-  return Finding{.code = "memory_contradicts_law",
-                 .numbers = {{"p_value", memory.p_value},
-                             {"dahl_p_value", memory.dahl_p_value},
-                             {"delta_aicc", choice->preferred == &fitted ? *choice->delta_aicc
-                                                                         : -*choice->delta_aicc}},
-                 .kind = prefers_masing ? "masing" : "dahl"};
-}
-
 }  // namespace mindahl::identification

@@ -77,10 +77,4 @@ std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
 
-/// `memory_contradicts_law` where branches, compared with each other, are of one law's memory alone
-/// and the other law fits better all the same.
-std::optional<Finding> FindContradictedLaw(const MemoryTest& memory,
-                                           const std::optional<LawChoice>& choice,
-                                           const models::FrictionModel& fitted);
-
 }  // namespace mindahl::identification

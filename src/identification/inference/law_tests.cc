@@ -22,37 +22,9 @@ namespace mindahl::identification {
 
 namespace {
 
-constexpr std::array kNames = {"virgin", "unloading", "reloading"};
-constexpr std::size_t kFewestOfKind = 10;
-
 /// Compares fits that differ in α.
 Evidence EvidenceOfShape(const Noise& noise, const Estimates& estimates) {
   return {noise.samples, static_cast<double>(noise.samples) * estimates.WhiteShare(kShape)};
-}
-
-/// Kind of the branch of each sample, an index of kNames. A contact unloads on its way back from
-/// its first push; of a steady one that is not known, and taken to have been to positive
-/// displacements.
-std::vector<std::size_t> Kinds(const Problem& problem, const Solution& best, Response& response) {
-  std::vector<std::size_t> kinds;
-  response.Bind(problem);
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const models::LoadingPath& path = response.PathOf(r, best.theta);
-    const models::Branch& first = path.branches.front();
-    const bool first_up = first.start != models::BranchStart::kUnloaded || first.direction > 0;
-    std::size_t kind = 2;
-    for (const models::BranchRun& run : path.runs) {
-      const models::Branch& branch = path.branches[static_cast<std::size_t>(run.branch)];
-      const bool back = (branch.direction > 0) != first_up;
-      // A steady loop's virgin curve is not in the record: a sample on it is an extreme that came
-      // back to the last bit, and ends the stroke before.
-      if (branch.start != models::BranchStart::kSteadyCentre) {
-        kind = branch.start == models::BranchStart::kUnloaded ? 0 : back ? 1 : 2;
-      }
-      kinds.insert(kinds.end(), run.end - run.begin, kind);
-    }
-  }
-  return kinds;
 }
 
 }  // namespace
@@ -114,65 +86,6 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   return RigAlternative{
       .rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
       .tangential_stiffness = sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
-}
-
-std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& response) {
-  const auto& [problem, best, noise, estimates] = fitted;
-  if (problem.parameters[kShape].fixed || best.side[kShape] != BoundSide::kInside) return {};
-  const std::vector<std::size_t> kinds = Kinds(problem, best, response);
-  std::array<std::size_t, kNames.size()> samples{};
-  std::size_t row = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const unsigned char counts : record.counts) samples[kinds[row++]] += counts;
-  }
-  std::vector<std::size_t> present;
-  for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
-    if (samples[kind] >= kFewestOfKind) present.push_back(kind);
-  }
-  if (present.size() < 2) return {};
-
-  const Eigen::MatrixXd& jacobian = estimates.jacobian();
-  const auto shape_column = static_cast<Eigen::Index>(problem.parameters.PlaceAmongFree(kShape));
-  // α's column in parts, the first in its place, the others at the end.
-  const auto parts = static_cast<Eigen::Index>(present.size());
-  Eigen::MatrixXd split(jacobian.rows(), jacobian.cols() + parts - 1);
-  split.leftCols(jacobian.cols()) = jacobian;
-  split.rightCols(parts - 1).setZero();
-  const auto column_of = [&](Eigen::Index part) {
-    return part == 0 ? shape_column : jacobian.cols() + part - 1;
-  };
-  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
-    const auto kind = std::ranges::find(present, kinds[static_cast<std::size_t>(i)]);
-    if (kind == present.end() || kind == present.begin()) continue;
-    split(i, column_of(kind - present.begin())) = jacobian(i, shape_column);
-    split(i, shape_column) = 0;
-  }
-  Eigen::VectorXd norms = split.colwise().norm().transpose();
-  for (double& norm : norms) {
-    if (norm == 0) norm = 1;
-  }
-  split = split * norms.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd& values = estimates.residual();
-  const Eigen::MatrixXd normal = TransposedProduct(split, split);
-  const Eigen::MatrixXd factor = PseudoInverse(normal);
-  const Eigen::VectorXd step = -factor * (split.transpose() * values);
-  const Eigen::MatrixXd correlated =
-      CorrelatedProduct(*problem.data, noise.autocorrelation, noise, {}, split);
-  // The misfit of one law for all branches is not noise here.
-  const double sum_of_squares = values.squaredNorm();
-  if (!(sum_of_squares > 0)) return {};
-  const double left = (values + split * step).squaredNorm() / sum_of_squares;
-  const Eigen::MatrixXd covariance = Product(
-      Product(noise.variance * noise.repeating * std::min(left, 1.0) * factor, correlated), factor);
-  std::vector<BranchShape> shapes;
-  for (Eigen::Index k = 0; k < parts; ++k) {
-    const Eigen::Index column = column_of(k);
-    const std::size_t kind = present[static_cast<std::size_t>(k)];
-    shapes.push_back({kNames[kind], samples[kind],
-                      best.theta[kShape] + step[column] / norms[column],
-                      std::sqrt(covariance(column, column)) / norms[column]});
-  }
-  return shapes;
 }
 
 using models::FrictionModel;
@@ -304,16 +217,15 @@ bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds) {
   return std::abs(delta_aicc) < thresholds.rival_law;
 }
 
-LawComparison CompareLaws(const Problem& problem, const Solution& best, const FitResult& result,
-                          const FitOptions& options, SearchBuffers& buffers) {
-  LawComparison comparison;
-  comparison.is_comparable = AreComparable(problem);
-  if (!comparison.is_comparable || result.law.shape_exponent <= options.thresholds.jenkins_shape) {
-    return comparison;
+std::optional<LawChoice> CompareLaws(const Problem& problem, const Solution& best,
+                                     const FitResult& result, const FitOptions& options,
+                                     SearchBuffers& buffers) {
+  if (!AreComparable(problem) || result.law.shape_exponent <= options.thresholds.jenkins_shape) {
+    return std::nullopt;
   }
   const FrictionModel& alternative = OtherModel(*problem.model);
   const models::BranchLaw equivalent = EquivalentOf(result);
-  LawChoice& choice = comparison.choice.emplace();
+  LawChoice choice;
   choice.alternative = &alternative;
   choice.law = equivalent;
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
@@ -365,18 +277,17 @@ LawComparison CompareLaws(const Problem& problem, const Solution& best, const Fi
     choice.likelihood_ratio =
         evidence.LikelihoodRatio(other.solution.sum_of_squares, best.sum_of_squares);
     choice.law = other.problem.parameters.LawAt(other.solution.theta);
-    comparison.other.emplace(std::move(other));
   }
   buffers.response.Bind(problem);
   if (!choice.delta_aicc) {
     // Either one curve, or the other law has no fit at all.
     choice.decided = !same_curve;
     if (choice.decided) choice.preferred = problem.model;
-    return comparison;
+    return choice;
   }
   choice.decided = !LawIsUndecided(*choice.delta_aicc, options.thresholds);
   if (choice.decided) choice.preferred = *choice.delta_aicc > 0 ? problem.model : &alternative;
-  return comparison;
+  return choice;
 }
 
 }  // namespace mindahl::identification

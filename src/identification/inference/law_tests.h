@@ -35,12 +35,6 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
                                      const MindlinTest& test, const FitOptions& options,
                                      SearchBuffers& buffers);
 
-/// α of the virgin, the unloading and the reloading branches on their own, by one linear
-/// least-squares step from the fit with a column for each in place of the one for α. Kinds of
-/// branch with fewer than ten samples that count are left to the others.
-/// @returns empty where α is held or at a bound, or only one kind of branch is there
-std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& response);
-
 /// True if Mindlin's exponent is rejected for a smaller one on a rigid rig, so that a compliant rig
 /// may be the cause.
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
@@ -61,21 +55,12 @@ struct OtherFit {
   Solution solution;
 };
 
-/// Compares Masing's law with Dahl's own.
-struct LawComparison {
-  /// Empty where the laws are one (α = 0), and where they are not compared.
-  std::optional<LawChoice> choice;
-  /// Fit of the other law with its likeliest initial state; empty where it was not fitted.
-  std::optional<OtherFit> other;
-  /// σ and Tc are not held or bounded, as those of one law only, the motion turns and the load
-  /// stays.
-  bool is_comparable = false;
-};
-
 /// Masing's law against Dahl's own, whichever of them was fitted. The other is fitted too where the
 /// record may distinguish them, from where its loop at the widest amplitude would be the same; of
 /// one amplitude it follows in closed form.
-LawComparison CompareLaws(const Problem& problem, const Solution& best, const FitResult& result,
-                          const FitOptions& options, SearchBuffers& buffers);
+/// @returns empty where the laws are one (α = 0), and where they are not compared
+std::optional<LawChoice> CompareLaws(const Problem& problem, const Solution& best,
+                                     const FitResult& result, const FitOptions& options,
+                                     SearchBuffers& buffers);
 
 }  // namespace mindahl::identification

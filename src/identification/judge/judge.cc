@@ -78,7 +78,6 @@ FitResult WithoutInadequate(FitResult result, const Thresholds& thresholds) {
   result.adequacy = WithWhatRepeats(result, thresholds);
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
-  result.branch_shapes.clear();
   // Omitted terms are taken to first order, here of a curve that is none of the record's.
   if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {

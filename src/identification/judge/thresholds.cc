@@ -175,10 +175,6 @@ constexpr std::array kTable = {
                  "Masing's law and Dahl's own are not distinguished if they differ by less",
                  "evidence of e⁵ = 150 to 1, as for the initial states: what either law misses of "
                  "a real loop can be worth less"},
-    ThresholdRow{"memory_chance", &Thresholds::memory_chance, "p",
-                 "a memory rule is rejected if noise makes such differences of branches less often",
-                 "where only noise makes the branches differ, the true rule is rejected in one "
-                 "loop in a hundred"},
     ThresholdRow{
         "seen_loop", &Thresholds::seen_loop, "R²",
         "a loop that explains less of the force is not seen, and no parameter is given",
