@@ -31,7 +31,6 @@ struct FitCommandOptions {
   Strictness strict = Strictness::kNone;
   std::string json_path;
   std::string residuals_path;
-  std::string backbone_path;
   std::string plot_path;
   std::string report_path;
   std::string sweep;  // "" for a record
@@ -61,15 +60,8 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-  if (report.backbone) {
-    io::WriteFileAtomically(options.backbone_path,
-                            report::BackboneCsv(*report.backbone, report.units));
-  }
   if (options.json_path != "-") {
     console.out << report::ToText(report, {.has_colours = console.has_colours});
-  }
-  if (options.json_path != "-" && report.backbone) {
-    console.out << report::BackboneText(*report.backbone, report.fit, report.units);
   }
 }
 
@@ -109,13 +101,11 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   RequireDistinctFiles(request.files);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--residuals", options.residuals_path},
-                      {"--backbone", options.backbone_path},
                       {"--plot", options.plot_path},
                       {"--report", options.report_path}},
                      console, request.files);
   const Messages messages{console.err, "fit"};
   report::Report report = FitRecords(request, messages);
-  if (!options.backbone_path.empty() && !report.failed()) request::AddBackbone(request, report);
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
   WriteFitOutputs(options, report, provenance, messages, console);
@@ -160,10 +150,6 @@ void AddFitCommand(CLI::App& app, Console& console) {
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
   group.Add("--residuals", options->residuals_path,
             "measured and fitted force of every sample as CSV", "PATH");
-  group.Add("--backbone", options->backbone_path,
-            "force against displacement of first loading, without assuming a law,\nwith its "
-            "confidence band and the fitted law, as CSV",
-            "PATH");
   group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");

@@ -260,7 +260,6 @@ void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);
 void AddLoadSeriesFields(FieldTable& table);
-void AddBackboneFields(FieldTable& table);
 
 /// Why there is no contact behind a torque.
 inline constexpr const char* kWhyNoContact =

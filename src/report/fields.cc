@@ -182,7 +182,6 @@ FieldTable MakeTable() {
   AddContactFields(table);
   AddMappingFields(table);
   AddLoadSeriesFields(table);
-  AddBackboneFields(table);
   // In a fit that failed, every missing value is null for that reason.
   for (Field<Report>& row : table.rows) {
     const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");

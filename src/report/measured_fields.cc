@@ -1,4 +1,3 @@
-#include "mindahl/identification/backbone_estimate.h"
 #include "report/field_table.h"
 #include "report/names.h"
 
@@ -52,57 +51,6 @@ void AddLoopFields(FieldTable& table) {
          return std::string(report.is_torsional() ? kWhyNoContact : kWhyNoRegime);
        }},
   });
-}
-
-using identification::BackboneEstimate;
-using identification::BackbonePoint;
-using identification::BandValue;
-
-namespace {
-
-const std::vector<Field<BackbonePoint>>& PointFields() {
-  using Item = BackbonePoint;
-  static const std::vector<Field<Item>> fields = {
-      {"displacement", "m", "displacement of first loading", &Item::displacement},
-      {"force", "N", "force at that displacement, without a law",
-       At(&Item::force, &BandValue::value)},
-      {"ci95[0]", "N", "lower end of its band", At(&Item::force, &BandValue::lower95)},
-      {"ci95[1]", "N", "upper end of its band", At(&Item::force, &BandValue::upper95)},
-      {"law", "N", "force of the fitted law", &Item::law},
-  };
-  return fields;
-}
-
-void AddBand(FieldTable& table, const std::string& path, const char* label,
-             BandValue BackboneEstimate::*band) {
-  table.Add({{path + ".value", "N/m", label, IfAny(&Report::backbone, band, &BandValue::value)},
-             {path + ".ci95[0]", "N/m", "lower end of the interval",
-              IfAny(&Report::backbone, band, &BandValue::lower95)},
-             {path + ".ci95[1]", "N/m", "upper end of the interval",
-              IfAny(&Report::backbone, band, &BandValue::upper95)}});
-}
-
-}  // namespace
-
-void AddBackboneFields(FieldTable& table) {
-  AddBand(
-      table, "backbone.first_stiffness",
-      "secant over the first hundredth of the displacement; absent, as is all of backbone, without "
-      "--backbone",
-      &BackboneEstimate::first_stiffness);
-  AddBand(table, "backbone.elastic", "stiffness of the part that does not slip within the record",
-          &BackboneEstimate::elastic);
-  table.Add({
-      {"backbone.reaches_plateau", "",
-       "false: slip_force is the law's extrapolation beyond the record",
-       IfAny(&Report::backbone, &BackboneEstimate::reaches_plateau)},
-      {"backbone.rms", "N", "root mean square residual of the backbone",
-       IfAny(&Report::backbone, &BackboneEstimate::rms)},
-      {"backbone.points", "", "points from 0 to the largest displacement",
-       IfAny(&Report::backbone,
-             [](const auto& backbone) { return List(PointFields(), backbone.points); })},
-  });
-  table.Describe("backbone.points[].", PointFields());
 }
 
 using loop::CycleFacts;

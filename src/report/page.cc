@@ -391,7 +391,6 @@ Json Fitted(const Report& report, const Provenance& provenance) {
       {"contact", has_contact ? Contact(report) : Json()},
       {"selection", Selection(report)},
       {"loads", Loads(report)},
-      Figure("backbone", BackbonePanel(report, units)),
       {"record", Joined(fields("input."), fields("reversals."))}};
 }
 

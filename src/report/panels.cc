@@ -491,25 +491,6 @@ std::optional<PlotPanel> LoadPanel(const Report& report, const PanelUnits& units
   return panel;
 }
 
-std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
-  if (!report.backbone || report.backbone->points.empty()) return std::nullopt;
-  PlotSeries band{.label = "free of any law, " + ConfidenceWords(report.fit),
-                  .style = PlotStyle::kBand,
-                  .shade = kDataShade};
-  PlotSeries law{.label = "the fitted law"};
-  for (const identification::BackbonePoint& point : report.backbone->points) {
-    band.x.push_back(Per(units.displacement) * point.displacement);
-    band.y.push_back(Per(units.force) * point.force.value);
-    band.lower.push_back(Per(units.force) * point.force.lower95);
-    band.upper.push_back(Per(units.force) * point.force.upper95);
-    law.x.push_back(band.x.back());
-    law.y.push_back(Per(units.force) * point.law);
-  }
-  return PlotPanel{.x_label = DisplacementLabel(report, units) + " of first loading",
-                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.name),
-                   .series = {std::move(band), std::move(law)}};
-}
-
 using identification::FitResult;
 using identification::Identifiability;
 using identification::ParameterStatus;

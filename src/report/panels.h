@@ -61,7 +61,4 @@ enum class OverLoad { kStiffness, kSlipForce };
 std::optional<io::PlotPanel> LoadPanel(const Report& report, const PanelUnits& units,
                                        OverLoad quantity);
 
-/// The force of first loading without a law, with its band. Empty where it was not asked for.
-std::optional<io::PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units);
-
 }  // namespace mindahl::report

@@ -12,7 +12,6 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
-#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
@@ -359,26 +358,6 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
     for (const std::string& text : input.notes) note(text);
   }
   return inputs;
-}
-
-void AddBackbone(const FitRequest& request, report::Report& report) {
-  if (!identification::HasBackbone(report.fit)) {
-    throw InputError(
-        "--backbone needs a Masing law under one load and a fit of the force: leave out --model "
-        "dahl, --lag, --asymmetry and --noise-in displacement, and fit records under other loads "
-        "apart");
-  }
-  std::vector<loop::RecordView> records;
-  records.reserve(report.records.size());
-  for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
-  identification::FitOptions options = MakeFitOptions(request);
-  LeaveOutTrimmed(report.trims, options);
-  report.backbone = identification::EstimateBackbone(records, options, report.fit);
-  for (identification::Cause& cause : report.fit.adequacy.causes) {
-    // Refused together with a backbone.
-    const std::string_view option = cause.option;
-    if (option.starts_with("--lag") || option.starts_with("--asymmetry")) cause.option.clear();
-  }
 }
 
 std::vector<std::string> WarningsBesideText(const report::Report& report) {

@@ -192,33 +192,6 @@ TEST(FitCommand, ResidualsListEverySampleWithMeasuredAndFitted) {
   }
 }
 
-TEST(FitCommand, BackboneIsWrittenAsATableAndSaidInWords) {
-  const TemporaryDirectory directory;
-  const std::string path = (directory.path() / "backbone.csv").string();
-  const Outcome outcome = RunCommand({"fit", SampleRecord(), "--backbone", path});
-  ASSERT_EQ(outcome.status, cli::kDone);
-  EXPECT_THAT(outcome.out, HasSubstr("backbone without a law"));
-  const Words lines = testing::Lines(FileContent(path));
-  EXPECT_EQ(lines[0], "displacement [m],force [N],lower95 [N],upper95 [N],law [N]");
-  // The record is of Mindlin's contact, whose law the backbone finds again within its band of two
-  // standard errors; neighbours are off together, and six are by chance once in 10⁸.
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const Words cells = testing::Cells(lines[i]);
-    ASSERT_THAT(cells, SizeIs(5));
-    const double half_band = (std::stod(cells[3]) - std::stod(cells[2])) / 2;
-    EXPECT_NEAR(std::stod(cells[1]), std::stod(cells[4]), 3 * half_band);
-  }
-}
-
-TEST(FitCommand, BackboneIsRefusedOfALawWithoutOne) {
-  const TemporaryDirectory directory;
-  const std::string path = (directory.path() / "backbone.csv").string();
-  const Outcome outcome =
-      RunCommand({"fit", SampleRecord(), "--model", "dahl", "--backbone", path});
-  EXPECT_EQ(outcome.status, cli::kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--backbone needs a Masing law"));
-}
-
 TEST(FitCommand, StrictExitsWithThreeWhereAParameterIsNotIdentifiable) {
   const TemporaryDirectory directory;
   const std::string path = (directory.path() / "partial.csv").string();

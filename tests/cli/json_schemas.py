@@ -60,7 +60,6 @@ COMMANDS = [
     (f"fit {BALL} --speed-exponent 0.5 --inertia fit --slip-position quadratic --ripple 1e-7", None),
     (f"fit {BALL} --asymmetry fit", 0),
     (f"fit {BALL} --asymmetry 0.1 --fix slip_force=15", 0),
-    (f"fit {BALL} --backbone backbone.csv", 0),
     (f"fit {BALL} --samples 1:60", 0),
     (f"fit {BALL} --bound alpha=0:0.1", 0),
     ("fit data/partial_slip.csv", 0),

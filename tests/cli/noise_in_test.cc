@@ -115,8 +115,6 @@ TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
   EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
               HasSubstr("rig_stiffness has no place in a fit of the displacement"));
   EXPECT_THAT(refusal({"--reversal-gate", "100"}), HasSubstr("the force ranges over 27 N only"));
-  EXPECT_THAT(refusal({"--backbone", (directory_.path() / "b.csv").string()}),
-              HasSubstr("--noise-in displacement"));
 }
 
 TEST_F(NoiseIn, OfNoChannelIsRefused) {

@@ -197,7 +197,7 @@ ALSO = {
         "load_over_stiffness", "profile_exponent"]}},
     **dict.fromkeys(["input.files", "input.reversal_gate", "input.displacement_noise", "input.initial_state",
                      "input.response_noise", "model_selection.models"], {"minItems": 1}),
-    **dict.fromkeys(["input.load_pieces", "load_series.records", "backbone.points"], {"minItems": 2}),
+    **dict.fromkeys(["input.load_pieces", "load_series.records"], {"minItems": 2}),
     "law.alternatives": {"maxItems": 1},
     "residual_structure[].directions": {"minItems": 2, "maxItems": 2},
     "regions[].boundary": {"minItems": 3},

@@ -298,22 +298,6 @@ TEST(PageFigure, ClosesTheRegionOfTheParametersThatAreAskedFor) {
   EXPECT_THAT(panel->series[2].x, ElementsAre(38, 42));
 }
 
-TEST(PageFigure, DrawsABackboneWithItsBandBesideTheLaw) {
-  ReportInput input = MadeInput();
-  input.backbone.emplace();
-  input.backbone->points = {
-      {.displacement = 5e-7, .force = {.value = 8, .lower95 = 7, .upper95 = 10}, .law = 9},
-      {.displacement = 1e-6, .force = {.value = 12, .lower95 = 11, .upper95 = 15}, .law = 13}};
-  const Report report = MakeReport(std::move(input));
-  const auto panel = BackbonePanel(report, PlainUnits(report));
-  ASSERT_TRUE(panel);
-  EXPECT_EQ(panel->series[0].x[1], 1.0);
-  EXPECT_THAT(panel->series[0].y, ElementsAre(8, 12));
-  EXPECT_THAT(panel->series[0].lower, ElementsAre(7, 11));
-  EXPECT_THAT(panel->series[0].upper, ElementsAre(10, 15));
-  EXPECT_THAT(panel->series[1].y, ElementsAre(9, 13));
-}
-
 TEST(PageFigure, ShadesCyclesFromTheFirstToTheLast) {
   const auto groups = [](std::size_t cycles) {
     const Report report = ReportOfCycles(cycles, 40, {});

@@ -575,20 +575,6 @@ TEST(Json, HasTheLoadSeries) {
                 "sigma": {"value": 17.5, "standard_error": 18.5, "ci95": [19.5, 20.5]}}]})"));
 }
 
-TEST(Json, HasTheBackbone) {
-  report::Report report = TwoRecords();
-  identification::BackboneEstimate& backbone = report.backbone.emplace();
-  backbone.points = {{0.5, {1.5, 2.5, 3.5}, 4.5}};
-  backbone.first_stiffness = {5.5, 6.5, 7.5};
-  backbone.elastic = {8.5, 9.5, 10.5};
-  backbone.rms = 11.5;
-  backbone.reaches_plateau = true;
-  EXPECT_EQ(JsonOf(report)["backbone"], json::parse(R"({
-      "first_stiffness": {"value": 5.5, "ci95": [6.5, 7.5]},
-      "elastic": {"value": 8.5, "ci95": [9.5, 10.5]}, "reaches_plateau": true, "rms": 11.5,
-      "points": [{"displacement": 0.5, "force": 1.5, "ci95": [2.5, 3.5], "law": 4.5}]})"));
-}
-
 TEST(MakeReport, RefusesWhatDoesNotBelongTogether) {
   report::ReportInput unnamed = MadeInput();
   unnamed.files.clear();

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
@@ -47,7 +46,6 @@ struct ReportInput {
   std::vector<loop::Trim> trims = {};
   std::optional<identification::ModelSelection> selection = {};   ///< if a model was chosen
   std::optional<identification::TermSelection> terms = {};        ///< if terms were chosen
-  std::optional<identification::BackboneEstimate> backbone = {};  ///< if it was requested
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
   /// reported.
   std::optional<NextStep> next = {};
@@ -116,14 +114,5 @@ io::Plot ToPlot(const Report& report);
 /// column numbers them; time is there where every record has it.
 /// @throws InvalidArgument for a fit that failed
 std::string ResidualsCsv(const Report& report);
-
-/// Returns the backbone as CSV: displacement, force, the ends of its band, and the fitted law.
-std::string BackboneCsv(const identification::BackboneEstimate& backbone, const Units& units);
-
-/// Returns the backbone in words, with σ, Tc and α of the fitted law: how stiff it begins, what it
-/// carries at the largest displacement, whether it levels off there, and where the law leaves its
-/// band. UTF-8, at most 100 columns.
-std::string BackboneText(const identification::BackboneEstimate& backbone,
-                         const identification::FitResult& fit, const Units& units);
 
 }  // namespace mindahl::report

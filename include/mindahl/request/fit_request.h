@@ -151,11 +151,6 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, io::Reco
 /// @throws InputError naming file, line and column
 std::vector<io::RecordFile> ReadRecords(const FitRequest& request, const Tell& note);
 
-/// Adds the backbone of the report's records, without any law's shape, and withdraws the advice
-/// that cannot be followed together with one.
-/// @throws InputError for a fit that has none
-void AddBackbone(const FitRequest& request, report::Report& report);
-
 /// Returns the warnings of a fit that its text does not have, one sentence each.
 std::vector<std::string> WarningsBesideText(const report::Report& report);
 
