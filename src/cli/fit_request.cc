@@ -161,7 +161,7 @@ void AddWindowOptions(CLI::App& command, FitRequest& options) {
   group
       .AddShown("--trim", options.trim,
                 "auto leaves out what at the ends of a record is not the test, with a\nnote: "
-                "rests, ramps of load and amplitude, cycles of running in")
+                "rests, and ramps of the load")
       .OneOf(request::kTrims);
 }
 

@@ -9,43 +9,14 @@
 
 namespace mindahl::report {
 
-using loop::Settling;
 using loop::Trim;
 using loop::TrimmedPart;
-using loop::TrimReason;
 
 namespace {
 
-std::string CyclesText(std::size_t cycles) {
-  return fmt::format("{} cycle{}", cycles, cycles == 1 ? "" : "s");
-}
-
 std::string TrimmedPartInWords(const TrimmedPart& part) {
-  switch (part.reason) {
-    case TrimReason::kRest:
-      return fmt::format("{} samples at rest {}", part.samples(),
-                         part.at_start ? "before the motion" : "after it");
-    case TrimReason::kRamp:
-      return fmt::format("{} in which the amplitude {}", CyclesText(part.cycles),
-                         part.at_start ? "grows" : "falls");
-    case TrimReason::kRunningIn:
-      break;
-  }
-  return fmt::format("{} of running in", CyclesText(part.cycles));
-}
-
-/// Returns the reason why cycles do not show that the contact has run in.
-std::string_view WhyNotSettled(Settling settling) {
-  switch (settling) {
-    case Settling::kFewCycles:
-      return "there are too few cycles of one amplitude to see a running-in";
-    case Settling::kUnsettled:
-      return "the half gap or the energy does not settle, so no running-in is left out: look at "
-             "how they change, and choose cycles with --cycles";
-    case Settling::kSettled:
-      break;
-  }
-  return "";
+  return fmt::format("{} samples at rest {}", part.samples(),
+                     part.at_start ? "before the motion" : "after it");
 }
 
 std::size_t LineOf(const io::RecordFile& file, std::size_t sample) {
@@ -63,27 +34,12 @@ Warning NoteOf(const Report& report, std::size_t r) {
                     piece->left_out, piece->normal_load));
   }
   for (const TrimmedPart& part : trim.parts) parts.push_back(TrimmedPartInWords(part));
-  const std::string_view why = WhyNotSettled(trim.settling);
   if (parts.empty()) {
-    return {"nothing_trimmed",
-            fmt::format("--trim auto leaves nothing out of {}: {}", report.files[r],
-                        why.empty() ? "it has no rest and no ramp, and its cycles agree" : why)};
+    return {"nothing_trimmed", fmt::format("--trim auto leaves nothing out of {}: it has no rest",
+                                           report.files[r])};
   }
-  std::string text =
+  const std::string text =
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
-  if (trim.has_first_loading()) {
-    text +=
-        "; the first loading is among them, which distinguishes Masing's law from Dahl's own and a "
-        "virgin "
-        "contact from a steady one";
-  }
-  if (trim.begins_later()) {
-    const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
-    text += fmt::format(
-        "; the rest is fitted as a {}",
-        is_steady ? "steady contact, unless --initial-state says otherwise" : "virgin contact");
-  }
-  if (!why.empty()) text += fmt::format("; {}", why);
   return {"trimmed", text};
 }
 
@@ -114,16 +70,11 @@ const std::vector<Field<TrimmedItem>>& TrimmedFields() {
   using Item = TrimmedItem;
   static const std::vector<Field<Item>> fields = {
       {"file", "", "name of the record", &Item::file},
-      {"reason", "", "rest, ramp of the amplitude, or running_in",
-       [](const Item& item) { return loop::NameOf(item.part.reason); }},
+      {"reason", "", "rest", [](const Item&) { return std::string_view("rest"); }},
       {"first_line", "", "first line of the part in the file, counted from 1", &Item::first_line},
       {"last_line", "", "likewise", &Item::last_line},
       {"samples", "", "samples that do not count",
        [](const Item& item) { return item.part.samples(); }},
-      {"cycles", "", "closed cycles among them", [](const Item& item) { return item.part.cycles; }},
-      {"first_loading", "",
-       "true if the first loading, before the first turning point, is left out",
-       [](const Item& item) { return item.part.has_first_loading; }},
   };
   return fields;
 }

@@ -282,9 +282,7 @@ void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
   if (trims.empty()) return;
   std::vector<std::vector<bool>>& held_out = options.preparation.held_out;
   held_out.assign(trims.size(), {});
-  bool all_begin_later = true;
   for (std::size_t r = 0; r < trims.size(); ++r) {
-    all_begin_later = all_begin_later && trims[r].begins_later();
     if (trims[r].parts.empty()) continue;
     held_out[r].assign(trims[r].samples, false);
     for (const loop::TrimmedPart& part : trims[r].parts) {
@@ -293,9 +291,6 @@ void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
     }
   }
   if (std::ranges::all_of(held_out, &std::vector<bool>::empty)) held_out.clear();
-  if (all_begin_later && !options.initial_state) {
-    options.initial_state = models::InitialState::kSteady;
-  }
 }
 
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,

@@ -151,7 +151,7 @@ WORDS = {
     r"\.schema": ["mindahl.fit/1"],
     r"^\.initial_state": ["virgin", "steady", "mixed"],
     r"\.force_sign": ["same", "opposite"],
-    r"trimmed\[\]\.reason": ["rest", "ramp", "running_in"],
+    r"trimmed\[\]\.reason": ["rest"],
     r"regions\[\]\.parameters\[0\]": NAMES_OF_LAW,
     r"\.direction": ["up", "down"],
     r"\.mode": ["auto"],

@@ -51,21 +51,14 @@ TEST(Json, NamesTheParameterForWhichThereIsNoCorrelation) {
 TEST(Json, HasEachPartThatIsTrimmed) {
   report::ReportInput input = MadeInput();
   input.trims = {{.samples = 9,
-                  .parts = {{.reason = loop::TrimReason::kRunningIn,
-                             .first = 1,
-                             .last = 5,
-                             .cycles = 2,
-                             .at_start = true,
-                             .has_first_loading = true}}}};
+                  .parts = {{.first = 1, .last = 5, .at_start = true}}}};
   const json trimmed = Parsed(std::move(input))["input"]["trimmed"];
   ASSERT_EQ(trimmed.size(), 1U);
   EXPECT_EQ(trimmed[0], json({{"file", "loop_1.csv"},
-                              {"reason", "running_in"},
+                              {"reason", "rest"},
                               {"first_line", 2},
                               {"last_line", 5},
-                              {"samples", 4},
-                              {"cycles", 2},
-                              {"first_loading", true}}));
+                              {"samples", 4}}));
 }
 
 TEST(Json, HasTheTestsOfTheMapping) {

@@ -234,19 +234,5 @@ TEST(Wrapped, KeepsANumberWithItsErrorAndItsUnit) {
   EXPECT_EQ(Wrapped(words + " of mms", 2), words + " of\n  mms\n");
 }
 
-TEST(TrimNotes, CountCyclesInTheSingularToo) {
-  for (const auto& [cycles, words] :
-       {std::pair(1U, "1 cycle of running in"), std::pair(2U, "2 cycles of running in")}) {
-    ReportInput input = MadeInput();
-    input.trims = {{.samples = 9,
-                    .parts = {{.reason = loop::TrimReason::kRunningIn,
-                               .first = 1,
-                               .last = 5,
-                               .cycles = cycles,
-                               .at_start = true}}}};
-    EXPECT_THAT(ToText(MakeReport(std::move(input))), HasSubstr(words));
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::report::text_test

@@ -53,79 +53,6 @@ Record UnderARampingLoad(std::size_t cycles, Generator& generator) {
   return record;
 }
 
-FitResult FitOf(const Record& record, bool trims) {
-  FitOptions options;
-  if (trims) {
-    const std::vector<loop::Trim> found = {loop::FindTrim(record, options.preparation)};
-    LeaveOutTrimmed(found, options);
-  }
-  return identification::Fit({&record, 1}, options, identification::Depth::kIntervals);
-}
-
-bool Covers(const FitResult& fit, std::string_view name, double truth) {
-  const identification::ParameterEstimate& estimate = *fit.Find(name);
-  return estimate.lower95 && estimate.upper95 && *estimate.lower95 <= truth &&
-         truth <= *estimate.upper95;
-}
-
-TEST(TrimmedFit, CoversTheContactThatARunningInEndsWith) {
-  constexpr std::size_t kRecords = 60;
-  Generator generator(19);
-  std::size_t whole = 0;
-  std::size_t trimmed = 0;
-  std::size_t adequate = 0;
-  double error_of_whole = 0.0;
-  double error_of_trimmed = 0.0;
-  for (std::size_t k = 0; k < kRecords; ++k) {
-    const Record record = RunningIn(16, generator);
-    const FitResult of_whole = FitOf(record, false);
-    const FitResult of_trimmed = FitOf(record, true);
-    whole += Covers(of_whole, "slip_force", kLaw.slip_force) ? 1 : 0;
-    trimmed += Covers(of_trimmed, "slip_force", kLaw.slip_force) ? 1 : 0;
-    error_of_whole += std::abs(of_whole.law.slip_force / kLaw.slip_force - 1) / kRecords;
-    error_of_trimmed += std::abs(of_trimmed.law.slip_force / kLaw.slip_force - 1) / kRecords;
-    adequate += of_trimmed.adequacy.verdict != identification::AdequacyVerdict::kInadequate ? 1 : 0;
-  }
-  RecordProperty("whole", static_cast<int>(whole));
-  RecordProperty("trimmed", static_cast<int>(trimmed));
-  RecordProperty("error_of_whole_ppm", static_cast<int>(1e6 * error_of_whole));
-  RecordProperty("error_of_trimmed_ppm", static_cast<int>(1e6 * error_of_trimmed));
-  RecordProperty("not_inadequate", static_cast<int>(adequate));
-  // What is left of the running-in is within 1 % of the contact's force, and falls from there.
-  EXPECT_LT(error_of_trimmed, 0.01 / 4);
-  EXPECT_LT(error_of_trimmed, error_of_whole / 4);
-  EXPECT_GE(trimmed, whole);
-}
-
-TEST(TrimmedFit, IsTheFitOfTheWholeWhereNothingIsLeftOut) {
-  Generator generator(4);
-  const Record record = RunningIn(12, generator, 1.0);
-  const FitResult whole = FitOf(record, false);
-  const FitResult trimmed = FitOf(record, true);
-  EXPECT_EQ(whole.law.tangential_stiffness, trimmed.law.tangential_stiffness);
-  EXPECT_EQ(whole.initial_state, trimmed.initial_state);
-}
-
-TEST(LeaveOutTrimmed, TakesASteadyContactWhereEveryFirstLoadingIsLeftOut) {
-  const loop::TrimmedPart rest{.reason = loop::TrimReason::kRest, .first = 0, .last = 3};
-  const loop::TrimmedPart ramp{
-      .reason = loop::TrimReason::kRamp, .first = 3, .last = 5, .at_start = true};
-  const loop::Trim rested{.samples = 8, .parts = {rest}};
-  const loop::Trim ramped{.samples = 7, .parts = {ramp}};
-  FitOptions options;
-  LeaveOutTrimmed(std::vector<loop::Trim>{rested, ramped}, options);
-  EXPECT_FALSE(options.initial_state);
-  EXPECT_EQ(options.preparation.held_out[0],
-            (std::vector<bool>{true, true, true, false, false, false, false, false}));
-  EXPECT_EQ(options.preparation.held_out[1],
-            (std::vector<bool>{false, false, false, true, true, false, false}));
-  LeaveOutTrimmed(std::vector<loop::Trim>{ramped}, options);
-  EXPECT_EQ(options.initial_state, models::InitialState::kSteady);
-  options.initial_state = models::InitialState::kVirgin;  // said by the user
-  LeaveOutTrimmed(std::vector<loop::Trim>{ramped}, options);
-  EXPECT_EQ(options.initial_state, models::InitialState::kVirgin);
-}
-
 /// As the program fits it.
 report::Report ReportOf(const Record& record, FitRequest request = {}) {
   io::RecordFile file;
@@ -140,38 +67,6 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
 std::string NoteOf(const report::Report& report, std::string_view code) {
   const auto note = std::ranges::find(report.notes, code, &report::Warning::code);
   return note == report.notes.end() ? "" : note->message;
-}
-
-TEST(TrimmedFit, ReportsWhatIsLeftOutAndWhatDependsOnIt) {
-  Generator generator(6);
-  const report::Report report = ReportOf(RunningIn(16, generator));
-  EXPECT_THAT(NoteOf(report, "trimmed"),
-              AllOf(HasSubstr("--trim auto leaves out of a.csv: "), HasSubstr("of running in"),
-                    HasSubstr("first loading is among them"), HasSubstr("--initial-state")));
-  EXPECT_EQ(report.fit.initial_state, models::InitialState::kSteady);
-  EXPECT_GT(report.fit.records.front().left_out, 2 * kCycle);
-  EXPECT_THAT(report::ToJson(report), HasSubstr("\"reason\": \"running_in\""));
-  const auto trimmed = nlohmann::json::parse(report::ToJson(report))["input"]["trimmed"];
-  ASSERT_FALSE(trimmed.empty());
-  std::size_t next = 1;  // of a record without lines samples count from 1
-  for (const auto& part : trimmed) {
-    EXPECT_EQ(part["first_line"], next);
-    next += part["samples"].get<std::size_t>();
-    EXPECT_EQ(part["last_line"], next - 1);
-  }
-}
-
-TEST(TrimmedFit, SaysThatNothingIsLeftOutAndWhy) {
-  Generator generator(6);
-  EXPECT_THAT(NoteOf(ReportOf(RunningIn(12, generator, 1.0)), "nothing_trimmed"),
-              HasSubstr("its cycles agree"));
-  EXPECT_THAT(NoteOf(ReportOf(RunningIn(3, generator)), "nothing_trimmed"),
-              HasSubstr("too few cycles"));
-  Record drifting = RunningIn(12, generator, 1.0);
-  for (std::size_t i = 0; i < drifting.size(); ++i) {
-    drifting.force[i] *= 1 + 2e-4 * static_cast<double>(i);
-  }
-  EXPECT_THAT(NoteOf(ReportOf(drifting), "nothing_trimmed"), HasSubstr("does not settle"));
 }
 
 TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {

@@ -126,8 +126,7 @@ enum class Strictness {
 /// True if a fit is established, for the exit status.
 bool Established(const identification::FitResult& fit, Strictness strictness);
 
-/// Makes the fit leave out the trimmed samples of each record, and assume a cycled contact if that
-/// leaves out every first loading and no initial state is given.
+/// Makes the fit leave out the trimmed samples of each record.
 /// @param trims  one a record, or none
 void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptions& options);
 
