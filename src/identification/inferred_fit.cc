@@ -20,7 +20,7 @@
 #include "identification/diagnosis/residual_structure.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/irregularities.h"
+#include "identification/inference/heavy_tails.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
@@ -131,10 +131,12 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   }
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   const Eigen::VectorXd& residual = estimates.residual();
-  const std::vector<IrregularityFit> irregularities = FindIrregularities(
-      problem, solution.theta, {residual.data(), problem.size()}, noise,
-      options.loss != Loss::kNone, IsDoubtful(test, thresholds), buffers.response);
-  result.adequacy = JudgeAdequacy(problem, solution, {test, causes, irregularities, is_limited},
+  std::optional<HeavyTails> heavy_tails;
+  if (options.loss == Loss::kNone) {
+    heavy_tails = FindHeavyTails(problem, solution.theta, {residual.data(), problem.size()}, noise,
+                                 buffers.response);
+  }
+  result.adequacy = JudgeAdequacy(problem, solution, {test, causes, heavy_tails, is_limited},
                                   options, result.parameters);
   if (const auto slow = FindSlowResiduals(result, thresholds)) {
     Append(result.findings, slow);
@@ -273,11 +275,11 @@ void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const Solv
                    attempt.buffers.response, result.parameters);
     if (!apart.empty()) result.findings.push_back({.code = code, .parameters = apart});
   };
-  if (solved.rival && !solved.fits_turns()) {
+  if (solved.rival) {
     cover({solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState},
           FindingCode("initial_state_undecided"));
   }
-  if (solved.fits_turns() || solved.is_weighted) return;  // other starts led to another problem
+  if (solved.is_weighted) return;  // other starts led to another problem
   for (const Descent& descent : solved.descents) {
     if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
     cover({problem, descent.solution, IntervalSource::kOtherMinimum},

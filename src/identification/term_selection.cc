@@ -103,6 +103,7 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
   const auto is_timed = [](const RecordView& record) { return !record.time.empty(); };
   const bool timed = std::ranges::all_of(records, is_timed);
   for (const TermGroup& group : TermGroups()) {
+    if (!group.is_tried) continue;
     TermCandidate candidate;
     candidate.considered.name = group.name;
     bool has_data = true;
@@ -872,7 +873,8 @@ std::span<const TermGroup> TermGroups() {
        {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"}},
       {"ripple",
        {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
-        "ripple_sine_down"}},
+        "ripple_sine_down"},
+       /*is_tried=*/false},
       {"force_drift", {"force_drift"}},
       {"rig_stiffness", {"rig_stiffness"}},
       {"asymmetry", {"asymmetry"}},

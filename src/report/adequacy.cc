@@ -38,7 +38,7 @@ constexpr const char* kLookAtTheLoad =
     "check whether the normal load varies with the position; if it is recorded, name its column "
     "with --normal-load-column";
 
-constexpr std::array<CauseRow, 27> kCauses = {{
+constexpr std::array<CauseRow, 25> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -112,12 +112,6 @@ constexpr std::array<CauseRow, 27> kCauses = {{
      "sample both channels by one clock, or fit parts of the record"},
     {"heavy_tails", "readings far off their neighbours, {} of all", nullptr,
      "look for disturbances of the channel"},
-    {"position_ripple",
-     "a ripple with a period of {} along the displacement and the same phase in all strokes of a "
-     "direction, as from a drive screw or a gear",
-     nullptr, "check the drive; the ripple averages out of slip_force"},
-    {"stick_slip", "stick-slip, drops of {} that recur while the contact slides", nullptr,
-     "stiffen the rig or change the speed; slip_force is the mean between the drops"},
 }};
 
 const CauseRow& RowOf(const Cause& cause) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "identification/inference/departures.h"
-#include "identification/inference/irregularities.h"
+#include "identification/inference/heavy_tails.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/terms.h"
@@ -76,7 +76,7 @@ Json FindingsTable() {
   return rows;
 }
 
-/// Causes in the order of the library: omitted terms, then structures of the residuals.
+/// Causes in the order of the library: omitted terms, then heavy tails.
 Json CausesTable() {
   Json rows = Json::array();
   for (const identification::Departure& row : identification::Departures()) {
@@ -86,13 +86,11 @@ Json CausesTable() {
                     {"meaning", row.meaning},
                     {"option", row.option}});
   }
-  for (const identification::Irregularity& row : identification::Irregularities()) {
-    rows.push_back({{"code", row.code},
-                    {"unit", row.unit},
-                    {"unit_by_sample", ""},
-                    {"meaning", row.meaning},
-                    {"option", row.option}});
-  }
+  rows.push_back({{"code", identification::kHeavyTails},
+                  {"unit", "-"},
+                  {"unit_by_sample", ""},
+                  {"meaning", identification::kHeavyTailsMeaning},
+                  {"option", identification::kHeavyTailsOption}});
   return rows;
 }
 

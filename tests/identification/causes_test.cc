@@ -177,39 +177,6 @@ TEST(FirstCause, OfASpringInParallelIsThePlateauSlope) {
 
 // --- a drive's ripple, and stick-slip
 
-/// A sawtooth along the displacement, which drops against the motion; a tooth is ten samples long
-/// in the middle of the stroke.
-double Tooth(double position, double direction) {
-  constexpr double kPeriod = 0.15;  // of the reach
-  const double place = direction * position / kPeriod + (direction > 0 ? 0.2 : 0.7);
-  return 0.1 * (place - std::floor(place) - 0.5) * direction;
-}
-
-TEST(FirstCause, OfTeethInOnePhaseInAllStrokesIsARippleAndNoStickSlip) {
-  const FitResult fit = Fitted(With([](const Place& at) {
-    return std::abs(at.force) > 0.95 ? Tooth(at.position, at.direction) : 0.0;
-  }));
-  EXPECT_EQ(FirstOf(fit), "position_ripple");
-  const Cause& ripple = fit.adequacy.causes.front();
-  EXPECT_EQ(ripple.unit, "m");
-  // Of a stroke of thirteen periods the frequency is known to a small part of one over its length.
-  EXPECT_NEAR(ripple.size / (0.15 * kReach), 1.0, 0.02);
-  EXPECT_EQ(Find(fit, "stick_slip"), nullptr);
-}
-
-TEST(FirstCause, OfTeethInAnotherPhaseInEachStrokeIsStickSlip) {
-  Generator generator(3);
-  double shift = 0.0;
-  double last = 0.0;
-  const FitResult fit = Fitted(With([&](const Place& at) {
-    if (at.direction != last) shift = testing::Uniform(generator, 0.0, 1.0);
-    last = at.direction;
-    return std::abs(at.force) > 0.95 ? Tooth(at.position + shift, at.direction) : 0.0;
-  }));
-  EXPECT_EQ(FirstOf(fit), "stick_slip");
-  EXPECT_EQ(Find(fit, "position_ripple"), nullptr);
-}
-
 // --- backlash
 
 /// A contact behind a gap of which its force is free: half of it to the side of the force.

@@ -55,15 +55,17 @@ Report ReportWith(AdequacyVerdict verdict, std::vector<Cause> causes) {
   return MakeReport(InputWith(verdict, std::move(causes)));
 }
 
-/// Codes in the tables of departures and irregularities.
+/// Codes in the table of departures, and of heavy tails.
 std::set<std::string> TriedCodes() {
   std::string text;
-  for (const char* file : {"departures.cc", "irregularities.cc"}) {
+  for (const char* file : {"departures.cc", "heavy_tails.h"}) {
     std::ifstream in(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src/identification/inference" /
                      file);
     text.append(std::istreambuf_iterator<char>(in), {});
   }
-  return testing::Matches(text, "\\.code = \"([a-z_]+)\"");
+  std::set<std::string> codes = testing::Matches(text, "\\.code = \"([a-z_]+)\"");
+  codes.merge(testing::Matches(text, "kHeavyTails = \"([a-z_]+)\""));
+  return codes;
 }
 
 TEST(CauseSentence, ExistsForEveryTermThatIsTriedAndNoOther) {

@@ -38,6 +38,7 @@ struct TermSelectionOptions {
 struct TermGroup {
   std::string_view name;
   std::vector<std::string_view> terms;  ///< names in FitOptions::terms
+  bool is_tried = true;                 ///< false if it is added only where it is named
 };
 
 /// Returns the terms that can be added, apart from covariates; `--terms` takes these names.

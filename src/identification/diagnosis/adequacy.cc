@@ -283,35 +283,18 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
 }
 
-/// Returns the option with its number where it has one, in SI.
-std::string OptionOf(const Problem& problem, const FitOptions& options, const Irregularity& found,
-                     double size) {
-  const std::string_view option = found.option;
-  const std::size_t place = option.find("PERIOD");
-  if (place == std::string_view::npos) return AcceptedOptions(problem, options, option);
-  return AcceptedOptions(problem, options, fmt::format("{}{:.4g}", option.substr(0, place), size));
-}
-
-/// Adds the disturbances that noise alone does not make to the causes, and doubts the record where
-/// one is there.
-void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
-                       const FitOptions& options, Adequacy& adequacy) {
+/// Adds heavy tails that noise alone does not make to the causes, and doubts the record.
+void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tails,
+                   const FitOptions& options, Adequacy& adequacy) {
   const Thresholds& thresholds = options.thresholds;
-  for (const IrregularityFit& fit : found) {
-    if (fit.p_value >= thresholds.cause || fit.delta_aicc >= 0) continue;
-    const auto tried = static_cast<double>(Irregularities().size());
-    adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tried * fit.p_value));
-    const Irregularity& irregularity = Irregularities()[fit.irregularity];
-    const double unit = irregularity.unit == "N"   ? problem.data->force
-                        : irregularity.unit == "m" ? problem.data->length
-                                                   : 1.0;
-    adequacy.causes.push_back(
-        {.code = irregularity.code,
-         .delta_aicc = fit.delta_aicc,
-         .explains = fit.explains,
-         .size = fit.size * unit,
-         .unit = irregularity.unit,
-         .option = OptionOf(problem, options, irregularity, fit.size * unit)});
+  if (tails && tails->p_value < thresholds.cause && tails->delta_aicc < 0) {
+    adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
+    adequacy.causes.push_back({.code = kHeavyTails,
+                               .delta_aicc = tails->delta_aicc,
+                               .explains = tails->explains,
+                               .size = tails->fraction,
+                               .unit = "-",
+                               .option = AcceptedOptions(problem, options, kHeavyTailsOption)});
     adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
   Order(adequacy.causes, thresholds);
@@ -330,7 +313,7 @@ void DropLesserCauses(std::vector<Cause>& causes) {
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
                        const AdequacyEvidence& evidence, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates) {
-  const auto& [test, causes, irregularities, ends_at_limit] = evidence;
+  const auto& [test, causes, heavy_tails, ends_at_limit] = evidence;
   const Thresholds& thresholds = options.thresholds;
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
@@ -356,7 +339,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
     }
   }
   if (IsDoubtful(test, thresholds) || ends_at_limit) adequacy.verdict = AdequacyVerdict::kDoubtful;
-  AddIrregularities(problem, irregularities, options, adequacy);
+  AddHeavyTails(problem, heavy_tails, options, adequacy);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "identification/inference/column_test.h"
-#include "identification/inference/irregularities.h"
+#include "identification/inference/heavy_tails.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
@@ -40,7 +40,7 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 struct AdequacyEvidence {
   const AdequacyTest& test;
   std::span<const DepartureFit> causes;             ///< result of CausesOf()
-  std::span<const IrregularityFit> irregularities;  ///< result of FindIrregularities()
+  const std::optional<HeavyTails>& heavy_tails;  ///< result of FindHeavyTails()
   bool ends_at_limit = false;                       ///< the search ended at a limit of its own
 };
 
