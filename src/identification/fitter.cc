@@ -18,7 +18,6 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/sampled_time.h"
 #include "identification/inferred_fit.h"
 #include "identification/intervals.h"
 #include "identification/problem/problem.h"
@@ -84,7 +83,6 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const ScaledRecords& data = attempt.data;
   const Noise& noise = solved.noise;
-  std::size_t turn = 0;
   result.records.resize(attempt.prepared.records.size());
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
@@ -92,10 +90,6 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     fit.gate = prepared.gate_choice;
     fit.glitches = prepared.glitches;
     fit.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
-    fit.overshoot.clear();
-    for (std::size_t j = 0; solved.fits_turns() && j < data.records[r].reversals.size(); ++j) {
-      fit.overshoot.push_back(solved.turned->records->overshoot[turn++] * data.length);
-    }
     fit.measures = prepared.measures;
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
@@ -226,12 +220,6 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   FillParameters(problem, solution, result);
   FillLawEnergy(attempt, result);
   FillFitted(attempt, solved, result);
-  if (solved.fits_turns()) {
-    const std::vector<double>& overshoot = solved.turned->records->overshoot;
-    result.findings.push_back(
-        {.code = "turning_points_between_samples",
-         .numbers = {{"overshoot", std::ranges::max(overshoot) * data.length}}});
-  }
   return result;
 }
 
@@ -345,18 +333,12 @@ struct Fitter::State {
   }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
-  /// Fits, and once more where the slip force runs away from what was measured, and where the
-  /// residuals scatter as noise of the displacement makes them.
+  /// Fits, and once more where the slip force runs away from what was measured.
   void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
     Fit(records, depth, given);
-    std::optional<FitOptions> within = OptionsWithinForce(result, given);
+    const std::optional<FitOptions> within = OptionsWithinForce(result, given);
     if (within) Fit(records, depth, *within);
-    TryDisplacementNoise(records, depth, within ? *within : given);
   }
-  /// Fits with the noise of the displacement that the residuals show, and keeps that where it is
-  /// adequate.
-  void TryDisplacementNoise(std::span<const RecordView> records, Depth depth,
-                            const FitOptions& given);
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;
 
@@ -365,12 +347,10 @@ struct Fitter::State {
   Arena arena;
   SearchBuffers buffers;
   FitResult result;
-  std::optional<SlopeScatter> scatter;  // of the last fit; looked for from kIntervals on
 };
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   arena.Reset();
-  scatter.reset();
   RequireInitialStates(given, records.size());
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
   LeaveOutBeyondLags(given, prepared);
@@ -395,33 +375,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     result = AddPriors(given, solved.best.problem, *without_priors, std::move(result));
   }
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
-  if (depth >= Depth::kIntervals && !given.preparation.displacement_noise &&
-      solved.noise.force > kOnlyRounding) {
-    const Problem& problem = solved.best.problem;
-    scatter = FindSlopeScatter(prepared, problem, solved.solution().theta,
-                               {solved.at.residual.data(), problem.size()}, buffers.response);
-  }
   result = Infer(attempt, std::move(solved), std::move(result));
   if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
-}
-
-void Fitter::State::TryDisplacementNoise(std::span<const RecordView> records, Depth depth,
-                                         const FitOptions& given) {
-  if (!scatter || !result.converged) return;
-  const bool is_doubted = result.adequacy.verdict != AdequacyVerdict::kAdequate;
-  const std::optional<double> noise = NoiseToTry(*scatter, is_doubted, given.thresholds);
-  if (!noise) return;
-  FitOptions with_noise = given;
-  with_noise.preparation.displacement_noise = noise;
-  const SlopeScatter found = *scatter;
-  FitResult plain = result;
-  Fit(records, depth, with_noise);
-  if (!result.converged || result.adequacy.verdict != AdequacyVerdict::kAdequate) {
-    result = std::move(plain);
-    return;
-  }
-  result.findings.push_back({.code = "displacement_noise_estimated",
-                             .numbers = {{"deviation", *noise}, {"p", found.p_value}}});
 }
 
 /// True if the next fit may start at the last one's end: a single minimum, not at a bound.
