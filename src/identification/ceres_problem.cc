@@ -189,13 +189,12 @@ LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const Fi
   std::size_t counted = 0;
   for (const RecordFit& record : fit.records) {
     counted += record.residual.size() - record.left_out;
-    if (options.loss == Loss::kNone && (is_forced || !(record.displacement_noise > 0)) &&
-        record.overshoot.empty()) {
+    if (options.loss == Loss::kNone && (is_forced || !(record.displacement_noise > 0))) {
       continue;
     }
     throw InvalidArgument(
-        "a log-likelihood needs samples of equal weight: fit without a robust loss, without noise "
-        "of the displacement and without turning points between samples");
+        "a log-likelihood needs samples of equal weight: fit without a robust loss and without "
+        "noise of the displacement");
   }
   state_ = std::make_unique<State>(records, options, fit);
   state_->effective_fraction =

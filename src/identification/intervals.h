@@ -8,14 +8,12 @@
 
 namespace mindahl::identification {
 
-/// Counts the fitted parameters, for criteria: those not held, and turning points.
+/// Counts the fitted parameters, for criteria: those not held.
 inline std::size_t CountFreeParameters(const FitResult& fit) {
-  auto count = static_cast<std::size_t>(
+  return static_cast<std::size_t>(
       std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {
         return parameter.status != ParameterStatus::kFixed;
       }));
-  for (const RecordFit& record : fit.records) count += record.overshoot.size();
-  return count;
 }
 
 /// The one place where the interval of an estimate is written, the union of its parts.

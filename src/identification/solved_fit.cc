@@ -199,7 +199,7 @@ void SolveAgain(Candidate& candidate, const FitOptions& options, SearchBuffers& 
   buffers.solver.Solve(start, SolverOptionsOf(options), *candidate.solution);
 }
 
-/// Fits turning points where the record needs it and allows it.
+/// Fits at turning points between samples where the record needs it and allows it.
 std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate& best) {
   // A gate means noise in the displacement: its outermost samples are the noisiest, and say
   // nothing of where the motion turned.
@@ -213,7 +213,7 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
       attempt.data.is_forced()) {
     return std::nullopt;
   }
-  return FitTurningPointsIfNeeded(best.problem, *best.solution, attempt.options, attempt.buffers);
+  return FitAtTurningPoints(best.problem, *best.solution, attempt.options, attempt.buffers);
 }
 
 }  // namespace
@@ -256,18 +256,17 @@ SolvedFit SolveFit(const Attempt& attempt) {
       if (solved.turned) {
         best.problem.data = &solved.turned->records->data;
         *best.solution = solved.turned->solution;
-        if (rival && !solved.fits_turns()) {
+        if (rival) {
           rival->problem.data = best.problem.data;
           SolveAgain(*rival, options, buffers);
         }
         // The weights come from the residuals of the fit whose turning points are the motion's.
-        if (by_record && !solved.fits_turns()) fit_with_weights(solved.turned->records->data);
+        if (by_record) fit_with_weights(solved.turned->records->data);
       }
       std::vector<double> of_records = std::move(solved.noise.of_records);
       solved.noise =
           PlainNoise(*best.problem.data, options, best.solution->sum_of_squares,
-                     best.problem.parameters.free().size() +
-                         (solved.fits_turns() ? solved.turned->records->overshoot.size() : 0));
+                     best.problem.parameters.free().size());
       solved.noise.of_records = std::move(of_records);
     }
     if (attempt.depth >= Depth::kErrors) {

@@ -40,18 +40,17 @@ struct SolvedFit {
   Noise noise = {};
   bool is_weighted = false;  ///< samples do not all weigh the same
   bool is_settled = true;    ///< the weights are those of the residuals that they leave
-  /// The records that `best` is a problem of, where turning points were put in or fitted.
+  /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
   Linearization at = {};  ///< linearization of `best` in its free parameters; from Depth::kErrors
 
   [[nodiscard]] const Solution& solution() const { return *best.solution; }
-  [[nodiscard]] bool fits_turns() const { return best.problem.data->turns_are_fitted; }
 };
 
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
 /// several records also some as virgin and some as steady, where all as one does not fit. Samples
 /// are weighted where the displacement is inexact, the loss is robust or records differ in their
-/// noise, and turning points fitted where the record is sampled so coarsely that it misses them.
+/// noise, and turning points put in where the record is sampled so coarsely that it misses them.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
 

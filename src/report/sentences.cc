@@ -87,13 +87,6 @@ std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&
 
 // --- what the record does not determine
 
-std::string TurningPoints(const Finding& finding, const FitResult&, const Units& units) {
-  return fmt::format(
-      "the motion turns between samples, up to {} beyond the outermost sample: the turning points "
-      "were fitted too; sample more densely",
-      Quantity(Needed(finding, "overshoot"), units.displacement, 3));
-}
-
 std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
       "alpha: Mindlin's alpha = 1/3 with a rig of {} in series fits as well as alpha = {:.3g} with "
@@ -442,15 +435,6 @@ std::string NoiseInDisplacement(const Finding& finding, const FitResult&, const 
       100 * Needed(finding, "of_displacement"), 100 * Needed(finding, "of_force"));
 }
 
-std::string DisplacementNoiseEstimated(const Finding& finding, const FitResult&,
-                                       const Units& units) {
-  return fmt::format(
-      "the residuals are large where the loop is steep, as noise of {} in the displacement makes "
-      "them, and the fit takes this noise into account; --displacement-noise sets another value, 0 "
-      "for exact readings",
-      Quantity(Needed(finding, "deviation"), units.displacement, 2));
-}
-
 std::string AlphaLimitedByLoad(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "alpha would be {:.3g} or more, beyond the limit of the law for a varying load, whose slip "
@@ -483,8 +467,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"load_followed", LoadFollowed},
     {"load_not_followed", LoadNotFollowed},
     {"noise_in_displacement", NoiseInDisplacement},
-    {"displacement_noise_estimated", DisplacementNoiseEstimated},
-    {"turning_points_between_samples", TurningPoints},
     {"undetermined_parameter", UndeterminedParameter},
     {"undetermined_combination", UndeterminedCombination},
     {"sigma_not_identifiable", SigmaNotIdentifiable},

@@ -252,7 +252,6 @@ TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
     record.force[i] += 1.2 * std::exp(-9 * x * x) + 0.6 * testing::Normal(generator);
   }
   const FitResult fit = IntervalsOf(record, Virgin());
-  ASSERT_TRUE(fit.records[0].overshoot.empty()) << "the case is without turning points";
   const ResidualStructure& structure = fit.records[0].structure;
   EXPECT_EQ(structure.strokes, 50U) << "of the direction that has more";
   ASSERT_GT(structure.repeatable_share, 0.1);

@@ -73,7 +73,6 @@ void ExpectSame(const FitResult& one, const FitResult& other) {
   ASSERT_EQ(one.records.size(), other.records.size());
   for (std::size_t r = 0; r < one.records.size(); ++r) {
     EXPECT_EQ(one.records[r].reversals, other.records[r].reversals);
-    EXPECT_EQ(one.records[r].overshoot, other.records[r].overshoot);
     EXPECT_EQ(one.records[r].counts, other.records[r].counts);
     EXPECT_EQ(one.records[r].left_out, other.records[r].left_out);
     EXPECT_EQ(one.records[r].residual, other.records[r].residual);

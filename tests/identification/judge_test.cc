@@ -34,7 +34,6 @@ constexpr auto kVerdicts = std::to_array<Verdict>({
     {"slip_force_bounded_below", Identifiability::kBoundedBelow},
     {"sigma_bounded_below", Identifiability::kBoundedBelow},
     {"systematic_residual", Identifiability::kIdentifiable},
-    {"turning_points_between_samples", Identifiability::kIdentifiable},
 });
 
 TEST(Judge, VerdictsAreInTheOrderOfPrecedence) {

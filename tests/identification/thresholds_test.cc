@@ -10,7 +10,6 @@
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/sampled_time.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
@@ -342,24 +341,6 @@ bool RepeatsByChance(const Thresholds& thresholds, double chance) {
   return fit.records[0].structure.repeatable_share > 0;
 }
 
-/// A loop without the outermost sample of every turn, which puts the motion's own turning points in
-/// the wrong place, under noise of some size.
-bool TurnsAreFitted(const Thresholds& thresholds, double noise) {
-  const Record dense = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 3.0, 400));
-  Record record;
-  Generator generator(5);
-  for (std::size_t i = 1; i < dense.size(); i += 8) {
-    if (i % 200 == 97 || i % 200 == 105) continue;  // turns are at 100 and 300
-    record.displacement.push_back(dense.displacement[i]);
-    record.force.push_back(dense.force[i] + noise * Normal(generator));
-  }
-  Stages stages(record, Virgin(thresholds));
-  const Solution best = stages.Solve();
-  const auto turned =
-      FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers);
-  return turned && turned->records->data.turns_are_fitted;
-}
-
 /// Are turning points looked for that may move a parameter by so many standard errors?
 bool TurnsAreTried(const Thresholds& thresholds, double shift) {
   const Record dense = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 3.0, 400));
@@ -383,7 +364,7 @@ bool TurnsAreTried(const Thresholds& thresholds, double shift) {
     const double rms = std::sqrt(best.sum_of_squares / count);
     const double said = std::sqrt(count) * std::exp(best.theta[kStiffness]) * longest / rms;
     const bool is_tried =
-        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers).has_value();
+        FitAtTurningPoints(stages.problem, best, stages.options, stages.buffers).has_value();
     return std::pair(said, is_tried);
   };
   const double noise = ZeroOf(
@@ -413,24 +394,6 @@ bool NoiseDiffersAt(const Thresholds& thresholds, double chance) {
   options.thresholds.turning_point_shift = 1e9;  // they stay at the samples, as in the stages
   const FitResult fit = Fit(records(ratio), options);
   return fit.records[0].response_noise != fit.records[1].response_noise;
-}
-
-/// Is noise of the displacement tried where noise of the force makes the residuals scatter so along
-/// the slope with that chance?
-bool ScatterIsOfDisplacement(const Thresholds& thresholds, double chance) {
-  const SlopeScatter scatter{.deviation = 1e-9, .p_value = chance, .of_readings = 1e-9};
-  return NoiseToTry(scatter, /*is_doubted=*/false, thresholds).has_value();
-}
-
-bool TurnsByChance(const Thresholds& thresholds, double chance) {
-  static std::map<double, double> sizes;
-  if (!sizes.contains(chance)) {
-    Thresholds at_chance;
-    at_chance.turning_point_chance = chance;
-    sizes[chance] = ZeroOf(
-        1e-4, 1.0, [&](double noise) { return TurnsAreFitted(at_chance, noise) ? -1.0 : 1.0; });
-  }
-  return TurnsAreFitted(thresholds, sizes[chance]);
 }
 
 /// 2 ln Λ of a rig, for a loop in one that hardly gives way.
@@ -742,11 +705,6 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          return NoiseDiffersAt(t, kBelow * 0.01) && !NoiseDiffersAt(t, kAbove * 0.01);
        }},
-      {"slope_scatter",
-       [](const Thresholds& t) {
-         return ScatterIsOfDisplacement(t, kBelow * 1e-3) &&
-                !ScatterIsOfDisplacement(t, kAbove * 1e-3);
-       }},
       {"main_stroke",
        [](const Thresholds& t) {
          // Strokes of 1, 0.6 and 0.9 of the longest, there and back.
@@ -824,10 +782,6 @@ const std::map<std::string_view, Case>& Cases() {
       {"parabola_departure", ProfilesWhereTheParabolaIsOffBy15Percent},
       {"parabola_mobilised", ProfilesBelowNineTenthsOfSlip},
       {"rigid_error", TriesARigidContactBeyondAnErrorOf03},
-      {"turning_point_chance",
-       [](const Thresholds& t) {
-         return TurnsByChance(t, kBelow * 1e-6) && !TurnsByChance(t, kAbove * 1e-6);
-       }},
       {"turning_point_shift",
        [](const Thresholds& t) {
          return !TurnsAreTried(t, kBelow * 0.2) && TurnsAreTried(t, kAbove * 0.2);

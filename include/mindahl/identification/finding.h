@@ -49,8 +49,6 @@ inline constexpr auto kFindings = [] {
       {.code = "load_followed", .severity = kNote},
       {.code = "load_not_followed"},
       {.code = "noise_in_displacement", .severity = kNote},
-      {"displacement_noise_estimated", kIdentifiable, kNote, true},
-      {"turning_points_between_samples", kIdentifiable, kNote, true},
       // about the identifiability of the parameters
       {"undetermined_parameter", kNotIdentifiable},
       {"undetermined_combination", kNotIdentifiable},

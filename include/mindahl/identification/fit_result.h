@@ -182,9 +182,6 @@ struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
   loop::GlitchCount glitches;          ///< glitches left out, by kind
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
-  /// record is sampled so coarsely that it had to be fitted.
-  std::vector<double> overshoot;
   loop::LoopMeasures measures;      ///< with the force's sign that of the displacement
   loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
   double displacement_noise = 0.0;  ///< noise of the readings [m]; 0 if exact

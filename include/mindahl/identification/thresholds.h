@@ -22,7 +22,6 @@ struct Thresholds {
   double repeats_when_failing = 0.1;
   double repeat_chance = 1e-3;
   double noise_differs = 0.01;
-  double slope_scatter = 1e-3;
   double main_stroke = 0.75;
   double same_directions = 0.6;
   double early_in_stroke = 0.25;
@@ -39,7 +38,6 @@ struct Thresholds {
   double parabola_departure = 0.15;
   double parabola_mobilised = 0.9;
   double rigid_error = 0.3;
-  double turning_point_chance = 1e-6;
   double turning_point_shift = 0.2;
   double force_noise_share = 0.8;
   double most_absorbed = 0.5;

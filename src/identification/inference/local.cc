@@ -87,10 +87,6 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   response.Bind(problem);
   Differentiate(problem, theta, response, columns, {at.residual.data(), samples},
                 {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
-  if (problem.data->turns_are_fitted) {
-    const TurningPointColumns turning(problem, theta, response);
-    for (Eigen::Index c = 0; c < at.jacobian.cols(); ++c) turning.ProjectOut(at.jacobian.col(c));
-  }
   return at;
 }
 

@@ -48,11 +48,6 @@ constexpr std::array kTable = {
                  "have each a noise level of their own",
                  "one set in a hundred of records with equal noise is then weighted by chance "
                  "variances, at no visible cost"},
-    ThresholdRow{"slope_scatter", &Thresholds::slope_scatter, "p",
-                 "displacement noise is tried if force noise makes residuals scatter this much "
-                 "where the loop is steep less often",
-                 "the estimate must also be no larger than the scatter of the readings, and the "
-                 "fit with it adequate"},
     ThresholdRow{"main_stroke", &Thresholds::main_stroke, "of the longest",
                  "only strokes at least this long are compared with each other",
                  "shorter ones are nested loops, run-in or run-out; the same as for X and T*"},
@@ -109,9 +104,6 @@ constexpr std::array kTable = {
                  "a σ that is less certain is compared with a rigid contact",
                  "a contact a thousand times stiffer is then 45 standard errors away by the "
                  "parabola, which is not trusted further"},
-    ThresholdRow{"turning_point_chance", &Thresholds::turning_point_chance, "p",
-                 "chance at which turning points between samples are fitted needlessly",
-                 "each reversal costs a parameter; a record that needs them shows it clearly"},
     ThresholdRow{"turning_point_shift", &Thresholds::turning_point_shift, "standard errors",
                  "turning points of the motion between samples are tried if they may move a "
                  "parameter by more",

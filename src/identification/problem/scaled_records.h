@@ -122,7 +122,6 @@ struct ScaledRecords {
   bool is_load_series = false;         // do these differ?
   bool load_varies = false;            // within a record, and the law knows it
   double prior_noise = 0.0;            // noise against which priors weigh, in response units
-  bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
   /// True if the force is imposed, and the displacement fitted.
   [[nodiscard]] bool is_forced() const { return excitation == loop::Channel::kForce; }
