@@ -179,7 +179,6 @@ void AddMappingFields(FieldTable& table) {
       {"mapping.stiffness_tests", "", "σ/(8a/G*) against 1, one entry per known radius",
        StiffnessTests},
   });
-  table.Describe("mapping.alpha_by_branch[].", BranchFields());
   table.items.push_back({"mapping.stiffness_tests[].radius", "", "source of a: hertz or given"});
   table.Describe("mapping.stiffness_tests[].", PropagatedFields());
   table.Describe("mapping.stiffness_tests[].", StiffnessFields());

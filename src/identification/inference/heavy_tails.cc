@@ -65,7 +65,7 @@ double SquaresOf(std::span<const FittedSample> samples, std::span<const double> 
 
 constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
 constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
-constexpr double kFar = 6.0;                          // of their widths
+constexpr double kFarOff = 6.0;                          // of their widths
 /// Chance that a reading is so far off: 2e-9 of a normal law whose width is known, and below this
 /// of one that 60 samples determine to 15 % (1.17/√60).
 constexpr double kChance = 1e-5;
@@ -140,7 +140,7 @@ std::optional<HeavyTails> FindHeavyTails(std::span<const FittedSample> samples,
       return other.value * here.value < -here.value * here.value / 4 &&
              std::abs(other.value) < std::abs(here.value);
     };
-    const bool is_off = here.width > 0 && std::abs(here.value) > kFar * here.width;
+    const bool is_off = here.width > 0 && std::abs(here.value) > kFarOff * here.width;
     if (!is_off || !adjoin || !is_its_shadow(before) || !is_its_shadow(after)) continue;
     ++count;
     of_the_off += samples[here.sample].residual * samples[here.sample].residual;
