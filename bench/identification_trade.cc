@@ -1,6 +1,6 @@
 // What accuracy costs a fit: errors of σ, α and Tc and how often their 95 % intervals cover the
-// truth, beside the time that a fit takes, for its depths, for every n-th sample and for channels
-// in single precision; the table of docs/tradeoff.md.
+// truth, beside the time that a fit takes, for its depths and for every n-th sample; the table of
+// docs/tradeoff.md.
 //   build/release/bench/identification_trade [loops]
 #include <fmt/format.h>
 
@@ -67,15 +67,13 @@ struct Way {
   std::string name;
   Depth depth = Depth::kFull;
   std::size_t every = 1;  // sample is kept
-  bool is_single = false;
 };
 
 Record AsGiven(const Record& record, const Way& way) {
-  const auto value = [&](double x) { return way.is_single ? static_cast<float>(x) : x; };
   Record given;
   for (std::size_t i = 0; i < record.size(); i += way.every) {
-    given.displacement.push_back(value(record.displacement[i]));
-    given.force.push_back(value(record.force[i]));
+    given.displacement.push_back(record.displacement[i]);
+    given.force.push_back(record.force[i]);
   }
   return given;
 }
@@ -151,7 +149,6 @@ int main(int argc, char** argv) {
                                  {.name = "errors", .depth = Depth::kErrors},
                                  {.name = "intervals", .depth = Depth::kIntervals},
                                  full,
-                                 {.name = "full, single precision", .is_single = true},
                                  {.name = "full, every 2nd sample", .every = 2},
                                  {.name = "full, every 4th", .every = 4},
                                  {.name = "full, every 8th", .every = 8},

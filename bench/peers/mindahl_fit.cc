@@ -25,9 +25,8 @@ using namespace mindahl::loop;
 using namespace mindahl::models;
 
 /// How much of the answer is asked for, of a fitter that has fitted before.
-const std::vector<std::pair<const char*, Depth>> kDepths = {{"estimate", Depth::kEstimate},
-                                                            {"intervals", Depth::kIntervals},
-                                                            {"full", Depth::kFull}};
+const std::vector<std::pair<const char*, Depth>> kDepths = {
+    {"estimate", Depth::kEstimate}, {"intervals", Depth::kIntervals}, {"full", Depth::kFull}};
 
 double MedianMilliseconds(int repeats, const std::function<void()>& call) {
   std::vector<double> times;

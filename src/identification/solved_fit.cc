@@ -264,9 +264,8 @@ SolvedFit SolveFit(const Attempt& attempt) {
         if (by_record) fit_with_weights(solved.turned->records->data);
       }
       std::vector<double> of_records = std::move(solved.noise.of_records);
-      solved.noise =
-          PlainNoise(*best.problem.data, options, best.solution->sum_of_squares,
-                     best.problem.parameters.free().size());
+      solved.noise = PlainNoise(*best.problem.data, options, best.solution->sum_of_squares,
+                                best.problem.parameters.free().size());
       solved.noise.of_records = std::move(of_records);
     }
     if (attempt.depth >= Depth::kErrors) {

@@ -50,8 +50,8 @@ Trim FindTrim(const RecordView& record, const PreparationOptions& options) {
   const PreparedRecord& test = prepared.records.front();
   const std::span<const double> displacement = test.displacement();
   Trim trim{.samples = displacement.size(), .parts = {}};
-  const double usual = UsualStroke(
-      TurningPoints(displacement, test.reversals, std::pmr::get_default_resource()));
+  const double usual =
+      UsualStroke(TurningPoints(displacement, test.reversals, std::pmr::get_default_resource()));
   if (!(usual > 0)) return trim;
   const TrimRules rules;
   const auto [least, greatest] = std::ranges::minmax(displacement);

@@ -35,12 +35,6 @@ void CountExact(const FrictionModel& model, const BranchLaw& law, const Resoluti
   if (model.memory == models::Memory::kNone) count.Add(Operation::kRatePower, branches);
 }
 
-void CountExactFloat(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                     const Drive& drive, OperationCount& count) {
-  CountExact(model, law, resolution, drive, count);
-  count.Add(Operation::kNarrowing, static_cast<double>(drive.displacement.size()));
-}
-
 void CountIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution,
                const Drive& drive, OperationCount& count) {
   constexpr std::size_t kLanes = 4;  // moved at once, filled or not
@@ -49,20 +43,6 @@ void CountIwan(const FrictionModel&, const BranchLaw& law, const Resolution& res
   count.Add(Operation::kElement,
             static_cast<double>(drive.displacement.size()) * static_cast<double>(moved));
   count.Add(Operation::kSum, static_cast<double>(drive.displacement.size()));
-}
-
-/// The displacement is in single precision too: what a simulator in float has.
-Evaluator PrepareExactFloat(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
-  return [&model, law](const Drive& drive, std::span<double> force) {
-    const std::vector<float> narrow(drive.displacement.begin(), drive.displacement.end());
-    const std::vector<double> widened(narrow.begin(), narrow.end());
-    const models::LoadingPath path =
-        MakeDrivePath(model, {.displacement = widened, .envelope = drive.envelope});
-    std::vector<float> narrow_force(narrow.size());
-    models::EvaluateForce(model, law, path, std::span<const float>(narrow),
-                          std::span<float>(narrow_force));
-    std::ranges::copy(narrow_force, force.begin());
-  };
 }
 
 template <IwanSpacing spacing>
@@ -90,10 +70,6 @@ void CountSteps(const FrictionModel& model, const BranchLaw& law, const Resoluti
 
 constexpr std::array kMethods{
     Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .count = CountExact},
-    Method{.name = "exact-float",
-           .title = "closed form in single precision",
-           .prepare = PrepareExactFloat,
-           .count = CountExactFloat},
     Method{.name = "euler",
            .title = "explicit Euler",
            .steps = "substeps a sample",

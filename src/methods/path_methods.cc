@@ -108,7 +108,7 @@ class Rate {
 
 /// A branch as far as it has been followed.
 struct FollowedBranch {
-  models::ScaledBranch<double> scaled;
+  models::ScaledBranch scaled;
   double y = 0.0;          // distance followed, in the branch's scale
   double remaining = 1.0;  // u there
 

@@ -101,7 +101,7 @@ struct RunConstants {
   double per_beta;  // 0 for β = 0, where it is not used
 };
 
-MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch<double>& branch, double shape_exponent) {
+MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch& branch, double shape_exponent) {
   const double beta = 1 - shape_exponent;
   return {branch.origin, branch.rate, backbone::Reach(branch.rate), beta,
           beta == 0 ? 0.0 : 1 / beta};
@@ -171,8 +171,8 @@ MINDAHL_INLINE void ForEach(std::size_t count, AtSample&& at) {
   }
 }
 
-MINDAHL_INLINE void EvaluateBlock(const ScaledBranch<double>& branch, double shape_exponent,
-                                  double limit, std::size_t count, Block& block) {
+MINDAHL_INLINE void EvaluateBlock(const ScaledBranch& branch, double shape_exponent, double limit,
+                                  std::size_t count, Block& block) {
   const RunConstants run = ConstantsOf(branch, shape_exponent);
   const double start = branch.force;
   const double height = branch.height;
@@ -182,7 +182,7 @@ MINDAHL_INLINE void EvaluateBlock(const ScaledBranch<double>& branch, double sha
   });
 }
 
-MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch<double>& branch,
+MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch,
                                        const Differentiation<DirectShape>::BranchGradient& start,
                                        double shape_exponent, double limit, std::size_t count,
                                        Block& block) {
@@ -236,17 +236,16 @@ namespace {
 // The blocks for one instruction set each. Attributes are no expressions.
 // NOLINTBEGIN(bugprone-macro-parentheses)
 
-#define MINDAHL_BLOCKS(name, attributes)                                                         \
-  attributes void Evaluate##name(const ScaledBranch<double>& branch, double shape_exponent,      \
-                                 double limit, std::size_t count, Block& block) {                \
-    EvaluateBlock(branch, shape_exponent, limit, count, block);                                  \
-  }                                                                                              \
-  attributes void Differentiate##name(const ScaledBranch<double>& branch,                        \
-                                      const Differentiation<DirectShape>::BranchGradient& start, \
-                                      double shape_exponent, double limit, std::size_t count,    \
-                                      Block& block) {                                            \
-    DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                      \
-  }                                                                                              \
+#define MINDAHL_BLOCKS(name, attributes)                                                          \
+  attributes void Evaluate##name(const ScaledBranch& branch, double shape_exponent, double limit, \
+                                 std::size_t count, Block& block) {                               \
+    EvaluateBlock(branch, shape_exponent, limit, count, block);                                   \
+  }                                                                                               \
+  attributes void Differentiate##name(                                                            \
+      const ScaledBranch& branch, const Differentiation<DirectShape>::BranchGradient& start,      \
+      double shape_exponent, double limit, std::size_t count, Block& block) {                     \
+    DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                       \
+  }                                                                                               \
   constexpr BranchKernel k##name = {Evaluate##name, Differentiate##name};
 
 MINDAHL_BLOCKS(Baseline, )
@@ -287,7 +286,7 @@ const BranchKernel& WidestBranchKernel() {
   return widest;
 }
 
-void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponent, double limit,
+void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, double limit,
                         std::span<const double> displacement, std::span<double> t,
                         const BranchKernel& kernel) {
   Block block;
@@ -298,7 +297,7 @@ void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponen
   }
 }
 
-void DifferentiateGeneralRun(const ScaledBranch<double>& branch,
+void DifferentiateGeneralRun(const ScaledBranch& branch,
                              const Differentiation<DirectShape>::BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,

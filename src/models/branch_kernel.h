@@ -24,12 +24,12 @@ std::vector<const BranchKernel*> BranchKernels();
 const BranchKernel& WidestBranchKernel();
 
 /// Computes t of the samples of one run, `limit` being the largest |t|.
-void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponent, double limit,
+void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, double limit,
                         std::span<const double> displacement, std::span<double> t,
                         const BranchKernel& kernel = WidestBranchKernel());
 
 /// Computes t and its derivatives; a column of `gradient` that is empty is not wanted.
-void DifferentiateGeneralRun(const ScaledBranch<double>& branch,
+void DifferentiateGeneralRun(const ScaledBranch& branch,
                              const Differentiation<DirectShape>::BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,

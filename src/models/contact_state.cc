@@ -43,7 +43,7 @@ void ContactState::Reset() {
 }
 
 ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_force) const {
-  const ScaledBranch<double> scaled =
+  const ScaledBranch scaled =
       BranchScaling(*model_, law_, spring_travel_).Start(branch, origin_force);
   return {scaled.origin, scaled.force, scaled.height, scaled.rate, backbone::Reach(scaled.rate)};
 }

@@ -37,18 +37,17 @@ void RequireResponseSizes(const LoadingPath& path, std::span<const double> displ
 
 /// Computes forces over Tc of one run.
 template <typename ShapeOnBranch>
-void EvaluateResponseRun(const ScaledBranch<double>& branch, const ShapeOnBranch& shape,
-                         double limit, std::span<const double> displacement, std::span<double> t) {
+void EvaluateResponseRun(const ScaledBranch& branch, const ShapeOnBranch& shape, double limit,
+                         std::span<const double> displacement, std::span<double> t) {
   models::EvaluateRun(branch, shape, 1.0, limit, displacement, t);
 }
-void EvaluateResponseRun(const ScaledBranch<double>& branch,
-                         const backbone::GeneralShape<double>& shape, double limit,
-                         std::span<const double> displacement, std::span<double> t) {
+void EvaluateResponseRun(const ScaledBranch& branch, const backbone::GeneralShape<double>& shape,
+                         double limit, std::span<const double> displacement, std::span<double> t) {
   EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
 }
 
 template <typename ShapeOnBranch>
-void DifferentiateRun(const ShapeOnBranch& shape, const ScaledBranch<double>& branch,
+void DifferentiateRun(const ShapeOnBranch& shape, const ScaledBranch& branch,
                       const SprungDifferentiation::BranchGradient& branch_gradient, double limit,
                       std::span<const double> displacement, std::span<double> t,
                       const NormalizedGradient& gradient) {
@@ -66,7 +65,7 @@ void DifferentiateRun(const ShapeOnBranch& shape, const ScaledBranch<double>& br
     keep(gradient.log_spring_travel, i, g[kSpring]);
   }
 }
-void DifferentiateRun(const DirectShape& shape, const ScaledBranch<double>& branch,
+void DifferentiateRun(const DirectShape& shape, const ScaledBranch& branch,
                       const RigidDifferentiation::BranchGradient& branch_gradient, double limit,
                       std::span<const double> displacement, std::span<double> t,
                       const NormalizedGradient& gradient) {
@@ -84,7 +83,7 @@ void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,
                               std::vector<double>& per_origin, std::span<double> per_asymmetry) {
   const auto at = [&](std::size_t b, double x) {
     if (path.branches[b].start != BranchStart::kUnloaded) return per_origin[b];
-    const ScaledBranch<double>& branch = branches[b];
+    const ScaledBranch& branch = branches[b];
     const double e = x - branch.origin;
     const auto series = ShapeOn(shape, branch).Differentiate(branch.Normalize(e));
     // Where the two curves are one the sign is that of e, else the branch's direction decides.
@@ -138,7 +137,7 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
     RequireReach(branch_law, branches, displacement);
     for (const BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
-      const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
+      const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
       const auto x = displacement.subspan(run.begin, count);
       EvaluateResponseRun(branch, ShapeOn(shape, branch), ForceLimit(model, path.asymmetry), x,
                           t.subspan(run.begin, count));

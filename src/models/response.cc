@@ -6,9 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -29,56 +26,32 @@ void ThrowBeyondReach(double displacement, double largest, double elastic_limit)
 
 namespace {
 
-template <typename Real>
-void RequireSizes(const LoadingPath& path, std::span<const Real> displacement,
-                  std::span<Real> force) {
+void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
+                  std::span<double> force) {
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   RequireSameSize("displacement", displacement.size(), "loading path",
                   path.runs.empty() ? 0 : path.runs.back().end);
 }
 
-/// Validates a law also for the type of the samples, which Validate does not know.
-template <typename Real>
-void RequireRange(const BranchLaw& law) {
-  Validate(law);
-  if constexpr (std::is_same_v<Real, float>) {
-    const auto require = [](std::string_view quantity, double value) {
-      if (!std::isnormal(Narrow<float>(value)) || value > std::numeric_limits<float>::max()) {
-        ThrowInvalid(quantity, value, "must be a normal float, about 2e-38 to 3e38");
-      }
-    };
-    require("slip force [N]", law.slip_force);
-    require("tangential stiffness over slip force [1/m]",
-            law.tangential_stiffness / law.slip_force);
-    if (law.shape_exponent > backbone::kLargestShapeExponent<float>) {
-      ThrowInvalid("shape exponent [-]", law.shape_exponent, "must be <= 1e10 in single precision");
-    }
-  }
-}
-
-template <typename Real, typename Shape>
+template <typename Shape>
 void EvaluateRuns(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                   const ScaledBranches& branches, const Shape& shape,
-                  std::span<const Real> displacement, std::span<Real> force) {
+                  std::span<const double> displacement, std::span<double> force) {
   for (const BranchRun& run : path.runs) {
     const std::size_t count = run.end - run.begin;
-    const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
-    EvaluateRun(Narrow<Real>(branch), ShapeOn(shape, branch), static_cast<Real>(law.slip_force),
-                static_cast<Real>(ForceLimit(model, path.asymmetry)),
+    const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
+    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, ForceLimit(model, path.asymmetry),
                 displacement.subspan(run.begin, count), force.subspan(run.begin, count));
   }
 }
 
-template <typename Real>
 void Evaluate(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-              std::span<const Real> displacement, std::span<Real> force) {
-  RequireRange<Real>(law);
+              std::span<const double> displacement, std::span<double> force) {
+  Validate(law);
   RequireSizes(path, displacement, force);
-  const ScaledBranches branches = backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-    return ScaleBranches(BranchScaling(model, law), path, shape);
-  });
-  RequireReach(law, branches, displacement);
-  backbone::WithShape(Narrow<Real>(law.shape_exponent), [&](const auto& shape) {
+  backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
+    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law), path, shape);
+    RequireReach(law, branches, displacement);
     EvaluateRuns(model, law, path, branches, shape, displacement, force);
   });
 }
@@ -86,7 +59,7 @@ void Evaluate(const FrictionModel& model, const BranchLaw& law, const LoadingPat
 void EvaluateInSeries(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                       std::span<const double> displacement, std::span<double> force,
                       const SeriesSpring& rig) {
-  RequireRange<double>(law);
+  Validate(law);
   RequireSizes(path, displacement, force);
   const double travel = models::SpringTravel(model, law, rig);
   backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
@@ -153,16 +126,11 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
   }
 }
 
-void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                   std::span<const float> displacement, std::span<float> force) {
-  Evaluate(model, law, path, displacement, force);
-}
-
 void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                               const LoadingPath& path, std::span<const double> displacement,
                               std::span<double> force, std::span<double> gradient,
                               const SeriesSpring& rig) {
-  RequireRange<double>(law);
+  Validate(law);
   RequireSizes(path, displacement, force);
   RequireSameSize("gradient", gradient.size(), "displacement times gradient columns",
                   displacement.size() * kGradientColumns);
@@ -240,7 +208,7 @@ void EvaluateDisplacement(const FrictionModel& model, const BranchLaw& law,
   std::vector<CompliantBranch> branches;
   branches.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
-    const ScaledBranch<double> scaled = scaling.Start(branch, branch.origin / law.slip_force);
+    const ScaledBranch scaled = scaling.Start(branch, branch.origin / law.slip_force);
     const double origin = branch.start == BranchStart::kReversal
                               ? branches[static_cast<std::size_t>(branch.parent)].DisplacementAt(
                                     branch.origin, law.shape_exponent)

@@ -98,8 +98,7 @@ class Differentiation {
   /// Returns ∂t/∂(ln rate, α, δ₀, ln c) at `displacement`, and t itself.
   /// @param shape  that of the branch
   template <typename ShapeOnBranch>
-  static Gradient DifferentiateSample(const ShapeOnBranch& shape,
-                                      const ScaledBranch<double>& branch,
+  static Gradient DifferentiateSample(const ShapeOnBranch& shape, const ScaledBranch& branch,
                                       const BranchGradient& gradient, double displacement,
                                       double& force) {
     const double e = displacement - branch.origin;

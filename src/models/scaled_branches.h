@@ -19,26 +19,23 @@
 namespace mindahl::models {
 
 /// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
-template <typename Real>
 struct ScaledBranch {
-  Real origin = 0;
-  Real force = 0;   // t₀
-  Real height = 1;  // span·v
-  Real rate = 0;    // k [1/m]
+  double origin = 0.0;
+  double force = 0.0;   // t₀
+  double height = 1.0;  // span·v
+  double rate = 0.0;    // k [1/m]
 
   /// Returns rate·|e|, from which φ does not overflow.
-  [[nodiscard]] Real Normalize(Real e) const {
+  [[nodiscard]] double Normalize(double e) const {
     return rate * std::min(std::abs(e), backbone::Reach(rate));
   }
 };
 
-/// Branches are prepared in double for every type of sample: along a history their roundings add
-/// up.
-using ScaledBranches = std::vector<ScaledBranch<double>>;
+using ScaledBranches = std::vector<ScaledBranch>;
 
 /// φ on a branch. A shape is the same on all of them, ...
 template <typename Shape>
-const Shape& ShapeOn(const Shape& shape, const ScaledBranch<double>& /*branch*/) {
+const Shape& ShapeOn(const Shape& shape, const ScaledBranch& /*branch*/) {
   return shape;  // NOLINT(bugprone-return-const-ref-from-parameter): lives as long as the shape
 }
 
@@ -51,7 +48,7 @@ struct SprungShape {
 
 /// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
 /// @throws InvalidArgument where the branch is too stiff for the spring
-inline double SeriesComplianceOn(const ScaledBranch<double>& branch, double spring_travel) {
+inline double SeriesComplianceOn(const ScaledBranch& branch, double spring_travel) {
   const double compliance = branch.height * branch.rate * spring_travel;
   if (!(compliance <= backbone::kLargestSeriesCompliance<double>)) {
     ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
@@ -61,8 +58,7 @@ inline double SeriesComplianceOn(const ScaledBranch<double>& branch, double spri
 }
 
 template <typename Shape>
-backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape,
-                                  const ScaledBranch<double>& branch) {
+backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledBranch& branch) {
   return {shape.contact, SeriesComplianceOn(branch, shape.spring_travel)};
 }
 
@@ -110,8 +106,8 @@ class BranchScaling {
   }
 
   /// @param limit  VirginLimit() of the branch: by as much it is larger, at the same stiffness
-  [[nodiscard]] ScaledBranch<double> Start(const Branch& branch, double origin_force,
-                                           double limit = 1.0) const {
+  [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
+                                   double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
     return {branch.origin, origin_force, scale.span * scale.remaining * limit,
             RateOf(scale) / limit};
@@ -178,7 +174,7 @@ void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const 
   scaled.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
     const auto force_of_parent = [&](std::size_t parent_index) {
-      const ScaledBranch<double>& parent = scaled[parent_index];
+      const ScaledBranch& parent = scaled[parent_index];
       const double e = branch.origin - parent.origin;
       const double phi = ShapeOn(shape, parent).Force(parent.Normalize(e));
       return parent.force + std::copysign(parent.height * phi, e);
@@ -197,53 +193,36 @@ ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& pa
   return scaled;
 }
 
-/// To single precision or none. What does not fit it is out of reach: a force that never comes, a
-/// branch that is vertical.
-template <typename Real>
-Real Narrow(double value) {
-  constexpr double kLargest = static_cast<double>(std::numeric_limits<Real>::max());
-  return static_cast<Real>(std::clamp(value, -kLargest, kLargest));
-}
-
-template <typename Real>
-ScaledBranch<Real> Narrow(const ScaledBranch<double>& branch) {
-  return {Narrow<Real>(branch.origin), Narrow<Real>(branch.force), Narrow<Real>(branch.height),
-          Narrow<Real>(branch.rate)};
-}
-
 /// @throws InvalidArgument always
 [[noreturn]] void ThrowBeyondReach(double displacement, double largest, double elastic_limit);
 
 /// For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
-template <typename Real>
-void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
-                  std::span<const Real> displacement) {
+inline void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
+                         std::span<const double> displacement) {
   if (law.shape_exponent <= 1) return;
   double farthest = 0.0;
-  for (const Real at : displacement)
-    farthest = std::max(farthest, std::abs(static_cast<double>(at)));
+  for (const double at : displacement) farthest = std::max(farthest, std::abs(at));
   double steepest = 0.0;
   double farthest_origin = 0.0;
-  for (const ScaledBranch<double>& branch : branches) {
+  for (const ScaledBranch& branch : branches) {
     steepest = std::max(steepest, branch.rate);
     farthest_origin = std::max(farthest_origin, std::abs(branch.origin));
   }
   farthest += farthest_origin;
-  if (farthest > static_cast<double>(backbone::Reach(Narrow<Real>(steepest)))) {
-    ThrowBeyondReach(farthest, static_cast<double>(backbone::kLargestDisplacement<Real>),
-                     1 / steepest);
+  if (farthest > backbone::Reach(steepest)) {
+    ThrowBeyondReach(farthest, backbone::kLargestDisplacement<double>, 1 / steepest);
   }
 }
 
 /// Computes the forces of one run; the loop has no branch or call, and vectorises where φ does.
-template <typename Real, typename Shape>
-void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip_force, Real limit,
-                 std::span<const Real> displacement, std::span<Real> force) {
-  const Real reach = backbone::Reach(branch.rate);
+template <typename Shape>
+void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_force, double limit,
+                 std::span<const double> displacement, std::span<double> force) {
+  const double reach = backbone::Reach(branch.rate);
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const Real e = displacement[i] - branch.origin;
-    const Real phi = shape.Force(branch.rate * std::min(std::abs(e), reach));
-    const Real t = branch.force + std::copysign(branch.height * phi, e);
+    const double e = displacement[i] - branch.origin;
+    const double phi = shape.Force(branch.rate * std::min(std::abs(e), reach));
+    const double t = branch.force + std::copysign(branch.height * phi, e);
     force[i] = slip_force * std::clamp(t, -limit, limit);
   }
 }

@@ -532,8 +532,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
   std::string rest =
       tables.rest + Wrapped(WideIntervalStatement(fit, report.units), 2) + OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
-  rest += "\n" + FitText(report) + MeasuredText(report) +
-          ResidualText(report);
+  rest += "\n" + FitText(report) + MeasuredText(report) + ResidualText(report);
   // For an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return text + rest + NotesText(report);

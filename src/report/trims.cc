@@ -35,8 +35,8 @@ Warning NoteOf(const Report& report, std::size_t r) {
   }
   for (const TrimmedPart& part : trim.parts) parts.push_back(TrimmedPartInWords(part));
   if (parts.empty()) {
-    return {"nothing_trimmed", fmt::format("--trim auto leaves nothing out of {}: it has no rest",
-                                           report.files[r])};
+    return {"nothing_trimmed",
+            fmt::format("--trim auto leaves nothing out of {}: it has no rest", report.files[r])};
   }
   const std::string text =
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));

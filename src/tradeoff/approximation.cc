@@ -168,15 +168,14 @@ struct Price {
 
 // In the order of Operation, by scripts/calibrate_costs.py.
 constexpr std::array kPrices = {
-    Price{Operation::kSample, 1.5},     Price{Operation::kPlace, 4.1},
-    Price{Operation::kReversal, 100.0}, Price{Operation::kLinear, 0.0},  // hidden by its place
-    Price{Operation::kRoot, 1.4},       Price{Operation::kPower, 17.0},
-    Price{Operation::kNarrowing, 0.4},  Price{Operation::kElement, 0.35},
-    Price{Operation::kSum, 4.0},        Price{Operation::kLookUp, 2.3},
-    Price{Operation::kStep, 1.8},       Price{Operation::kStage, 1.8},
-    Price{Operation::kTrial, 40.0},     Price{Operation::kCubicRoot, 34.0},
-    Price{Operation::kRatePower, 31.0}, Price{Operation::kExponential, 34.0},
-    Price{Operation::kIteration, 14.0},
+    Price{Operation::kSample, 1.5},       Price{Operation::kPlace, 4.1},
+    Price{Operation::kReversal, 100.0},   Price{Operation::kLinear, 0.0},  // hidden by its place
+    Price{Operation::kRoot, 1.4},         Price{Operation::kPower, 17.0},
+    Price{Operation::kElement, 0.35},     Price{Operation::kSum, 4.0},
+    Price{Operation::kLookUp, 2.3},       Price{Operation::kStep, 1.8},
+    Price{Operation::kStage, 1.8},        Price{Operation::kTrial, 40.0},
+    Price{Operation::kCubicRoot, 34.0},   Price{Operation::kRatePower, 31.0},
+    Price{Operation::kExponential, 34.0}, Price{Operation::kIteration, 14.0},
 };
 static_assert(kPrices.size() == methods::kOperations);
 

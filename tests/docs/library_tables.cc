@@ -128,13 +128,10 @@ Json Columns() {
 }  // namespace mindahl
 
 int main() {
-  const mindahl::report::Json tables = {{"fields", mindahl::FieldsTable()},
-                                        {"terms", mindahl::TermsTable()},
-                                        {"thresholds", mindahl::ThresholdsTable()},
-                                        {"findings", mindahl::FindingsTable()},
-                                        {"causes", mindahl::CausesTable()},
-                                        {"models", mindahl::ModelsTable()},
-                                        {"flags", mindahl::FlagsTable()},
-                                        {"columns", mindahl::Columns()}};
+  const mindahl::report::Json tables = {
+      {"fields", mindahl::FieldsTable()},         {"terms", mindahl::TermsTable()},
+      {"thresholds", mindahl::ThresholdsTable()}, {"findings", mindahl::FindingsTable()},
+      {"causes", mindahl::CausesTable()},         {"models", mindahl::ModelsTable()},
+      {"flags", mindahl::FlagsTable()},           {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

@@ -108,9 +108,8 @@ TEST(FindHeavyTails, OfOneStrayHaveTheChanceOfOneOrMore) {
   Generator generator(3);
   std::vector<FittedSample> samples;
   for (std::size_t i = 0; i < kSamples; ++i) {
-    samples.push_back({.response = 1e-3 * static_cast<double>(i),
-                       .residual = Normal(generator),
-                       .counts = true});
+    samples.push_back(
+        {.response = 1e-3 * static_cast<double>(i), .residual = Normal(generator), .counts = true});
   }
   samples[100].residual = 40.0;
   const auto count = static_cast<double>(kSamples);

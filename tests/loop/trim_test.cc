@@ -10,7 +10,7 @@ namespace {
 
 using models::BranchLaw;
 
-constexpr std::size_t kCycle = 100;  // samples
+constexpr std::size_t kCycle = 100;            // samples
 constexpr double kReach = 2e-6;                // [m], 1.3 times gross slip
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};  // δc = 1.5 µm
 

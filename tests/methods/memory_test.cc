@@ -46,7 +46,6 @@ TEST(ReturnPoint, AClosedLoopLeavesNothingBehind) {
   const std::vector<double> with_loop = {0.4, 0.9, 0.5, 0.7, 0.45, 0.62, 0.3, 0.55, 0.2, -0.1};
   const std::vector<double> without = {0.4, 0.9, 0.5, 0.45, 0.3, 0.2, -0.1};
   for (const Method& method : Methods()) {
-    if (method.name == "exact-float") continue;  // rounded by sample
     const auto last = [&](const std::vector<double>& drive) {
       return RespondBy(method.name, "mindlin", kLaw, {.displacement = drive},
                        {.steps = method.default_steps})

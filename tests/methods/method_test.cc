@@ -117,7 +117,7 @@ TEST(Dopri5, CrossesAStepOfAnyLength) {
   }
 }
 
-// --- exact and exact-float ------------------------------------------------------------------
+// --- exact ------------------------------------------------------------------
 
 std::vector<History> NamedHistories(const BranchLaw& law) {
   const double unit = ReferenceDisplacement(law);
@@ -145,26 +145,6 @@ TEST(Exact, IsTheLawAsDefinedInHundredDigits) {
       EXPECT_LE(LargestDifference(exact, defined), kAccuracy * Largest(defined))
           << "alpha = " << shape_exponent << ", history " << number;
       ++number;
-    }
-  }
-}
-
-TEST(ExactFloat, KeepsItsBoundOnceTheDisplacementIsRounded) {
-  constexpr double kBound = 2e-6;  // of Tc, as models/response.h states
-  constexpr double kRounding = 0x1p-24;
-  for (const double shape_exponent : kShapeExponents) {
-    const BranchLaw law{3.0, shape_exponent, 0.5};
-    for (const History& history : NamedHistories(law)) {
-      History rounded = history;
-      for (double& at : rounded) at = static_cast<double>(static_cast<float>(at));
-      const auto narrow = RespondBy("exact-float", "mindlin-dahl", law, {.displacement = history});
-      const auto of_rounded = RespondBy("exact", "mindlin-dahl", law, {.displacement = rounded});
-      const auto exact = RespondBy("exact", "mindlin-dahl", law, {.displacement = history});
-      EXPECT_LE(LargestDifference(narrow, of_rounded), kBound * law.slip_force);
-      // Slopes are at most σ, and the sample and the reversal move.
-      EXPECT_LE(
-          LargestDifference(narrow, exact),
-          kBound * law.slip_force + 2 * kRounding * law.tangential_stiffness * Largest(history));
     }
   }
 }

@@ -29,7 +29,6 @@ TEST(Operations, OfTheClosedFormAreABranchLawASampleAndABranch) {
   EXPECT_EQ(mindlin[Operation::kPower], 0);
   EXPECT_EQ(Count("exact", {1, 0.0, 1})[Operation::kLinear], 13);
   EXPECT_EQ(Count("exact", {1, 0.6, 1})[Operation::kPower], 13);
-  EXPECT_EQ(Count("exact-float", kMindlin)[Operation::kNarrowing], 10);
   EXPECT_EQ(Count("table", kMindlin, 64)[Operation::kLookUp], 13);
   EXPECT_EQ(Count("table", kMindlin, 64)[Operation::kRoot], 0);
   // Of Dahl's own law each branch starts with another stiffness.

@@ -18,7 +18,7 @@ using Reference = long double;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// t = φ(δ), δ >= 0, with ∂t/∂ln κ = yφ' and ∂t/∂δ₀ = −φ'.
-const ScaledBranch<double> kBranch{.origin = 0, .force = 0, .height = 1, .rate = 1};
+const ScaledBranch kBranch{.origin = 0, .force = 0, .height = 1, .rate = 1};
 Gradient GradientOfBranch() {
   Gradient gradient;
   gradient.log_rate[kRate] = 1;

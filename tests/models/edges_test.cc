@@ -209,34 +209,6 @@ TEST(Edges, SteadyLoopsAreRightFromDenormalToHugeAmplitudes) {
   }
 }
 
-TEST(Edges, InSinglePrecisionTheLawMustFitToo) {
-  const std::vector<float> history = {0.0F, 1.0F, -1.0F};
-  const LoadingPath path = PathOf(Model("mindlin-dahl"), History(history.begin(), history.end()));
-  std::vector<float> force(history.size());
-  const auto refusal = [&](const BranchLaw& law) {
-    return Refusal([&] {
-      EvaluateForce(Model("mindlin-dahl"), law, path, std::span<const float>(history), force);
-    });
-  };
-  EXPECT_EQ(refusal({1.0, 0.5, 1.0}), "");
-  EXPECT_EQ(refusal({1e15, 0.5, 1e-15}), "");
-  EXPECT_EQ(refusal({1.0, 1e-300, 1.0}), "");  // Jenkins' to single precision
-  EXPECT_THAT(refusal({1e-40, 0.5, 1e-40}), HasSubstr("slip force [N] = 1e-40 is invalid"));
-  EXPECT_THAT(refusal({1e39, 0.5, 1e39}), HasSubstr("must be a normal float"));
-  EXPECT_THAT(refusal({1e30, 0.5, 1e-30}), HasSubstr("stiffness over slip force [1/m]"));
-  EXPECT_THAT(refusal({1.0, 1e11, 1.0}), HasSubstr("in single precision"));
-  // Displacements at the ends of float.
-  for (const float x :
-       {std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::max() / 4}) {
-    const std::vector<float> one = {x};
-    std::vector<float> answer(1);
-    EvaluateForce(Model("mindlin-dahl"), {1.0, 0.5, 1.0},
-                  PathOf(Model("mindlin-dahl"), History{static_cast<double>(x)}),
-                  std::span<const float>(one), answer);
-    EXPECT_EQ(answer[0], x < 1 ? x : 1.0F);
-  }
-}
-
 TEST(Edges, ExcitationsRefuseWhatNoDoubleHolds) {
   EXPECT_THAT(Refusal([] { MakeExcitation({.amplitude = 1.0, .frequency = 1e-308}); }),
               ::testing::AllOf(HasSubstr("cycles over frequency"), HasSubstr("1e300")));

@@ -295,37 +295,6 @@ TEST(MasingMemory, RepeatsALoopBitForBitAfterTenMillionReversals) {
   }
 }
 
-TEST(SinglePrecision, StaysWithinItsBoundHoweverManyReversals) {
-  // response.h: 16·2⁻²³ of Tc, against double on the same displacements.
-  constexpr double kBound = 16 * static_cast<double>(std::numeric_limits<float>::epsilon());
-  constexpr double kUseful = kBound / 40;  // a bound that nothing comes near would prove little
-  Generator generator(34);
-  for (const FrictionModel& model : FrictionModels()) {
-    double worst = 0.0;
-    for (int i = 0; i < 400; ++i) {
-      const std::size_t samples = i == 0 ? 100'000 : 50;
-      const History drawn = i % 2 == 0 ? testing::RandomWalk(generator, samples, 0.5)
-                                       : testing::WhiteSequence(generator, samples, 2.0);
-      const std::vector<float> history(drawn.begin(), drawn.end());
-      const History widened(history.begin(), history.end());
-      const BranchLaw law{1.3, model.shape_exponent.value_or(Uniform(generator, 0.0, 2.0)), 0.7};
-      const LoadingPath path = PathOf(model, widened);
-      std::vector<float> force(history.size());
-      std::vector<double> expected(history.size());
-      EvaluateForce(model, law, path, std::span<const float>(history), force);
-      EvaluateForce(model, law, path, widened, expected);
-      for (std::size_t k = 0; k < force.size(); ++k) {
-        worst = std::max(worst, std::abs(static_cast<double>(force[k]) - expected[k]));
-        if (model.bounded) {
-          ASSERT_LE(force[k], static_cast<float>(law.slip_force));
-        }
-      }
-    }
-    EXPECT_LE(worst, kBound * 0.7) << model.name;
-    EXPECT_GE(worst, kUseful * 0.7) << model.name;
-  }
-}
-
 TEST(DahlsLaw, IsSteeperAfterAReversalThanMasings) {
   // Eq. 12: σ(1 + T*/Tc)^α against σ.
   constexpr double kStep = 1e-7;

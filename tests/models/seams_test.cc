@@ -199,28 +199,5 @@ TEST(Seams, AreNotSeenWhereThePeakForceReachesTheSlipForce) {
   }
 }
 
-TEST(Seams, AreNotSeenBySinglePrecision) {
-  constexpr float kStep = 2 * 8 * std::numeric_limits<float>::epsilon();
-  for (const double alpha : kShapeExponents) {
-    const auto narrow = static_cast<float>(alpha);
-    backbone::WithShape(narrow, [&](const auto& shape) {
-      for (const double centre : Switches(alpha)) {
-        auto y = static_cast<float>(centre);
-        if (!(y < backbone::kLargestDisplacement<float>)) continue;
-        for (int i = 0; i < kDoubles; ++i) y = std::nextafter(y, 0.0F);
-        float before = shape.Force(y);
-        for (int i = -kDoubles; i < kDoubles; ++i) {
-          y = std::nextafter(y, std::numeric_limits<float>::infinity());
-          const float force = shape.Force(y);
-          EXPECT_GE(force, before * (1 - kStep)) << alpha << ' ' << y;
-          EXPECT_LE(force, before * (1 + kStep) + (y - std::nextafter(y, 0.0F))) << alpha;
-          EXPECT_LE(force, 1.0F + kStep);
-          before = force;
-        }
-      }
-    });
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::models::seams_test

@@ -84,23 +84,5 @@ TEST(AccuracyBounds, DahlsSteadyLoopHoldsItsOwn) {
   }
 }
 
-TEST(AccuracyBounds, SinglePrecisionHoldsOverTheBoxWhereFloatReaches) {
-  // response.h: 16 ε of Tc; on the virgin curve, where nothing adds up, half of it and relative.
-  constexpr double kBound = 8.0;
-  constexpr double kLargest = 1e37;
-  constexpr double kSmallest = 1e-37;
-  std::size_t points = 0;
-  accuracy::ForEveryPoint([&](const BranchLaw& law, double x) {
-    if (x > kLargest || x < kSmallest) return;
-    const auto narrow = static_cast<float>(x);
-    const accuracy::Exact exact = accuracy::EvaluateExactly(law, static_cast<double>(narrow));
-    if (exact.force < static_cast<long double>(kSmallest)) return;
-    EXPECT_LE(accuracy::RelativeError(accuracy::VirginForce(law, narrow), exact.force), kBound)
-        << Describe(law, x);
-    ++points;
-  });
-  EXPECT_GT(points, 8'000U);
-}
-
 }  // namespace
 }  // namespace mindahl::models::accuracy_bounds_test

@@ -136,18 +136,5 @@ TEST(BranchLawTable, KernelDerivativesKeepTheDigitsOfTheExponential) {
   });
 }
 
-TEST(BranchLawTable, SinglePrecisionKernelKeepsSevenDigits) {
-  // As in double: a few roundings of 2⁻²⁴; α and y are rounded to float first, which moves f by
-  // (∂ln f/∂α)·α and (∂ln f/∂ln y), both <= 1 in size away from slip.
-  constexpr double kFloatForce = 8 * static_cast<double>(std::numeric_limits<float>::epsilon());
-  ExpectWithin(kFloatForce, [](const BranchLaw& law, const Row& row) {
-    if (law.shape_exponent > 0 && law.shape_exponent < 1e-30) return 0.0;  // no float
-    const auto y = static_cast<float>(row.y);
-    const float force = backbone::WithShape(static_cast<float>(law.shape_exponent),
-                                            [&](const auto& shape) { return shape.Force(y); });
-    return Error(static_cast<double>(force), row.force, row.force);
-  });
-}
-
 }  // namespace
 }  // namespace mindahl::models::branch_law_table_test

@@ -50,8 +50,7 @@ TEST(Json, NamesTheParameterForWhichThereIsNoCorrelation) {
 
 TEST(Json, HasEachPartThatIsTrimmed) {
   report::ReportInput input = MadeInput();
-  input.trims = {{.samples = 9,
-                  .parts = {{.first = 1, .last = 5, .at_start = true}}}};
+  input.trims = {{.samples = 9, .parts = {{.first = 1, .last = 5, .at_start = true}}}};
   const json trimmed = Parsed(std::move(input))["input"]["trimmed"];
   ASSERT_EQ(trimmed.size(), 1U);
   EXPECT_EQ(trimmed[0], json({{"file", "loop_1.csv"},

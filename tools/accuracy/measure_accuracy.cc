@@ -26,8 +26,6 @@ using namespace mindahl;
 using namespace mindahl::loop;
 using namespace mindahl::models;
 
-constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
-
 constexpr std::array<const char*, 4> kRegions = {"λ < 10⁻⁶", "10⁻⁶ … 0.9", "0.9 … 1.1", "> 1.1"};
 
 /// λ = x/δc for α < 1, y from there on.
@@ -100,14 +98,6 @@ void MeasureBox(Table& table) {
       table.Add(measurement.function, "double", measurement.scale, measurement.bound, law, x,
                 measurement.error(law, x, exact));
     }
-    constexpr double kLargest = 1e37;
-    constexpr double kSmallest = 1e-37;
-    if (x > kLargest || x < kSmallest) return;
-    const auto narrow = static_cast<float>(x);
-    const accuracy::Exact narrowed = accuracy::EvaluateExactly(law, static_cast<double>(narrow));
-    if (narrowed.force < static_cast<long double>(kSmallest)) return;
-    table.Add("EvaluateForce", "float", "value", 8, law, x,
-              accuracy::RelativeError(accuracy::VirginForce(law, narrow), narrowed.force));
   });
 }
 
@@ -130,78 +120,6 @@ void MeasureDahlLoops(Table& table) {
   }
 }
 
-using Vector = std::array<double, 3>;
-using Matrix = std::array<Vector, 3>;
-
-/// Solves A·x = b by Gaussian elimination with pivoting; A is a 3 × 3 normal matrix.
-Vector Solve(Matrix a, Vector b) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k; i < 3; ++i) {
-      if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
-    }
-    std::swap(a[k], a[pivot]);
-    std::swap(b[k], b[pivot]);
-    for (std::size_t i = k + 1; i < 3; ++i) {
-      const double factor = a[i][k] / a[k][k];
-      for (std::size_t j = k; j < 3; ++j) a[i][j] -= factor * a[k][j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (std::size_t k = 3; k-- > 0;) {
-    for (std::size_t j = k + 1; j < 3; ++j) b[k] -= a[k][j] * b[j];
-    b[k] /= a[k][k];
-  }
-  return b;
-}
-
-/// What rounding forces to float does to a fit of one steady cycle of 400 samples: the worst and
-/// the standard error of ln σ, α and ln Tc over many slightly different amplitudes, to first order.
-void PrintFitFloor() {
-  constexpr std::size_t kSamples = 400;
-  constexpr int kAmplitudes = 200;
-  constexpr std::uint64_t kSeed = 20170648;
-  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
-  const BranchLaw law{4.839e8, 1.0 / 3.0 + 1e-3, 30.0};
-  std::mt19937_64 generator(kSeed);
-  fmt::print("| λ | T*/Tc | σ, relative | α | Tc, relative |\n|---|---|---|---|---|\n");
-  for (const double lambda : {0.01, 0.03, 0.1, 0.3, 0.5, 0.8, 1.0, 1.2}) {
-    Vector square{};
-    double peak = 0.0;
-    for (int i = 0; i < kAmplitudes; ++i) {
-      const double jitter = 1 + 0.01 * static_cast<double>(generator() >> 11) * 0x1p-53;
-      const Excitation drive =
-          MakeExcitation({.amplitude = lambda * jitter * GrossSlipDisplacement(law),
-                          .cycles = 1.0,
-                          .samples_per_cycle = kSamples});
-      const std::vector<float> narrow(drive.displacement.begin(), drive.displacement.end());
-      const std::vector<double> x(narrow.begin(), narrow.end());
-      const LoadingPath path =
-          MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {.state = InitialState::kSteady});
-      std::vector<float> narrow_force(x.size());
-      std::vector<double> force(x.size());
-      std::vector<double> gradient(x.size() * kGradientColumns);
-      EvaluateForce(model, law, path, std::span<const float>(narrow), narrow_force);
-      EvaluateForceAndGradient(model, law, path, x, force, gradient);
-      Matrix normal{};
-      Vector right{};
-      for (std::size_t k = 0; k < x.size(); ++k) {
-        const double error = static_cast<double>(narrow_force[k]) - force[k];
-        const double* row = &gradient[k * kGradientColumns];
-        for (std::size_t p = 0; p < 3; ++p) {
-          right[p] += row[p] * error;
-          for (std::size_t q = 0; q < 3; ++q) normal[p][q] += row[p] * row[q];
-        }
-      }
-      const Vector change = Solve(normal, right);
-      for (std::size_t p = 0; p < 3; ++p) square[p] += change[p] * change[p] / kAmplitudes;
-      peak = *std::ranges::max_element(force) / law.slip_force;
-    }
-    fmt::print("| {:g} | {:.3g} | {:.1e} | {:.1e} | {:.1e} |\n", lambda, peak, std::sqrt(square[0]),
-               std::sqrt(square[1]), std::sqrt(square[2]));
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -212,11 +130,8 @@ int main(int argc, char** argv) {
   Table table;
   MeasureBox(table);
   MeasureDahlLoops(table);
-  fmt::print("Worst errors, in ε of the type ({:.2g} and {:.2g}):\n\n",
-             std::numeric_limits<double>::epsilon(), kFloatEpsilon);
+  fmt::print("Worst errors, in ε = {:.2g}:\n\n", std::numeric_limits<double>::epsilon());
   table.Print();
-  fmt::print("\nRoot mean square error of fitted parameters by forces in float:\n\n");
-  PrintFitFloor();
   std::ofstream out(argv[1]);
   out << "# function,alpha,lambda,error in units of epsilon; written by tools/accuracy\n";
   table.Write(out);

@@ -101,12 +101,10 @@ double RelativeError(Real value, long double reference) {
 }
 
 /// One sample on the virgin curve through the library's public steps.
-template <typename Real>
-Real VirginForce(const models::BranchLaw& law, Real x) {
-  const double path_x = static_cast<double>(x);
+inline double VirginForce(const models::BranchLaw& law, double x) {
   const models::LoadingPath path =
-      models::MakeLoadingPath({&path_x, 1}, {}, models::Memory::kReturnPoint, {});
-  Real force = 0;
+      models::MakeLoadingPath({&x, 1}, {}, models::Memory::kReturnPoint, {});
+  double force = 0.0;
   models::EvaluateForce(*models::FindFrictionModel("mindlin-dahl"), law, path,
                         std::span<const Real>(&x, 1), std::span<Real>(&force, 1));
   return force;

@@ -68,8 +68,7 @@ struct Method {
                 const Resolution& resolution, const Drive& drive, OperationCount& count) = nullptr;
 };
 
-/// - exact, exact-float: the closed form (models/response.h), in double and in single precision,
-///   which rounds the displacement as well: that moves T by up to 1.2e-7·σ·max|δ| more
+/// - exact: the closed form (models/response.h)
 /// - euler, rk4: explicit, fixed steps of the displacement; orders 1 and 4
 /// - dopri5: Dormand–Prince 5(4), error-controlled, `steps` its least number a sample; order 5 in
 ///   these where they are what limits it
@@ -100,7 +99,6 @@ enum class Operation : std::size_t {
   kLinear,       ///< the branch law, α = 0
   kRoot,         ///< the branch law, α = 1/3: a square root and a division
   kPower,        ///< the branch law, any other α: two transcendentals
-  kNarrowing,    ///< a sample to single precision and back
   kElement,      ///< an element of Iwan's, moved on
   kSum,          ///< the sum of their forces
   kLookUp,       ///< the branch law from a table

@@ -52,14 +52,6 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig = {});
 
-/// Computes the same in single precision: float samples and forces, branches prepared in double.
-/// @param path  as from MakeLoadingPath on the same displacements, widened to double
-/// @throws InvalidArgument also where Tc or σ/Tc is no normal float, or α > 1e10
-/// Absolute error below 16·2⁻²³·Tc = 2e-6·Tc, however many reversals; docs/accuracy.md says where
-/// that is too coarse for fitting.
-void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                   std::span<const float> displacement, std::span<float> force);
-
 /// Columns of the gradient that EvaluateForceAndGradient writes.
 enum GradientColumn : std::size_t {
   kPerLogStiffness = 0,   ///< ∂T/∂ln σ [N]

@@ -39,9 +39,9 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 /// Holds what a fit's adequacy is judged by.
 struct AdequacyEvidence {
   const AdequacyTest& test;
-  std::span<const DepartureFit> causes;             ///< result of CausesOf()
+  std::span<const DepartureFit> causes;          ///< result of CausesOf()
   const std::optional<HeavyTails>& heavy_tails;  ///< result of FindHeavyTails()
-  bool ends_at_limit = false;                       ///< the search ended at a limit of its own
+  bool ends_at_limit = false;                    ///< the search ended at a limit of its own
 };
 
 /// Returns the correlation of two columns of one size; 0 where one is constant.

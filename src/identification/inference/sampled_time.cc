@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-
 namespace mindahl::identification {
 
 Neighbours NeighboursOf(const ScaledRecord& record) {

@@ -32,11 +32,11 @@ CompressedResidual<P>::CompressedResidual(const Eigen::MatrixXd& normal,
   }
   const Eigen::LDLT<Square> factors(correlation);
   const Vector pivots = factors.vectorD();
-  Vector explained = factors.transpositionsP() * slopes;
+  const Eigen::PermutationMatrix<P, P> permutation(factors.transpositionsP());
+  Vector explained = permutation * slopes;
   factors.matrixL().solveInPlace(explained);
-  // P from the left: what Eigen's transpositions do from the right is Pᵀ.
-  Square permuted = norms.asDiagonal();
-  permuted = factors.transpositionsP() * permuted;
+  const Square scales = norms.asDiagonal();
+  const Square permuted = permutation * scales;
   jacobian_.setZero(count + 1, count);
   jacobian_.topRows(count) = factors.matrixU() * permuted;
   residual_.setZero(count + 1);

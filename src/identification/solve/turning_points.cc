@@ -99,8 +99,7 @@ double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal) {
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot) {
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-  auto turned = std::make_unique<TurnedRecords>(
-      TurnedRecords{data.WithoutRecords(memory), {}});
+  auto turned = std::make_unique<TurnedRecords>(TurnedRecords{data.WithoutRecords(memory), {}});
   turned->data.counted = data.counted;
   turned->data.records.reserve(data.records.size());
   turned->reversals.resize(data.records.size());
