@@ -155,8 +155,8 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
 
 /// Takes Tc off the parameters that a limit of the search or the choice of a law leaves open, where
 /// its interval covers what a loop that slides has carried: neither moves that.
-void KeepMeasuredSlipForce(const Thresholds& thresholds, FitResult& result) {
-  if (!CoversMeasuredGap(thresholds, result)) return;
+void KeepMeasuredSlipForce(FitResult& result) {
+  if (!CoversMeasuredGap(result)) return;
   for (Finding& finding : result.findings) {
     constexpr std::array<std::string_view, 3> kOfModel = {"search_limit", "law_undecided",
                                                           "other_law_fits_better"};
@@ -294,8 +294,8 @@ void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResul
       CompareLaws(fitted.problem, fitted.solution, result, attempt.options, attempt.buffers);
   result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
-  result.parameters[kSlipForce] = CoverOtherLaw(attempt.options.thresholds, result);
-  KeepMeasuredSlipForce(attempt.options.thresholds, result);
+  result.parameters[kSlipForce] = CoverOtherLaw(result);
+  KeepMeasuredSlipForce(result);
 }
 
 }  // namespace
@@ -324,7 +324,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
-    KeepMeasuredSlipForce(thresholds, result);
+    KeepMeasuredSlipForce(result);
   }
   result.parameters[kStiffness] = CoverSlipFactor(
       problem, solution, std::move(result.parameters[kStiffness]), buffers.response);

@@ -71,9 +71,8 @@ std::vector<double> RoughVelocity(const RecordView& record) {
 /// @param before  covariates that are candidates
 std::string_view ObstacleTo(const loop::Covariate& covariate, const RecordView& record,
                             const FitResult& law, std::span<const std::string> before) {
-  constexpr double kSameChannel = 0.95;
   const auto is_channel = [&](std::span<const double> other) {
-    return std::abs(ColumnCorrelation(covariate.values, other)) > kSameChannel;
+    return AreOneChannel(covariate.values, other);
   };
   if (is_channel(record.displacement) || is_channel(record.force) ||
       is_channel(record.time.empty() ? record.displacement : record.time) ||
@@ -209,7 +208,7 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
                          FitResult& fit) {
   constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
   const loop::LoopFacts& facts = fit.WidestRecord().facts;
-  const bool slides = SlidesOverMostOfStroke(facts, thresholds);
+  const bool slides = loop::Slides(facts);
   for (const Alternative& alternative : alternatives) {
     for (const auto& [name, difference] : alternative.law) {
       const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
@@ -627,7 +626,7 @@ bool Selection::Accept(const CandidateModel& model) {
     return false;
   }
   if (StopsAtLimit(fit) && !StopsAtLimit(base_.fit)) return false;
-  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !is_nearly_white) return true;
+  if (loop::Slides(facts_) && !is_nearly_white) return true;
   ++result_.estimates;
   Fitter fitter(ContinuedFrom(fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);

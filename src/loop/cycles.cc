@@ -149,20 +149,6 @@ double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compar
 
 int SignOf(double value) { return (value > 0) - (value < 0); }
 
-/// Returns the standard deviation of white noise by the median of second differences, which turns
-/// and knees of a loop do not move: of normal values a median is 0.6745 σ, of their second
-/// differences √6 σ.
-double NoiseOf(std::span<const double> values, std::pmr::memory_resource* scratch) {
-  if (values.size() < 3) return 0.0;
-  constexpr double kMedianOfNormal = 0.6744897501960817;
-  std::pmr::vector<double> differences(scratch);
-  differences.reserve(values.size() - 2);
-  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
-    differences.push_back(std::abs(values[i + 1] - 2 * values[i] + values[i - 1]));
-  }
-  return Median(differences) / (kMedianOfNormal * std::sqrt(6.0));
-}
-
 /// Returns Σ((v[i+1] − v[i−1])/2)², by which noise of the other channel enters ∮F dx.
 double SquaredSteps(std::span<const double> values) {
   double sum = 0.0;
@@ -178,9 +164,9 @@ double SquaredSteps(std::span<const double> values) {
 double NoiseOfMeanEnergy(const RecordView& record, std::size_t cycles,
                          std::pmr::memory_resource* scratch) {
   const double of_force =
-      NoiseOf(record.force, scratch) * std::sqrt(SquaredSteps(record.displacement));
+      NoiseByDifferences(record.force, 2, scratch) * std::sqrt(SquaredSteps(record.displacement));
   const double of_displacement =
-      NoiseOf(record.displacement, scratch) * std::sqrt(SquaredSteps(record.force));
+      NoiseByDifferences(record.displacement, 2, scratch) * std::sqrt(SquaredSteps(record.force));
   return std::hypot(of_force, of_displacement) / static_cast<double>(cycles);
 }
 

@@ -116,17 +116,11 @@ double EstimateDisplacementNoise(std::span<const double> displacement) {
 
 double EstimateDisplacementNoise(std::span<const double> displacement,
                                  std::pmr::memory_resource* scratch) {
-  constexpr double kStandardDeviationPerMedian = 1.482602218505602;  // 1/Φ⁻¹(3/4)
-  std::pmr::vector<double> x(scratch);
-  x.reserve(displacement.size());
-  std::ranges::unique_copy(displacement, std::back_inserter(x));
-  if (x.size() < 4) return 0.0;
-  for (std::size_t i = x.size() - 1; i >= 3; --i) {
-    x[i] = std::abs(x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3]);
-  }
-  const double median = boost::math::statistics::median(x.begin() + 3, x.end());
-  // The variance of a third difference is (1 + 9 + 9 + 1) times the noise's.
-  const double noise = kStandardDeviationPerMedian * median / std::sqrt(20.0);
+  std::pmr::vector<double> anew(scratch);  // without repeats
+  anew.reserve(displacement.size());
+  std::ranges::unique_copy(displacement, std::back_inserter(anew));
+  if (anew.size() < 4) return 0.0;
+  const double noise = NoiseByDifferences(anew, 3, scratch);
   return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/probability.h"
+#include "loop/rules.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -492,15 +493,12 @@ std::optional<double> EnergyOverEvenGap(const LoopFacts& facts) {
 }
 
 bool Slides(const LoopFacts& facts) {
-  constexpr double kSliding = 0.75;
-  if (!facts.closed) return false;
-  if (facts.energy_ratio > kSliding) return true;
+  const SlidingRules rules;
+  const bool has_gap = facts.half_gap && *facts.half_gap > rules.gap * facts.peak_force;
+  if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
-  constexpr double kSameGap = 0.1;  // off the energy of a gap that is the same over the stroke
-  constexpr double kOfPeak = 0.5;
-  if (!facts.half_gap || !(*facts.half_gap > kOfPeak * facts.peak_force)) return false;
-  const std::optional<double> ratio = EnergyOverEvenGap(facts);
-  return ratio && std::abs(*ratio - 1) < kSameGap;
+  const std::optional<double> even = EnergyOverEvenGap(facts);
+  return facts.energy_ratio >= rules.energy_ratio || (even && std::abs(*even - 1) < rules.uneven);
 }
 
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {

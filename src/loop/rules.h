@@ -76,6 +76,17 @@ struct LoadStepRules {
   std::size_t turns = 4;
 };
 
+/// Sets the limits beyond which a measured loop slides over most of its stroke.
+struct SlidingRules {
+  /// [W/(4XT*)] Least energy ratio: Mindlin's contact has it at twice its gross-slip displacement,
+  /// beyond which the gap at mid-stroke is that of the slip force.
+  double energy_ratio = 0.6;
+  /// [T*] Least half gap; less is no plateau: the strokes were not separated.
+  double gap = 0.5;
+  /// [-] Largest distance of the energy from that of a gap that is the same over the stroke.
+  double uneven = 0.1;
+};
+
 /// Sets the limits by which the ends of a record are not part of its test.
 struct TrimRules {
   /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.

@@ -71,15 +71,6 @@ Trim FindTrim(const RecordView& record, const PreparationOptions& options) {
 
 namespace {
 
-/// Returns the standard deviation of white noise, from the median of the steps between readings.
-double NoiseOf(std::span<const double> load) {
-  if (load.size() < 2) return 0.0;
-  std::vector<double> steps(load.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::abs(load[i + 1] - load[i]);
-  constexpr double kOfNormal = 1.4826;
-  return kOfNormal / std::sqrt(2.0) * UpperMedian(steps);
-}
-
 /// Medians of five, so that single readings end nothing.
 std::vector<double> WithoutSpikes(std::span<const double> load) {
   constexpr std::size_t kReach = 2;
@@ -104,7 +95,7 @@ class LoadSteps {
  public:
   LoadSteps(const RecordView& record, const LoadStepRules& rules)
       : rules_(rules),
-        noise_(NoiseOf(record.normal_load)),
+        noise_(NoiseByDifferences(record.normal_load, 1)),
         load_(WithoutSpikes(record.normal_load)) {
     const ReversalGate gate = ChooseReversalGate(record.displacement);
     reversals_ = FindReversals(record.displacement, gate.gate);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <memory_resource>
 #include <span>
 
 namespace mindahl::loop {
@@ -50,6 +51,15 @@ template <typename Values>
 double Median(Values&& values) {
   return boost::math::statistics::median(values.begin(), values.end());
 }
+
+/// Standard deviation of normal values over the median of their size, 1/Φ⁻¹(3/4).
+inline constexpr double kDeviationOverMedian = 1.482602218505602;
+
+/// Returns the standard deviation of white noise by the median size of the differences of an order,
+/// of which what is smooth, turns and knees leave little; 0 for too few values. The variance of a
+/// difference of order k is C(2k, k) times the noise's.
+double NoiseByDifferences(std::span<const double> values, std::size_t order,
+                          std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
 
 /// Returns the least distance [m] between neighbours that differ; 0 where none do.
 inline double SmallestStep(std::span<const double> displacement) {

@@ -31,47 +31,40 @@ void SetResiduals(std::vector<double> residuals, FitResult& fit) {
 }
 
 TEST(Grade, LeavesTheHalfGapWhereTcIsMoreThanAQuarterOffToEitherSide) {
-  loop::LoopFacts facts;
-  facts.half_gap = -8.0;
-  facts.energy_ratio = 0.6;
+  loop::LoopFacts facts = SlidingFit(/*energy_ratio=*/0.6).records[0].facts;
   EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 9.9));
   EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 10.1));
   EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.5));
   EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 6.3));
   EXPECT_FALSE(LeavesHalfGap(facts, 11.0, 6.3)) << "it was not there before";
   facts.energy_ratio = 0.5;
-  EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.3)) << "the loop does not mostly slide";
+  EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.3)) << "the loop does not slide";
 }
 
 TEST(Grade, LoopSlidesWhereItIsARectangleWithAGap) {
-  const Thresholds thresholds;
-  const auto slides = [&](loop::LoopFacts facts) {
-    return SlidesOverMostOfStroke(facts, thresholds);
-  };
   const loop::LoopFacts plain = SlidingFit().records[0].facts;
-  EXPECT_TRUE(slides(plain));
+  EXPECT_TRUE(loop::Slides(plain));
   loop::LoopFacts other = plain;
   other.energy_ratio = 0.5;
-  EXPECT_FALSE(slides(other)) << "Jenkins' element at twice its travel of stick";
+  EXPECT_FALSE(loop::Slides(other)) << "Jenkins' element at twice its travel of stick";
   other = plain;
   other.closed = false;
-  EXPECT_FALSE(slides(other));
+  EXPECT_FALSE(loop::Slides(other));
   other = plain;
   other.half_gap = 4.9;
-  EXPECT_FALSE(slides(other)) << "less than half of T*: no plateau";
+  EXPECT_FALSE(loop::Slides(other)) << "less than half of T*: no plateau";
   other.half_gap.reset();
-  EXPECT_FALSE(slides(other));
+  EXPECT_FALSE(loop::Slides(other));
 }
 
 TEST(Grade, MisfitIsHeldAgainstWhatWasMeasured) {
-  const Thresholds thresholds;
-  EXPECT_EQ(ScaleOfMisfit(SlidingFit(), thresholds), 8.0);
-  EXPECT_EQ(ScaleOfMisfit(SlidingFit(/*energy_ratio=*/0.2), thresholds), 10.0);
+  EXPECT_EQ(ScaleOfMisfit(SlidingFit()), 8.0);
+  EXPECT_EQ(ScaleOfMisfit(SlidingFit(/*energy_ratio=*/0.2)), 10.0);
   FitResult fit = SlidingFit();
   fit.law.slip_force = 1e6;  // runs away
-  EXPECT_EQ(ScaleOfMisfit(fit, thresholds), 8.0);
+  EXPECT_EQ(ScaleOfMisfit(fit), 8.0);
   fit.response = loop::Channel::kDisplacement;
-  EXPECT_EQ(ScaleOfMisfit(fit, thresholds), fit.records[0].measures.amplitude);
+  EXPECT_EQ(ScaleOfMisfit(fit), fit.records[0].measures.amplitude);
 }
 
 TEST(Grade, WhiteNoiseIsNotMissed) {

@@ -736,18 +736,6 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
        }},
-      {"sliding_energy_ratio",
-       [](const Thresholds& t) {
-         const auto slides = [&](double energy_ratio) {
-           loop::LoopFacts facts;
-           facts.closed = true;
-           facts.peak_force = 1.0;
-           facts.energy_ratio = energy_ratio;
-           facts.half_gap = 0.9;
-           return SlidesOverMostOfStroke(facts, t);
-         };
-         return !slides(kBelow * 0.6) && slides(kAbove * 0.6);
-       }},
       {"energy_difference",
        [](const Thresholds& t) {
          return !EnergyContradicts(t, kBelow * 0.2, 0) && EnergyContradicts(t, kAbove * 0.2, 0);

@@ -106,7 +106,7 @@ inline double VirginForce(const models::BranchLaw& law, double x) {
       models::MakeLoadingPath({&x, 1}, {}, models::Memory::kReturnPoint, {});
   double force = 0.0;
   models::EvaluateForce(*models::FindFrictionModel("mindlin-dahl"), law, path,
-                        std::span<const Real>(&x, 1), std::span<Real>(&force, 1));
+                        std::span<const double>(&x, 1), std::span<double>(&force, 1));
   return force;
 }
 

@@ -26,7 +26,6 @@ struct Thresholds {
   double same_directions = 0.6;
   double early_in_stroke = 0.25;
   double path_excess = 0.25;
-  double sliding_energy_ratio = 0.6;
   double energy_difference = 0.2;
   double energy_errors = 5.0;
   double trend_size = 0.01;

@@ -87,9 +87,9 @@ struct LoopFacts {
 /// the amplitude or the half gap is zero or not known.
 std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
 
-/// True if the measured loop slides: if its energy ratio is above 0.75, where Masing's loop reaches
-/// 0.999 of its slip force for α ≤ 1 and 0.95 for α = 2; or if a gap of more than half the peak
-/// force is the same over the stroke to a tenth, as beside a spring parallel to the contact.
+/// True if a measured loop slides over most of its stroke, so that its half gap is the slip
+/// force's, whatever the law: the gap is more than half of T*, and the energy ratio at least 0.6
+/// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
 bool Slides(const LoopFacts& facts);
 
 /// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.

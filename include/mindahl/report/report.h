@@ -27,8 +27,8 @@ struct Warning {
 
 /// A change of the request that was fitted again and lowers the misfit.
 struct NextStep {
-  std::string text;     ///< in words: "a slip force that depends on the position"
-  std::string options;  ///< to add to the command: "--terms slip_position"
+  std::string text;            ///< in words: "a slip force that depends on the position"
+  std::string options;         ///< to add to the command: "--terms slip_position"
   double misfit_before = 0.0;  ///< Adequacy::misfit_over_half_gap of the fit that is reported
   double misfit_after = 0.0;   ///< of the fit with the options
 };
@@ -44,8 +44,8 @@ struct ReportInput {
   std::optional<identification::Interval> load_window = {};
   /// Holds the parts left out of each record as not of its test; empty where not requested.
   std::vector<loop::Trim> trims = {};
-  std::optional<identification::ModelSelection> selection = {};   ///< if a model was chosen
-  std::optional<identification::TermSelection> terms = {};        ///< if terms were chosen
+  std::optional<identification::ModelSelection> selection = {};  ///< if a model was chosen
+  std::optional<identification::TermSelection> terms = {};       ///< if terms were chosen
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
   /// reported.
   std::optional<NextStep> next = {};

@@ -17,16 +17,6 @@
 
 namespace mindahl::identification {
 
-double ColumnCorrelation(std::span<const double> one, std::span<const double> other) {
-  using Column = Eigen::Map<const Eigen::VectorXd>;
-  Eigen::VectorXd a = Column(one.data(), std::ssize(one));
-  Eigen::VectorXd b = Column(other.data(), std::ssize(other));
-  a.array() -= a.mean();
-  b.array() -= b.mean();
-  const double norm = a.norm() * b.norm();
-  return norm > 0 ? a.dot(b) / norm : 0.0;
-}
-
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force) {
   constexpr double kFollows = 0.3;  // correlation
   return std::abs(ColumnCorrelation(column, fitted_force)) > kFollows;
@@ -349,7 +339,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 }
 
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
-  if (!(MisfitOf(result, thresholds) > thresholds.poor_misfit)) return std::nullopt;
+  if (!(MisfitOf(result) > thresholds.poor_misfit)) return std::nullopt;
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double forgotten = -std::log1p(-result.residuals.durbin_watson / 2);
   if (!std::isfinite(forgotten)) return std::nullopt;
@@ -365,7 +355,7 @@ bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
   if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         MissedForce(result) > thresholds.failing_misfit * ScaleOfMisfit(result, thresholds);
+         MissedForce(result) > thresholds.failing_misfit * ScaleOfMisfit(result);
 }
 
 }  // namespace mindahl::identification

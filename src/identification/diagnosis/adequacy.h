@@ -44,9 +44,6 @@ struct AdequacyEvidence {
   bool ends_at_limit = false;                    ///< the search ended at a limit of its own
 };
 
-/// Returns the correlation of two columns of one size; 0 where one is constant.
-double ColumnCorrelation(std::span<const double> one, std::span<const double> other);
-
 /// True if a column follows the force of the fitted model: its factor would take a part of Tc.
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force);
 

@@ -154,8 +154,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
-double MisfitOf(const FitResult& result, const Thresholds& thresholds) {
-  const double size = ScaleOfMisfit(result, thresholds);
+double MisfitOf(const FitResult& result) {
+  const double size = ScaleOfMisfit(result);
   if (!(size > 0)) return 0.0;
   const double rms = result.outliers > 0
                          ? std::hypot(result.adequacy.misfit, result.ResponseNoise())
@@ -164,7 +164,7 @@ double MisfitOf(const FitResult& result, const Thresholds& thresholds) {
 }
 
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
-  const double misfit = MisfitOf(result, thresholds);
+  const double misfit = MisfitOf(result);
   if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
   const bool fails = misfit > thresholds.failing_misfit;
   for (const RecordFit& record : result.records) {

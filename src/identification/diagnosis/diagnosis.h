@@ -30,7 +30,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 
 /// Returns the rms of the residuals over ScaleOfMisfit() [-], without what a robust loss has
 /// weighed down; 0 where there is none.
-double MisfitOf(const FitResult& result, const Thresholds& thresholds);
+double MisfitOf(const FitResult& result);
 
 /// Residuals that come back at the same place of every stroke, and are more than noise could
 /// explain: where they are, and what kind of friction or rig leaves such a trace.

@@ -325,7 +325,7 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   }
   const std::optional<double> half_gap = MeasuredHalfGap(result);
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
-  if (!is_free || !half_gap || !SlidesOverMostOfStroke(facts, thresholds)) return parameters;
+  if (!is_free || !half_gap || !loop::Slides(facts)) return parameters;
 
   const std::vector<double> steps = SlipForceOfParts(problem, estimates, thresholds);
   // The gap is a mean over parts of the strokes in each of which the model misses so much.
@@ -351,22 +351,20 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   return parameters;
 }
 
-bool CoversMeasuredGap(const Thresholds& thresholds, const FitResult& result) {
+bool CoversMeasuredGap(const FitResult& result) {
   return result.Find("slip_force")->includes_discrepancy &&
-         SlidesOverMostOfStroke(result.WidestRecord().facts, thresholds);
+         loop::Slides(result.WidestRecord().facts);
 }
 
-ParameterEstimate CoverOtherLaw(const Thresholds& thresholds, const FitResult& result) {
-  constexpr double kRunAway = 0.25;  // of the half gap
+ParameterEstimate CoverOtherLaw(const FitResult& result) {
   ParameterEstimate slip_force = *result.Find("slip_force");
   const std::optional<LawChoice>& choice = result.law_choice;
   const std::optional<double> half_gap = MeasuredHalfGap(result);
-  if (!choice || choice->preferred == result.model || !half_gap ||
-      !CoversMeasuredGap(thresholds, result)) {
+  if (!choice || choice->preferred == result.model || !half_gap || !CoversMeasuredGap(result)) {
     return slip_force;
   }
   const double other = choice->law.slip_force;
-  if (std::abs(other - *half_gap) > kRunAway * *half_gap) return slip_force;
+  if (RanAway(other, *half_gap)) return slip_force;
   Include(slip_force, {.source = IntervalSource::kDiscrepancy, .lower = other, .upper = other});
   return slip_force;
 }

@@ -24,29 +24,22 @@ double WhiteVariance(const FitResult& result) {
   return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
 }
 
-bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds) {
-  constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not separated
-  return facts.closed && facts.energy_ratio >= thresholds.sliding_energy_ratio && facts.half_gap &&
-         *facts.half_gap > kOfPeak * facts.peak_force;
+bool RanAway(double slip_force, double half_gap) {
+  constexpr double kFarthest = 1.25;
+  const double ratio = slip_force / std::abs(half_gap);
+  return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
 }
 
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
-  constexpr double kMostlySlides = 0.5;  // energy ratio
-  constexpr double kRunsAway = 1.25;     // times the half gap
-  if (!facts.half_gap || !(facts.energy_ratio > kMostlySlides)) return false;
-  const auto is_that_of_the_gap = [&](double slip_force) {
-    const double ratio = slip_force / std::abs(*facts.half_gap);
-    return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
-  };
-  return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
+  return loop::Slides(facts) && !RanAway(without, *facts.half_gap) &&
+         RanAway(with, *facts.half_gap);
 }
 
 std::optional<FitOptions> WithinMeasuredForce(const loop::LoopFacts& facts, double load_ratio,
                                               double slip_force, const FitOptions& options) {
   constexpr const char* kName = "slip_force";
   const double peak_force = facts.peak_force / load_ratio;
-  if (options.bounds.contains(kName) || options.fixed.contains(kName) ||
-      !SlidesOverMostOfStroke(facts, options.thresholds) ||
+  if (options.bounds.contains(kName) || options.fixed.contains(kName) || !loop::Slides(facts) ||
       peak_force >= options.thresholds.mobilised_by_asymptote * slip_force) {
     return std::nullopt;
   }
@@ -63,11 +56,11 @@ std::optional<double> MeasuredHalfGap(const FitResult& result) {
   return *widest.facts.half_gap / widest.load_ratio;
 }
 
-double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds) {
+double ScaleOfMisfit(const FitResult& result) {
   const RecordFit& widest = result.WidestRecord();
   if (result.response == loop::Channel::kDisplacement) return widest.measures.amplitude;
   const std::optional<double> half_gap = MeasuredHalfGap(result);
-  if (half_gap && SlidesOverMostOfStroke(widest.facts, thresholds)) return *half_gap;
+  if (half_gap && loop::Slides(widest.facts)) return *half_gap;
   return result.PeakForce();
 }
 
@@ -95,7 +88,7 @@ Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   adequacy.misfit = missed;
   adequacy.misfit_over_half_gap.reset();
   if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
-  const double scale = half_gap ? *half_gap : ScaleOfMisfit(result, thresholds);
+  const double scale = half_gap ? *half_gap : ScaleOfMisfit(result);
   const double ratio = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
   const bool is_seen = !FindUnseenLoop(result, thresholds);
   adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative

@@ -13,13 +13,10 @@
 /// against a fitted slip force, which may be as wrong as the model.
 namespace mindahl::identification {
 
-/// True if a measured loop slides over most of its stroke: it loses at least
-/// `sliding_energy_ratio` of its rectangle, and half the gap in the middle of the stroke is more
-/// than half of T*. That gap is then the slip force's, whatever the law.
-bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds);
+/// True if a slip force [N] ran away: it is more than a quarter off the measured half gap [N].
+bool RanAway(double slip_force, double half_gap);
 
-/// True if, of a loop that mostly slides, Tc left the half gap that was measured by more than a
-/// quarter.
+/// True if, of a loop that slides, Tc ran away from the half gap that was measured.
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
@@ -38,7 +35,7 @@ std::optional<double> MeasuredHalfGap(const FitResult& result);
 
 /// Returns what a misfit is held against [N or m]: the half gap of a loop that slides, else T*; of
 /// a displacement its amplitude.
-double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds);
+double ScaleOfMisfit(const FitResult& result);
 
 /// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
 /// part that the causes explain or that comes back in every stroke; of others all of them but their

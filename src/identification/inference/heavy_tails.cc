@@ -1,7 +1,6 @@
 #include "identification/inference/heavy_tails.h"
 
 #include <algorithm>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -10,6 +9,7 @@
 
 #include "core/probability.h"
 #include "identification/inference/noise.h"
+#include "loop/statistics.h"
 
 namespace mindahl::identification {
 
@@ -63,9 +63,8 @@ double SquaresOf(std::span<const FittedSample> samples, std::span<const double> 
   return squares;
 }
 
-constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
-constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
-constexpr double kFarOff = 6.0;                          // of their widths
+constexpr std::size_t kAlike = 60;  // samples that one width is taken from
+constexpr double kFarOff = 6.0;       // of their widths
 /// Chance that a reading is so far off: 2e-9 of a normal law whose width is known, and below this
 /// of one that 60 samples determine to 15 % (1.17/√60).
 constexpr double kChance = 1e-5;
@@ -115,8 +114,7 @@ void FindWidths(std::vector<Difference>& differences) {
     for (std::size_t k = begin; k < end; ++k) {
       sizes.push_back(std::abs(differences[order[k]].value));
     }
-    const double width =
-        boost::math::statistics::median(sizes.begin(), sizes.end()) / kNormalMedian;
+    const double width = loop::kDeviationOverMedian * loop::Median(sizes);
     for (std::size_t k = begin; k < end; ++k) differences[order[k]].width = width;
   }
 }

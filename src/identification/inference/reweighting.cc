@@ -12,6 +12,7 @@
 #include "core/draws.h"
 #include "identification/inference/noise.h"
 #include "identification/solve/search.h"
+#include "loop/statistics.h"
 
 namespace mindahl::identification {
 
@@ -380,9 +381,8 @@ void FillResidual(const Problem& problem, Response& response, Solution& solution
 }  // namespace
 
 double RobustScale(std::vector<double> residuals) {
-  constexpr double kNormalDeviation = 1.482602218505602;  // σ over the median |r|, 1/Φ⁻¹(3/4)
-  return kNormalDeviation * boost::math::statistics::median_absolute_deviation(
-                                residuals.begin(), residuals.end(), 0.0);
+  return loop::kDeviationOverMedian * boost::math::statistics::median_absolute_deviation(
+                                          residuals.begin(), residuals.end(), 0.0);
 }
 
 Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,

@@ -62,10 +62,6 @@ constexpr std::array kTable = {
         "a warning is given if the path through the samples exceeds the strokes by more",
         "white noise of 0.8 steps between samples makes this much: one step in five then goes "
         "backward, and the fit takes it for a reversal"},
-    ThresholdRow{"sliding_energy_ratio", &Thresholds::sliding_energy_ratio, "W/(4XT*)",
-                 "a measured loop that dissipates more slides over most of its stroke",
-                 "Mindlin's contact dissipates as much at twice its gross-slip displacement, "
-                 "beyond which the gap at mid-stroke is that of the slip force"},
     ThresholdRow{"energy_difference", &Thresholds::energy_difference, "of the larger",
                  "a larger difference between measured energy and the model's is a contradiction",
                  "a model that misses a fifth of the loop's energy does not describe it: Tc would "

@@ -11,22 +11,30 @@
 #include "core/extremes.h"
 #include "identification/problem/moved_samples.h"
 #include "identification/problem/parameters.h"
+#include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 
+double ColumnCorrelation(std::span<const double> one, std::span<const double> other) {
+  using Column = Eigen::Map<const Eigen::VectorXd>;
+  Eigen::VectorXd a = Column(one.data(), std::ssize(one));
+  Eigen::VectorXd b = Column(other.data(), std::ssize(other));
+  a.array() -= a.mean();
+  b.array() -= b.mean();
+  const double norm = a.norm() * b.norm();
+  return norm > 0 ? a.dot(b) / norm : 0.0;
+}
+
+bool AreOneChannel(std::span<const double> one, std::span<const double> other) {
+  constexpr double kOwnPart = 0.1;  // of the deviation
+  const double correlation = ColumnCorrelation(one, other);
+  return correlation * correlation >= 1 - kOwnPart * kOwnPart;
+}
+
 bool AreOneChannel(const ScaledRecords& data, std::size_t one, std::size_t other) {
-  constexpr double kOwnPart = 0.1;
   return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
-    const auto deviations = [&](std::size_t covariate) {
-      const auto& column = record.covariates[covariate];
-      const Eigen::Map<const Eigen::ArrayXd> values(column.data(), std::ssize(column));
-      return Eigen::VectorXd(values - values.mean());
-    };
-    const Eigen::VectorXd x = deviations(one);
-    const Eigen::VectorXd y = deviations(other);
-    const double xy = x.dot(y);
-    return xy * xy >= (1 - kOwnPart * kOwnPart) * x.squaredNorm() * y.squaredNorm();
+    return AreOneChannel(record.covariates[one], record.covariates[other]);
   });
 }
 
@@ -93,23 +101,6 @@ void FillAcceleration(ScaledRecord& record, double unit) {
     record.acceleration[i] =
         duration > 0 ? (record.velocity[after] - record.velocity[before]) / duration : 0.0;
   }
-}
-
-/// Standard deviation of white noise with the median fourth difference of a velocity: what is
-/// smooth leaves next to nothing of it.
-double ResolutionOf(std::span<const double> velocity) {
-  constexpr double kOfFourthDifference = 8.366600265340756;  // √70
-  constexpr double kMedianOfNormal = 0.6744897501960817;     // of its size, Φ⁻¹(0.75)
-  if (velocity.size() < 5) return 0.0;
-  std::vector<double> differences;
-  differences.reserve(velocity.size());
-  for (std::size_t i = 2; i + 2 < velocity.size(); ++i) {
-    differences.push_back(std::abs(velocity[i - 2] - 4 * velocity[i - 1] + 6 * velocity[i] -
-                                   4 * velocity[i + 1] + velocity[i + 2]));
-  }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  return *middle / (kMedianOfNormal * kOfFourthDifference);
 }
 
 /// ln of the speeds with their resolution; far below any speed, and finite, where there is none.
@@ -489,7 +480,7 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
   const double unit = data.records.front().units.half_duration;
   for (ScaledRecord& record : data.records) {
     if (asks_power && !record.velocity.empty()) {
-      record.units.speed_resolution = ResolutionOf(record.velocity);
+      record.units.speed_resolution = loop::NoiseByDifferences(record.velocity, 4);
       FillLogSpeed(record);
     }
     if (asks_acceleration && !record.velocity.empty()) FillAcceleration(record, unit);

@@ -182,8 +182,14 @@ class ThinnedRecords {
   std::optional<ScaledRecords> thin_;
 };
 
-/// True if two covariates are one channel, read twice or in other units: linear in each other in
-/// every record but for a tenth of their deviation.
+/// Returns the correlation of two columns of one size; 0 where one is constant.
+double ColumnCorrelation(std::span<const double> one, std::span<const double> other);
+
+/// True if two columns are one channel, read twice or in other units: linear in each other but for
+/// a tenth of their deviation.
+bool AreOneChannel(std::span<const double> one, std::span<const double> other);
+
+/// True if two covariates are that in every record.
 bool AreOneChannel(const ScaledRecords& data, std::size_t one, std::size_t other);
 
 }  // namespace mindahl::identification
