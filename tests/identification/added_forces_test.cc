@@ -83,19 +83,6 @@ TEST(AddedForces, PowerOfTheSpeedIsRecovered) {
   }
 }
 
-TEST(AddedForces, PowerOfOneIsTheViscousForce) {
-  Record record = Loop();
-  const std::vector<double> velocity = Velocity(record);
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += 5e5 * velocity[i];
-  FitOptions options;
-  options.terms = {"viscous"};
-  const FitResult viscous = FitOne(record, options);
-  options.fixed["speed_exponent"] = 1.0;
-  const FitResult power = FitOne(record, options);
-  EXPECT_EQ(ValueOf(power, "viscous"), ValueOf(viscous, "viscous"));
-  EXPECT_EQ(power.law.slip_force, viscous.law.slip_force);
-}
-
 TEST(AddedForces, SlipForceOfPositionAndDirectionIsRecovered) {
   Record record = Loop();
   constexpr double kSlope = 0.12;
@@ -176,28 +163,6 @@ TEST(AddedForces, DragIsRecoveredAndTcIsItsSumWithTheContactsForceInTheMiddle) {
   // Its stiffness is that of the branch, of which the slip force's fraction is seen.
   EXPECT_NEAR(fit.law.tangential_stiffness * kLaw.slip_force / together, kLaw.tangential_stiffness,
               10 * kAtRest * kLaw.tangential_stiffness);
-}
-
-TEST(AddedForces, RestInTheMiddleDoesNotChangeTheSpeedOfTheSlipForce) {
-  Record record = Loop();
-  const std::vector<double> velocity = Velocity(record);
-  const double fastest = *std::ranges::max_element(velocity);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] *= std::sqrt(std::abs(velocity[i]) / fastest);
-  }
-  FitOptions options;
-  options.terms = {"slip_speed", "slip_speed_exponent"};
-  const double without = FitOne(record, options).law.slip_force;
-  // It rests at the end for as long as it has moved, where it is.
-  const double step = record.time[1] - record.time[0];
-  for (std::size_t i = record.size(); i > 0; --i) {
-    record.time.push_back(record.time.back() + step);
-    record.displacement.push_back(record.displacement.back());
-    record.force.push_back(record.force.back());
-  }
-  const double with_rest = FitOne(record, options).law.slip_force;
-  constexpr double kLittle = 0.05;  // a mean over time would be half, and Tc 0.7 of it
-  EXPECT_NEAR(with_rest, without, kLittle * without);
 }
 
 TEST(AddedForces, SlipForceThatChangesWithTimeIsRecovered) {
@@ -285,34 +250,6 @@ std::vector<double> PointOf(const Problem& problem) {
 constexpr double kStepOfTheta = 1e-5;
 constexpr double kOfDifference = 1e-7;
 
-TEST(StartingPeriod, IsThatOfTheCountedSamplesOfTheStrokesSecondHalves) {
-  // Frequencies are tried at steps of 0.1: over half the range a period of 0.3 is known to a sixth
-  // of one of these.
-  const History displacement = Cycling(Wave::kTriangle, 1.0, 4.0, 400);
-  const double kPeriod = 0.3;
-  std::vector<double> force;
-  for (const double x : displacement) force.push_back(std::cos(2 * std::numbers::pi * x / kPeriod));
-  testing::Stages stages(testing::MakeRecord(displacement, force));
-  ScaledRecord& record = stages.data.records.front();
-  const double period = kPeriod / record.units.length;
-  EXPECT_NEAR(1 / StartingPeriod(stages.data), 1 / period, 0.051);
-  // Samples that do not count, and those of a contact that may stick, have a larger ripple of
-  // another period.
-  std::size_t begin = 0;
-  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
-    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
-    for (std::size_t i = begin; i < end; ++i) {
-      const double x = record.displacement[i];
-      const bool may_stick = std::abs(x - record.displacement[begin]) <
-                             0.49 * std::abs(record.displacement[end] - record.displacement[begin]);
-      if (i % 3 == 1) record.counts[i] = 0;
-      if (may_stick || i % 3 == 1) record.force[i] = 5 * std::cos(4.1 * std::numbers::pi * x);
-    }
-    begin = end;
-  }
-  EXPECT_NEAR(1 / StartingPeriod(stages.data), 1 / period, 0.051);
-}
-
 TEST(AddedForces, DerivativesAreThoseOfCentralDifferences) {
   Stages stages(Loop(), AllOfThem());
   const auto& free = stages.problem.parameters.free();
@@ -341,43 +278,6 @@ TEST(AddedForces, DerivativesAreThoseOfCentralDifferences) {
   }
 }
 
-TEST(AddedForces, GradientOfTheProjectedResidualIsThatOfTheCost) {
-  // What Kaufman leaves out of the Jacobian is orthogonal to the residual: the gradient is exact.
-  Stages stages(Loop(), AllOfThem());
-  Response response;
-  ProjectedResidual projected;
-  projected.Bind(stages.problem, response);
-  const std::vector<double> theta = PointOf(stages.problem);
-  std::vector<double> u(projected.searched().size());
-  projected.Load(theta, u);
-  projected.Linearise(u);
-  const Eigen::VectorXd gradient = projected.gradient();
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    std::vector<double> moved = u;
-    moved[j] += kStepOfTheta;
-    const double above = projected.Evaluate(moved);
-    moved[j] -= 2 * kStepOfTheta;
-    const double below = projected.Evaluate(moved);
-    const double slope = (above - below) / (4 * kStepOfTheta);  // of half the cost
-    // Sums over some 400 samples of what is checked above sample by sample.
-    EXPECT_NEAR(
-        gradient[static_cast<Eigen::Index>(j)], slope,
-        static_cast<double>(stages.problem.size()) * kOfDifference * std::max(1.0, std::abs(slope)))
-        << stages.problem.parameters.NameOf(projected.searched()[j].parameter);
-  }
-}
-
-TEST(AddedForces, WhatShapesAColumnNeedsIt) {
-  FitOptions options;
-  options.terms = {"speed_exponent"};
-  try {
-    FitOne(Loop(), options);
-    FAIL() << "accepted";
-  } catch (const InvalidArgument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("speed_exponent has no effect without a term viscous"));
-  }
-}
-
 TEST(AddedForces, ExponentsMustBePositiveAndAPeriodNotBeyondRounding) {
   const std::vector<std::pair<std::vector<std::string>, double>> refused = {
       {{"speed_exponent", "viscous"}, 0.0},
@@ -398,15 +298,6 @@ TEST(AddedForces, ExponentsMustBePositiveAndAPeriodNotBeyondRounding) {
       EXPECT_THAT(error.what(), ::testing::StartsWith(terms.front() + " ["));
       EXPECT_THAT(error.what(), HasSubstr("must be "));
     }
-  }
-}
-
-TEST(AddedForces, FactorOfTheSpeedNeedsItsExponentAndTheExponentItsFactor) {
-  for (const char* alone :
-       {"slip_speed", "slip_speed_exponent", "drag_fraction", "drag_exponent"}) {
-    FitOptions options;
-    options.terms = {alone};
-    EXPECT_THROW(FitOne(Loop(), options), InvalidArgument) << alone;
   }
 }
 

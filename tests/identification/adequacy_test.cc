@@ -214,31 +214,6 @@ TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
   }
 }
 
-TEST(Adequacy, ReportsSizeOfCauseWithSeveralParametersIfFirstIsSignificant) {
-  const auto cause_of = [](double linear, double square) {
-    Record record = Alone();
-    const double half_range = std::ranges::max(record.displacement);
-    Generator generator(5);
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      const double place = record.displacement[i] / half_range;
-      record.force[i] *= 1 + linear * place + square * place * place;
-      record.force[i] += kNoise * Normal(generator);
-    }
-    const FitResult fit = Fitted(record);
-    const Cause* const cause = Find(fit, square != 0 ? "slip_position_quadratic" : "slip_position");
-    return cause == nullptr ? Cause{} : *cause;
-  };
-  constexpr double kGrowth = 0.05;
-  constexpr double kSizeError = 0.1;  // of first order as they are
-  const Cause tilted = cause_of(kGrowth, 0.0);
-  EXPECT_EQ(tilted.unit, "-");
-  EXPECT_NEAR(tilted.size / kGrowth, 1.0, kSizeError);
-  // Alike at both ends of the stroke: nothing of it grows from one to the other.
-  const Cause hollow = cause_of(0.0, kGrowth);
-  EXPECT_EQ(hollow.code, "slip_position_quadratic");
-  EXPECT_EQ(hollow.unit, "");
-}
-
 TEST(Adequacy, LagOfTwoSamplesIsTheFirstOfTheCauses) {
   Record record = LateBy(2);
   Generator generator(3);
@@ -325,16 +300,6 @@ TEST(Adequacy, OfADisplacementThatIsReadLessOftenNamesIt) {
   ASSERT_NE(cause, nullptr);
   EXPECT_EQ(cause->unit, "-");
   EXPECT_NEAR(cause->size, 1.0, 0.3) << "all of the way, and the turns, which no reading shows";
-}
-
-TEST(Adequacy, OfARecordTooShortForAnyCauseIsNotDoubted) {
-  const History displacement = Cycling(Wave::kSine, kReach, 1.0, 12);
-  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  Generator generator(3);
-  for (double& force : record.force) force += kNoise * Normal(generator);
-  const Adequacy adequacy = Fitted(record).adequacy;
-  EXPECT_EQ(adequacy.verdict, AdequacyVerdict::kAdequate);
-  EXPECT_EQ(adequacy.p_value, 1.0);
 }
 
 TEST(Adequacy, CauseThatIsFittedIsNoneAnyLonger) {

@@ -155,46 +155,6 @@ TEST(Asymmetry, IsIdentifiedByEveryRecordWithKnownForceZero) {
   EXPECT_EQ(verdict("force_offset_1", "force_offset_2"), Identifiability::kNotIdentifiable);
 }
 
-TEST(Asymmetry, OfRecordsThatNeverSlipSaysHowFarTheFarthestStays) {
-  Generator generator(6);
-  FitOptions options = WithAsymmetry();
-  options.initial_state = InitialState::kSteady;
-  options.fixed = {{"force_offset_1", 0.0}, {"force_offset_2", 0.0}};
-  const auto never_slips = [&](std::initializer_list<double> lambdas) {
-    std::vector<Record> records;
-    for (const double lambda : lambdas) {
-      records.push_back(WithForceNoise(From(LoopOf(0.25, lambda, 3.25), 200), 0.05, generator));
-    }
-    const FitResult fit = identification::Fit(records, options);
-    const Finding* finding = fit.FindFinding("asymmetry_not_identifiable");
-    if (finding == nullptr) return 0.0;
-    EXPECT_THAT(finding->parameters, ElementsAre("asymmetry"));
-    const double number = finding->Number("never_slips").value();
-    double stays = 0.0;
-    for (const RecordFit& record : fit.records) {
-      const double peak = models::SteadyPeakForce(*fit.model, fit.law, record.measures.amplitude);
-      stays = std::max(stays, 1 - peak / fit.law.slip_force);
-    }
-    EXPECT_NEAR(number, stays, 1e-12);
-    return number;
-  };
-  EXPECT_GT(never_slips({0.6, 0.8}), 0.0);
-  EXPECT_GT(never_slips({0.8, 0.6}), 0.0);
-}
-
-TEST(Asymmetry, FixedValueIdentifiesForceOffsetOnlyIfLoopSlips) {
-  Generator generator(5);
-  FitOptions options;
-  options.fixed["asymmetry"] = 0.25;
-  options.initial_state = InitialState::kSteady;
-  const auto verdict = [&](double lambda) {
-    const Record loop = WithForceNoise(From(LoopOf(0.25, lambda, 3.25), 200), 0.05, generator);
-    return FitOne(loop, options).Find("force_offset")->identifiability;
-  };
-  EXPECT_EQ(verdict(0.8), Identifiability::kNotIdentifiable);
-  EXPECT_EQ(verdict(1.5), Identifiability::kIdentifiable);
-}
-
 TEST(Asymmetry, IsWhatASymmetricFitOfAVirginLoopLooksFor) {
   Generator generator(9);
   const Record record = WithForceNoise(LoopOf(0.25, 1.3), 0.6, generator);
@@ -240,20 +200,6 @@ TEST(Asymmetry, IsRecoveredWhereTheMotionTurnsBetweenTheSamples) {
   constexpr double kInterpolated = 1e-4;
   EXPECT_TRUE(Recovers(fit, kMindlin, kInterpolated));
   EXPECT_NEAR(fit.Find("asymmetry")->value, 0.3, kInterpolated);
-}
-
-TEST(Asymmetry, IsThatOfAllLoadsOfASeries) {
-  constexpr double kExponent = 1.0 / 3;
-  FitOptions options = WithAsymmetry();
-  std::vector<Record> records;
-  for (const double load : {0.5, 1.5}) {
-    records.push_back(LoopOf(-0.2, 1.4, 2.25, AtLoad(kMindlin, load, kExponent)));
-    options.normal_loads.push_back(50 * load);
-  }
-  const FitResult fit = Fit(records, options);
-  EXPECT_TRUE(Recovers(fit, kMindlin, kWithAsymmetry));
-  EXPECT_NEAR(fit.Find("asymmetry")->value, -0.2, kWithAsymmetry);
-  EXPECT_NEAR(fit.Find("load_exponent")->value, kExponent, kWithAsymmetry);
 }
 
 TEST(Asymmetry, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
@@ -303,27 +249,6 @@ TEST(Asymmetry, IsRefusedOfDahlsLawBehindARigAndBeyondOne) {
   FitOptions beyond;
   beyond.fixed["asymmetry"] = -1.0;
   EXPECT_THAT(RefusalOf({LoopOf(0.2, 1.3)}, beyond), HasSubstr("must be in (-1, 1)"));
-}
-
-TEST(Asymmetry, IsComparedWithNoLawThatDoesNotModelIt) {
-  Generator generator(4);
-  const Record record = WithForceNoise(LoopOf(0.25, 1.3), 0.6, generator);
-  EXPECT_FALSE(FitOne(record, WithAsymmetry()).law_choice.has_value());
-  const ModelSelection selection = SelectModel(std::vector<Record>{record}, WithAsymmetry());
-  for (const ModelScore& score : selection.scores) {
-    EXPECT_FALSE(score.rig && score.model->memory == models::Memory::kNone);
-  }
-  EXPECT_FALSE(selection.scores.empty());
-}
-
-TEST(Asymmetry, LeavesALoadThatVariesUnfollowed) {
-  Record record = LoopOf(0.2, 1.3);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.normal_load.push_back(50 * (1 + 0.05 * std::sin(0.07 * static_cast<double>(i))));
-  }
-  const FitResult fit = FitOne(record, WithAsymmetry());
-  EXPECT_NE(fit.FindFinding("load_not_followed"), nullptr);
-  EXPECT_NEAR(fit.Find("asymmetry")->value, 0.2, kWithAsymmetry);
 }
 
 }  // namespace

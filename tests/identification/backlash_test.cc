@@ -93,16 +93,6 @@ TEST(Backlash, LeavesInnerLoopsThatDoNotUnloadTheContactOnOneSideOfTheGap) {
   ExpectRecovered(FitOne(record, WithBacklash()), kLaw, kRecovered);
 }
 
-TEST(Backlash, OfAKnownWidthIsTakenOff) {
-  const Record record =
-      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle), kGap);
-  FitOptions options;
-  options.fixed["backlash"] = kGap;
-  const FitResult fit = FitOne(record, options);
-  ExpectRecovered(fit, kLaw, kRecovered);
-  EXPECT_EQ(fit.Find("backlash")->status, ParameterStatus::kFixed);
-}
-
 TEST(Backlash, OfNoneIsFoundAtItsBoundAndLeavesTheLaw) {
   const History displacement = Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle);
   const FitResult fit = FitOne(
@@ -142,23 +132,6 @@ TEST(Backlash, ThatWasMeasuredIsAddedFirstAndLeavesNothingToAdd) {
   const ParameterEstimate& gap = *selection.fit.Find("backlash");
   ASSERT_TRUE(gap.standard_error);
   EXPECT_NEAR(gap.value, kGap, 4 * *gap.standard_error);
-}
-
-TEST(Backlash, IsMeasuredWhereEveryRecordShowsIt) {
-  testing::Generator generator(5);
-  const History displacement = Cycling(Wave::kSine, kReach, 3.1, kSamplesPerCycle);
-  const auto noisy = [&](double gap) {
-    return testing::WithForceNoise(BehindGap("mindlin-dahl", kLaw, displacement, gap),
-                                   0.01 * kLaw.slip_force, generator);
-  };
-  const auto is_measured = [](const std::vector<Record>& records) {
-    const FitResult fit = identification::Fit(records, {});
-    EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-    return std::ranges::any_of(fit.adequacy.causes, &Cause::is_measured);
-  };
-  EXPECT_TRUE(is_measured({noisy(kGap), noisy(kGap)}));
-  EXPECT_FALSE(is_measured({noisy(kGap), noisy(0.0)}));
-  EXPECT_FALSE(is_measured({noisy(0.0), noisy(kGap)}));
 }
 
 TEST(Backlash, IsRefusedWhereItCannotBe) {

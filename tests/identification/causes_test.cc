@@ -94,62 +94,6 @@ TEST(FirstCause, OfALateChannelIsTheLag) {
   EXPECT_EQ(FirstOf(Fitted(testing::From(record, kLate))), "channel_lag");
 }
 
-TEST(LagBeyondKnee, IsDeniedFromTheDurationOfTheStickOn) {
-  // A triangle and Jenkins' element: to nine tenths of slip in 1.9·Tc/σ at a constant speed.
-  constexpr double kStep = 1e-7;  // [m a sample]
-  constexpr BranchLaw kJenkins{4e7, 0.0, 40.0};
-  constexpr double kKnee = 1.9 * kJenkins.slip_force / kJenkins.tangential_stiffness / kStep;
-  Record record;
-  record.displacement = testing::Cycling(testing::Wave::kTriangle, 100 * kStep, 4.0, 400);
-  record.force = Respond(Model("mindlin-dahl"), kJenkins, record.displacement);
-  Stages stages(record);
-  Solution solution;
-  solution.theta = stages.ThetaOf(Fitted(record));
-  const auto is_kept = [&](double lag) {
-    AdequacyTest test;
-    test.fits.push_back({.departure = 0, .size = lag});
-    DenyLagBeyondKnee(stages.problem, solution, stages.buffers.response, test);
-    return !test.fits.empty();
-  };
-  ASSERT_EQ(Departures()[0].code, "channel_lag");
-  for (const double sign : {1.0, -1.0}) {
-    // The knee ends up to a sample later.
-    EXPECT_TRUE(is_kept(sign * (kKnee - 1)));
-    EXPECT_FALSE(is_kept(sign * (kKnee + 1.5)));
-  }
-}
-
-TEST(TryLag, LooksForNoLongerOneInEitherDirection) {
-  // 7 samples of 80 a cycle, and no more than a twentieth of a cycle is looked for.
-  constexpr int kPerCycle = 80;
-  constexpr std::size_t kShift = 7;
-  const std::vector<double> displacement =
-      testing::Cycling(testing::Wave::kSine, kReach, 5.0, kPerCycle);
-  const std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, displacement);
-  for (const bool is_late : {true, false}) {
-    Record record;
-    for (std::size_t i = kShift; i + kShift < displacement.size(); ++i) {
-      record.displacement.push_back(displacement[i]);
-      record.force.push_back(force[is_late ? i - kShift : i + kShift]);
-    }
-    FitOptions options;
-    options.initial_state = InitialState::kSteady;
-    Stages stages(record, options, InitialState::kSteady);
-    Solution solution;
-    solution.theta = stages.ThetaOf(Fitted(record, options));
-    AdequacyTest test;
-    test.effective_samples = test.degrees_of_freedom = static_cast<double>(record.size());
-    test.noise = 1.0;
-    test.fits.push_back({.departure = 0});
-    TryLag(stages.problem, solution, SolverOptionsOf(options), stages.buffers, test);
-    EXPECT_GT(test.fits[0].explains, 0.0);
-    const double longest = 0.05 * stages.data.records[0].units.cycle;
-    const double share = test.fits[0].size / (is_late ? longest : -longest);
-    EXPECT_GT(share, 0.9);
-    EXPECT_LE(share, 1 + 1e-9);
-  }
-}
-
 // --- position
 
 TEST(FirstCause, OfASlipForceThatGrowsAlongTheStrokeIsThat) {
@@ -273,12 +217,6 @@ TEST(Covariates, ThatAreOneChannelAreOneCauseByTheLastOfThem) {
   EXPECT_EQ(count, 1) << "neither the volts, nor what follows the force itself";
 }
 
-TEST(Covariates, ThatAreFittedAlreadyInAnotherUnitAreNoCause) {
-  FitOptions options;
-  options.covariates = {"volts"};
-  EXPECT_EQ(Find(Fitted(WithPressure(), options), "covariate"), nullptr);
-}
-
 // --- advice
 
 std::string Accepted(const Stages& stages, std::string_view wanted) {
@@ -306,16 +244,6 @@ TEST(Advice, IsWithheldWhereTheProgramWouldRefuseIt) {
   FitOptions held;
   held.fixed["viscous"] = 1.0;
   EXPECT_EQ(Accepted(Stages(record, held), "--viscous fit"), "") << "two values of one option";
-}
-
-TEST(Advice, OfAnAsymmetryNamesTheInitialStateThatItNeeds) {
-  const Record record = With([](const Place&) { return 0.0; });
-  EXPECT_EQ(Accepted(Stages(record), "--asymmetry fit"), "--asymmetry fit --initial-state virgin");
-  FitOptions asymmetric;
-  asymmetric.terms = {"asymmetry"};
-  EXPECT_EQ(Accepted(Stages(record, asymmetric), "--lag fit"), "--lag fit --initial-state virgin");
-  asymmetric.initial_state = InitialState::kVirgin;
-  EXPECT_EQ(Accepted(Stages(record, asymmetric), "--lag fit"), "--lag fit");
 }
 
 }  // namespace

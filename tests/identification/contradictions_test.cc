@@ -152,55 +152,6 @@ TEST(Contradictions, EnergyOfEqualSlipForcesIsThatOfTheSteadyLoop) {
   }
 }
 
-TEST(Contradictions, StiffnessIncludesWhatASmallShapeExponentWouldMakeOfIt) {
-  // Far from slip α stops at 0 in half of the fits, and σ moves by α/2·T*/Tc.
-  int at_zero = 0;
-  int covered = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const BranchLaw law{5e7, 0.01 + 0.09 * static_cast<double>(seed) / 40, 40.0};
-    const double amplitude = 0.01 * law.slip_force / law.tangential_stiffness;
-    const double noise = 0.002 * 0.01 * law.slip_force;
-    const FitResult fit = FitOne(NoisyLoop(law, amplitude, noise, seed));
-    if (fit.Find("alpha")->status != ParameterStatus::kAtLowerBound) continue;
-    const ParameterEstimate& sigma = *fit.Find("sigma");
-    ++at_zero;
-    covered += sigma.lower95.value_or(0) <= law.tangential_stiffness &&
-               law.tangential_stiffness <= sigma.upper95.value_or(HUGE_VAL);
-  }
-  ASSERT_GE(at_zero, 5);
-  // Of 95 % fewer are missed than 0.15·n + 2 but once in a thousand for n up to 40.
-  EXPECT_GE(covered, at_zero - static_cast<int>(0.15 * at_zero + 2));
-}
-
-TEST(Contradictions, CorrelationsOfNearlyDependentColumnsStayWithinOne) {
-  const Stages stages(NoisyLoop(kMindlin, 2e-6, 0.1, 5));
-  const auto rows = static_cast<Eigen::Index>(stages.problem.size());
-  Noise noise;
-  noise.variance = 1.0;
-  noise.samples = stages.problem.size();
-  noise.autocorrelation.order = 1;
-  noise.autocorrelation.coefficients[0] = 0.9;
-  noise.autocorrelation.correlations = {1.0, 0.9};
-  noise.autocorrelation.innovation_share = 1 - 0.81;
-  for (const double apart : {1e-3, 1e-5, 1e-7, 1e-9}) {
-    Eigen::MatrixXd jacobian(rows, 3);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const double at = static_cast<double>(i) / static_cast<double>(rows);
-      jacobian.row(i) << std::sin(7 * at), std::sin(7 * at) + apart * std::cos(3 * at),
-          1 + apart * at;
-    }
-    const LocalUncertainty local = AnalyseJacobian(stages.problem, {0, 1, 2}, jacobian, noise, {});
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      ASSERT_GT(local.factor(i, i), 0.0) << apart;
-      for (Eigen::Index j = 0; j < 3; ++j) {
-        const double correlation =
-            local.factor(i, j) / std::sqrt(local.factor(i, i) * local.factor(j, j));
-        EXPECT_LE(std::abs(correlation), 1 + 1e-14) << apart;
-      }
-    }
-  }
-}
-
 TEST(Contradictions, SlipForceIsNotBelowTheForceThatWasCarried) {
   FitResult fit;
   fit.parameters.resize(3);

@@ -53,28 +53,6 @@ TEST(Covariate, OfTwoColumnsIsRecovered) {
   EXPECT_EQ(pressure->status, ParameterStatus::kFree);
 }
 
-TEST(Covariate, KeepsItsSignWhereTheFileTurnsTheForceRound) {
-  Record record = LoopBesideTwo();
-  for (double& force : record.force) force = -force;
-  FitOptions options;
-  options.covariates = {"oil temperature", "p"};
-  const FitResult fit = FitOne(record, options);
-  EXPECT_EQ(fit.force_sense, -1);
-  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-  EXPECT_NEAR(fit.Find("covariate_p")->value, -kPerBar, kNoiseFree * kLaw.slip_force);
-}
-
-TEST(Covariate, ThatIsKnownIsTakenOff) {
-  FitOptions options;
-  options.covariates = {"p", "oil temperature"};
-  options.fixed["covariate_p"] = kPerBar;
-  const FitResult fit = FitOne(LoopBesideTwo(), options);
-  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-  EXPECT_EQ(fit.Find("covariate_p")->status, ParameterStatus::kFixed);
-  EXPECT_NEAR(fit.Find("covariate_oil_temperature")->value, kPerKelvin,
-              kNoiseFree * kLaw.slip_force);
-}
-
 TEST(Covariate, LeavesTheOffsetAsItIsInTheMiddleOfTheColumnsRange) {
   const Record record = LoopBesideTwo();
   FitOptions options;
@@ -168,25 +146,6 @@ TEST(Covariate, NotRequestedIsNamedAsCauseAndNotApplied) {
   }
   options.covariates = {"p", "oil temperature"};
   EXPECT_EQ(FitOne(record, options).adequacy.verdict, AdequacyVerdict::kAdequate);
-}
-
-TEST(Covariate, FollowingTheContactIsAdvisedWithAKnownFactorBesideAnOutlierOfNoWeight) {
-  Record record = Loop();
-  std::vector<double> column = Wandering(record.size(), 0.0, 1.0);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    column[i] += record.force[i] / kLaw.slip_force;
-    record.force[i] += kPerBar * column[i];
-  }
-  record.covariates = {{.name = "p", .unit = "bar", .values = std::move(column)}};
-  Generator generator(12);
-  record = WithForceNoise(record, 0.01 * kLaw.slip_force, generator);
-  record.force[100] += kLaw.slip_force / 2;  // 10 of the standard deviations that p leaves
-  FitOptions options;
-  options.preparation.leave_out_glitches = false;
-  for (const Loss loss : {Loss::kNone, Loss::kTukey}) {
-    options.loss = loss;
-    EXPECT_EQ(FirstCause(FitOne(record, options)).option, "--covariate p=C");
-  }
 }
 
 TEST(Covariate, HasANameThatNeedsNoQuoting) {

@@ -656,13 +656,6 @@ TEST(Departures, CountsSamplesWithoutTime) {
   }
 }
 
-TEST(Departures, CountsSamplesIfTimeStandsStill) {
-  Record record = Complete();
-  record.time[31] = record.time[30];
-  Stages stages(record);
-  EXPECT_FALSE(ColumnsOf(stages).timed);
-}
-
 TEST(Departures, InsertedTurningPointsTakeNoTime) {
   // Where they do not overshoot, nothing else changes but next to a turn, which no difference is
   // then taken across.
@@ -719,70 +712,6 @@ TEST(Departures, ScalesTermsWithLoadOfRecord) {
   }
 }
 
-TEST(Departures, UsesMissedTravelForHeldDisplacement) {
-  // Read anew with every fourth sample, while the contact follows a straight line to the next.
-  constexpr std::size_t kEvery = 4;
-  constexpr double kShare = 1e-6;  // of that way: second order is as much less than the first
-  for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-    SCOPED_TRACE(state == InitialState::kVirgin ? "virgin" : "steady");
-    Record record;
-    // The turns are readings: what the first of the repeats is.
-    const History readings = testing::Cycling(testing::Wave::kSine, kLength, 2.25, 40);
-    History missed;
-    for (std::size_t i = 0; i + 1 < readings.size(); ++i) {
-      for (std::size_t k = 0; k < kEvery; ++k) {
-        record.displacement.push_back(readings[i]);
-        missed.push_back((readings[i + 1] - readings[i]) * static_cast<double>(k) / kEvery);
-      }
-    }
-    record.displacement.push_back(readings.back());
-    missed.push_back(0.0);
-    const Contact contact{&Model("mindlin-dahl"), kSticking, state, 0.0};
-    record.force = contact.Force(record.displacement);
-    Stages stages(record, {}, state);
-    const DepartureColumns columns = ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact),
-                                                         stages.buffers.response, 99);
-    const std::size_t c = PlaceOf(columns, "held_displacement");
-    ASSERT_LT(c, columns.of.size());
-    History seen = record.displacement;
-    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += kShare * missed[i];
-    const std::vector<double> force = contact.Force(seen);
-    double worst = 0.0;
-    double largest = 0.0;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const double expected = (force[i] - record.force[i]) / kShare;
-      const double found =
-          columns.columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) /
-          columns.unit_of_size[c] * stages.data.force;
-      largest = std::max(largest, std::abs(expected));
-      worst = std::max(worst, std::abs(found - expected));
-    }
-    EXPECT_GT(largest, 0.01 * kSlipForce);
-    EXPECT_LT(worst / largest, 1e-3);
-  }
-}
-
-TEST(Departures, OffersDisplacementTermsOnlyIfAmplitudesDiffer) {
-  Stages stages(Complete());
-  const DepartureColumns columns = ColumnsOf(stages);
-  EXPECT_EQ(PlaceOf(columns, "held_displacement"), columns.of.size()) << "nothing is repeated";
-  EXPECT_EQ(PlaceOf(columns, "amplitude_dependence"), columns.of.size()) << "all strokes are alike";
-}
-
-TEST(Departures, AsksForMeasuredLoadIfLawAssumesConstantLoad) {
-  Record record = Complete();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.normal_load.push_back(100.0 + 20.0 * std::sin(0.1 * static_cast<double>(i)));
-  }
-  Stages following(record);
-  EXPECT_EQ(PlaceOf(ColumnsOf(following), "normal_load"), ColumnsOf(following).of.size());
-  FitOptions options;
-  options.terms = {"rig_stiffness"};
-  Stages behind_a_rig(record, options);
-  const DepartureColumns columns = ColumnsOf(behind_a_rig);
-  EXPECT_LT(PlaceOf(columns, "normal_load"), columns.of.size());
-}
-
 TEST(Departures, SkipsTermsThatAreFitted) {
   FitOptions options;
   options.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"};
@@ -793,18 +722,6 @@ TEST(Departures, SkipsTermsThatAreFitted) {
     EXPECT_EQ(PlaceOf(columns, code), columns.of.size()) << code;
   }
   EXPECT_LT(PlaceOf(columns, "channel_lag"), columns.of.size());
-}
-
-TEST(Departures, DropsLastTermsFirstIfColumnsAreFew) {
-  Stages stages(Complete());
-  const std::vector<double> theta =
-      TrueTheta(stages, {&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0});
-  const auto most = [&](std::size_t columns) {
-    return ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, columns).of;
-  };
-  EXPECT_EQ(most(3), (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_EQ(most(6), (std::vector<std::size_t>{0, 1, 2, 3})) << "the law's shape has three";
-  EXPECT_EQ(most(7), (std::vector<std::size_t>{0, 1, 2, 3, 5, 5, 5}));
 }
 
 }  // namespace

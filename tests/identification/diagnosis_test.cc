@@ -56,30 +56,6 @@ TEST(FindMisfit, SaysWhereItIsLargestAndWhomItConcerns) {
   EXPECT_THAT(failing->parameters, ElementsAre("sigma", "alpha"));
 }
 
-TEST(FindWideIntervals, AreOfFreeParametersWithBothEnds) {
-  FitResult result = Made();
-  EXPECT_TRUE(FindWideIntervals(result, {}).empty());
-  for (ParameterEstimate& estimate : result.parameters) {
-    estimate.lower95 = 1.0;
-    estimate.upper95 = 50.0;
-  }
-  const auto codes = [&] {
-    std::vector<std::string> found;
-    for (const Finding& finding : FindWideIntervals(result, {})) {
-      EXPECT_EQ(finding.kind, "wide");
-      EXPECT_EQ(finding.Number("lower"), 1.0);
-      EXPECT_EQ(finding.Number("upper"), 50.0);
-      EXPECT_EQ(std::string(finding.code), finding.parameters.at(0) + "_not_identifiable");
-      found.emplace_back(finding.parameters.at(0));
-    }
-    return found;
-  };
-  EXPECT_THAT(codes(), ElementsAre("sigma", "alpha", "slip_force"));
-  result.parameters[0].status = ParameterStatus::kFixed;
-  result.parameters[2].upper95.reset();
-  EXPECT_THAT(codes(), ElementsAre("alpha"));
-}
-
 TEST(FindOpenSlipForce, NamesTheShapeToo) {
   FitResult result = Made();
   EXPECT_TRUE(FindOpenSlipForce(result, {.open_above = false}).empty());
@@ -100,48 +76,6 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   EXPECT_EQ(findings[0].Number("amplitude"), 0.5e-6);
   result.parameters[1].status = ParameterStatus::kFixed;
   EXPECT_EQ(FindOpenSlipForce(result, {.open_above = true}).size(), 1U);
-}
-
-TEST(FindUndetermined, DistinguishesSingleParametersFromCombinations) {
-  const auto displacement = testing::Cycling(testing::Wave::kSine, 1.0, 2.0, 40);
-  const testing::Stages stages(testing::MakeRecord(displacement, displacement));
-  LocalUncertainty local;
-  local.columns = {kStiffness, kShape, kSlipForce};
-  local.determined = {true, true, true};
-  EXPECT_FALSE(FindUndetermined(stages.problem, local));
-  local.determined = {false, true, false};
-  local.null = {{1, 0, -1}};
-  const auto combination = FindUndetermined(stages.problem, local);
-  ASSERT_TRUE(combination);
-  EXPECT_EQ(combination->code, "undetermined_combination");
-  EXPECT_THAT(combination->parameters, ElementsAre("sigma", "slip_force"));
-  local.null = {{1, 0, 0}, {0, 0, 1}};
-  EXPECT_EQ(FindUndetermined(stages.problem, local)->code, "undetermined_parameter");
-}
-
-TEST(FoundRigAlternative, HasBothReadings) {
-  const Finding finding = FoundRigAlternative(Made(), {3e6, 2e7}, {});
-  EXPECT_EQ(finding.Number("rig_stiffness"), 3e6);
-  EXPECT_EQ(finding.Number("alpha"), 0.4);
-}
-
-TEST(FindSearchLimit, IsNoneOfAnOriginFromWhichTheContactSlidBeforeItsRecord) {
-  const auto displacement = testing::Cycling(testing::Wave::kSine, 2e-6, 2.0, 40);
-  testing::Stages stages(testing::MakeRecord(
-      displacement,
-      testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}, displacement)));
-  const Parameters& parameters = stages.problem.parameters;
-  const std::size_t origin = parameters.PositionOf("displacement_offset", 0);
-  Solution solution = stages.Solve();
-  solution.theta[origin] = parameters[origin].lower;
-  solution.side[origin] = BoundSide::kLower;
-  // Micrometres from the bound to the record: a contact that slips at 1.5 µm slid, one that is ten
-  // thousand times softer did not.
-  EXPECT_FALSE(FindSearchLimit(stages.problem, solution));
-  solution.theta[kStiffness] -= std::log(1e4);
-  const std::optional<Finding> finding = FindSearchLimit(stages.problem, solution);
-  ASSERT_TRUE(finding);
-  EXPECT_EQ(finding->parameters.front(), "displacement_offset");
 }
 
 }  // namespace

@@ -127,35 +127,6 @@ TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
   EXPECT_LE(*slip_force.lower95, *facts.half_gap - margin);
 }
 
-/// A record, and the same with three times the forces under three times the load: of the mean load,
-/// at which σ and Tc are given, the first has a half.
-FitResult FitUnderTwoLoads(const Record& record) {
-  Generator generator(1);
-  std::vector<Record> records(2, WithForceNoise(record, kNoise, generator));
-  for (double& force : records[1].force) force *= 3;
-  FitOptions options;
-  options.normal_loads = {50, 150};
-  options.fixed = {{"load_exponent", 1.0}};
-  return Fit(records, options, Depth::kFull);
-}
-
-TEST(Discrepancy, ContainsTheGapOfAFurtherCycleAtTheMeanLoad) {
-  Record record = Loop();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] *= (i / 300) % 2 == 0 ? 1.15 : 0.85;
-  }
-  const FitResult fit = FitUnderTwoLoads(record);
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  const LoopFacts& facts = fit.records[0].facts;
-  ASSERT_TRUE(slip_force.includes_discrepancy && slip_force.lower95 &&
-              facts.half_gap_standard_deviation);
-  ASSERT_EQ(&fit.WidestRecord(), &fit.records[0]);
-  const auto cycles = static_cast<double>(facts.steady_cycles);
-  const double margin = StudentQuantile(cycles - 1, 0.95) * *facts.half_gap_standard_deviation *
-                        std::sqrt(1 + 1 / cycles);
-  EXPECT_LE(*slip_force.lower95, (*facts.half_gap - margin) / 0.5);
-}
-
 /// A record whose force grows towards the ends of the stroke, fitted as of a virgin contact.
 struct Bulging {
   Bulging() {
@@ -204,47 +175,6 @@ struct Bulging {
   std::vector<double> theta;
 };
 
-// Central differences of a step of 1e-5 leave 1e-8 of a column.
-constexpr double kDifferences = 1e-6;
-
-TEST(Discrepancy, PartsOfTheStrokesAskForTheStepsOfTheirOwn) {
-  Bulging bulging;
-  Stages& stages = *bulging.stages;
-  Solution solution;
-  solution.theta = bulging.theta;
-  solution.side.assign(bulging.theta.size(), BoundSide::kInside);
-  Response response;
-  const Estimates estimates(stages.problem, solution, KnownNoise(1e-6, stages.problem.size()), {},
-                            {}, response);
-  const std::vector<double> steps = SlipForceOfParts(stages.problem, estimates, {});
-  const std::vector<double> expected = bulging.Steps();
-  ASSERT_EQ(steps.size(), expected.size());
-  ASSERT_GE(steps.size(), 4u);
-  const double largest =
-      std::abs(*std::ranges::max_element(expected, {}, [](double step) { return std::abs(step); }));
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    EXPECT_NEAR(steps[k], expected[k], kDifferences * largest) << k;
-  }
-}
-
-TEST(Discrepancy, ReachesAsFarAsAFurtherPartOfTheStrokesMayAskFor) {
-  Bulging bulging;
-  const std::vector<double> steps = bulging.Steps();
-  const auto count = static_cast<double>(steps.size());
-  double mean = 0.0;
-  for (const double step : steps) mean += step / count;
-  double squares = 0.0;
-  for (const double step : steps) squares += (step - mean) * (step - mean);
-  const double spread = StudentQuantile(count - 1, 0.95) * std::sqrt(squares / (count - 1));
-  const ParameterEstimate& slip_force = *bulging.fit.Find("slip_force");
-  ASSERT_TRUE(slip_force.includes_discrepancy);
-  // Below the largest force with the error of a mean over the parts, which would limit it.
-  ASSERT_LT(
-      slip_force.value * std::exp(spread),
-      bulging.fit.records[0].facts.peak_force + bulging.fit.adequacy.misfit / std::sqrt(count));
-  EXPECT_NEAR(*slip_force.upper95 / (slip_force.value * std::exp(spread)), 1.0, kDifferences);
-}
-
 TEST(Discrepancy, LoopThatDoesNotSlideKeepsItsVerdictOnTheSlipForce) {
   const FitResult fit = FitNoisy(OfPosition(0.4, /*reach=*/0.3e-6));  // a fifth of gross slip
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
@@ -263,16 +193,6 @@ Record OfSpeed() {
         60.0 * std::copysign(std::pow(std::abs(std::cos(phase)), 0.5), std::cos(phase));
   }
   return record;
-}
-
-TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlidesUnderHalfTheMeanLoad) {
-  const FitResult fit = FitUnderTwoLoads(OfSpeed());
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  ASSERT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  ASSERT_EQ(&fit.WidestRecord(), &fit.records[0]);
-  const double peak = fit.records[0].facts.peak_force / 0.5;
-  EXPECT_LE(slip_force.value, peak / 0.9);
-  EXPECT_GE(slip_force.value, 0.9 * *fit.records[0].facts.half_gap / 0.5);
 }
 
 TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {

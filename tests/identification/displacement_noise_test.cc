@@ -141,22 +141,5 @@ TEST(DisplacementNoise, IsNoneInACleanRecord) {
   EXPECT_TRUE(testing::Recovers(fit, kLaw, testing::kNoiseFree));
 }
 
-TEST(DisplacementNoise, AGateOnACleanRecordCostsNoMoreThanItsOwnNoiseEstimate) {
-  FitOptions options = Virgin();
-  options.preparation.reversal_gate = 0.05 * kReach;
-  // A sine of 200 samples has third differences of (2π/200)³ = 3e-5 of X: 1e-5 of noise at most,
-  // and the parabolas agree to 2.5 of it.
-  EXPECT_TRUE(testing::Recovers(FitOne(Clean(), options), kLaw, 1e-3));
-}
-
-TEST(DisplacementNoise, GivesTheSameResultEveryTime) {
-  Generator generator(9);
-  const Record record = WithNoise(Clean(), 0.01 * kReach, generator);
-  const FitResult one = FitOne(record, Virgin());
-  const FitResult other = FitOne(record, Virgin());
-  EXPECT_EQ(one.law.tangential_stiffness, other.law.tangential_stiffness);
-  EXPECT_EQ(one.Find("sigma")->standard_error, other.Find("sigma")->standard_error);
-}
-
 }  // namespace
 }  // namespace mindahl::identification::displacement_noise_test

@@ -151,34 +151,6 @@ TEST(Estimates, HaveWiderErrorsUnderCorrelatedNoiseCorrectedForAbsorbedFraction)
   }
 }
 
-TEST(Estimates, FollowTheParabolaIfAnotherParameterIsMoved) {
-  // Where its cost |r + J·Δθ|² is least, J of what is not moved is at right angles to the residual,
-  // J from differences; and the cost has risen by the squared step over the parameter's variance.
-  constexpr double kStep = 0.03;
-  Stages stages(NoisyLoop(), Virgin());
-  const Solution solution = stages.Solve();
-  const Noise noise = KnownNoise(1.0, stages.data.counted);
-  const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
-  const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
-  const auto& free = stages.problem.parameters.free();
-  for (const std::size_t moved : {kStiffness, kSlipForce}) {
-    const std::vector<double> theta = estimates.Beside(moved, kStep);
-    EXPECT_EQ(theta[moved], solution.theta[moved] + kStep);
-    Eigen::VectorXd step(jacobian.cols());
-    for (std::size_t j = 0; j < free.size(); ++j) {
-      step[static_cast<Eigen::Index>(j)] = theta[free[j]] - solution.theta[free[j]];
-    }
-    const Eigen::VectorXd change = jacobian * step;
-    for (std::size_t j = 0; j < free.size(); ++j) {
-      if (free[j] == moved) continue;
-      const auto column = jacobian.col(static_cast<Eigen::Index>(j));
-      EXPECT_NEAR(column.dot(change) / (column.norm() * change.norm()), 0.0, kDifferences);
-    }
-    const double rise = std::pow(kStep / estimates.ErrorOfTheta(moved), 2);
-    EXPECT_NEAR(change.squaredNorm() / rise, 1.0, kDifferences);
-  }
-}
-
 TEST(Estimates, AtABoundReachOneSidedFromIt) {
   FitOptions options = Virgin();
   for (const Interval& bounds : {Interval{0.45, 2.0}, Interval{0.0, 0.35}}) {
@@ -208,36 +180,6 @@ TEST(Estimates, AtABoundReachOneSidedFromIt) {
     EXPECT_NEAR(estimates.ErrorOfTheta(kStiffness) / std::sqrt(1e-4 * rest(0, 0)), 1.0,
                 kDifferences);
     EXPECT_TRUE(std::isnan(estimates.Correlation(kStiffness, kShape)));
-  }
-}
-
-TEST(Estimates, OfAMirroredRecordHaveMirroredCorrelations) {
-  const Record record = NoisyLoop();
-  const FitResult plain = IntervalsOf(record, Virgin());
-  struct Mirror {
-    double displacement;
-    double force;
-  };
-  for (const auto& [displacement, force] : {Mirror{1, -1}, {-1, 1}, {-1, -1}}) {
-    const FitResult mirrored = IntervalsOf(testing::Scaled(record, displacement, force), Virgin());
-    const auto sign_of = [&](const std::string& name) {
-      return name == "force_offset" ? force : name == "displacement_offset" ? displacement : 1.0;
-    };
-    const std::size_t count = plain.parameters.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::string& one = plain.parameters[i].name;
-      const double value = sign_of(one) * plain.parameters[i].value;
-      EXPECT_NEAR(mirrored.parameters[i].value, value, 1e-5 * std::abs(value)) << one;
-      const double error = plain.parameters[i].standard_error.value_or(0.0);
-      EXPECT_NEAR(mirrored.parameters[i].standard_error.value_or(0.0), error, 1e-4 * error) << one;
-      for (std::size_t j = 0; j < count; ++j) {
-        const double expected =
-            plain.correlation[i * count + j] * sign_of(one) * sign_of(plain.parameters[j].name);
-        if (std::isnan(expected)) continue;
-        EXPECT_NEAR(mirrored.correlation[i * count + j], expected, 1e-5)
-            << one << ", " << plain.parameters[j].name;
-      }
-    }
   }
 }
 
@@ -274,36 +216,6 @@ TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
   const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
   const double once = estimates.ErrorOfTheta(kShape);
   EXPECT_NEAR(*fit.Find("alpha")->standard_error / (std::sqrt(repeating) * once), 1.0, 1e-4);
-}
-
-TEST(Estimates, OfDisplacementNoiseCountItOnce) {
-  // With a known noise of the force and draws E of what the displacement's does, by hand:
-  // s²·(JᵀJ)⁻¹(JᵀSSJ + JᵀEEᵀJ/(K s²))(JᵀJ)⁻¹.
-  constexpr double kVariance = 1e-4;
-  Stages stages(NoisyLoop(), Virgin());
-  const Solution solution = stages.Solve();
-  const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
-  Noise noise = KnownNoise(kVariance, stages.data.counted);
-  Generator generator(8);
-  DisplacementEffect effect{Eigen::MatrixXd(jacobian.rows(), 3), kVariance};
-  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
-    noise.force_share.push_back(testing::Uniform(generator, 0.2, 1.0));
-    for (Eigen::Index k = 0; k < 3; ++k) effect.residuals(i, k) = 0.02 * testing::Normal(generator);
-  }
-  const Estimates estimates(stages.problem, solution, noise, effect, {}, stages.buffers.response);
-  const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
-  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
-  const Eigen::MatrixXd of_force = share.asDiagonal() * jacobian;
-  const Eigen::MatrixXd drawn = jacobian.transpose() * effect.residuals;
-  const Eigen::MatrixXd covariance =
-      inverse * (kVariance * of_force.transpose() * of_force + drawn * drawn.transpose() / 3.0) *
-      inverse;
-  const auto& free = stages.problem.parameters.free();
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const auto place = static_cast<Eigen::Index>(j);
-    EXPECT_NEAR(estimates.ErrorOfTheta(free[j]) / std::sqrt(covariance(place, place)), 1.0,
-                kDifferences);
-  }
 }
 
 TEST(Estimates, OfADirectionWithoutEffectAreNone) {

@@ -236,16 +236,6 @@ TEST(Fitter, GoesOnFromOneCycleToTheNextToTheSameMinimum) {
   }
 }
 
-TEST(Fitter, GoesOnOverAJumpOfTheFriction) {
-  Fitter going(OfSteadyCycles());
-  Fitter fresh(OfSteadyCycles());
-  for (const double scale : {1.0, 3.0, 0.2, 10.0}) {
-    const Record cycle = NoisyCycle(17, scale);
-    const FitResult expected = fresh.Fit(cycle, Depth::kErrors);
-    ExpectSameMinimum(going.Continue(cycle, Depth::kErrors), expected);
-  }
-}
-
 // There the likelihood has several minima, and where one begins decides which is found.
 TEST(Fitter, BeginsAnewWhereCyclesDoNotTellTheLaw) {
   constexpr double kPartial = 0.12;
@@ -265,16 +255,6 @@ TEST(Fitter, BeginsAnewWhereCyclesDoNotTellTheLaw) {
       ExpectSame(going.Continue(cycle, Depth::kErrors), expected);
     }
   }
-}
-
-TEST(Fitter, GoesOnAfterAFitThatFailedAsIfItHadNotBeen) {
-  FitOptions options = OfSteadyCycles();
-  options.preparation.force_sense = 1;
-  Fitter going(options);
-  Fitter fresh(options);
-  const Record cycle = NoisyCycle(5);
-  ASSERT_FALSE(going.Continue(testing::Scaled(cycle, 1.0, -1.0), Depth::kErrors).converged);
-  ExpectSame(going.Continue(cycle, Depth::kErrors), fresh.Fit(cycle, Depth::kErrors));
 }
 
 }  // namespace

@@ -41,22 +41,6 @@ TEST(Grade, LeavesTheHalfGapWhereTcIsMoreThanAQuarterOffToEitherSide) {
   EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.3)) << "the loop does not slide";
 }
 
-TEST(Grade, LoopSlidesWhereItIsARectangleWithAGap) {
-  const loop::LoopFacts plain = SlidingFit().records[0].facts;
-  EXPECT_TRUE(loop::Slides(plain));
-  loop::LoopFacts other = plain;
-  other.energy_ratio = 0.5;
-  EXPECT_FALSE(loop::Slides(other)) << "Jenkins' element at twice its travel of stick";
-  other = plain;
-  other.closed = false;
-  EXPECT_FALSE(loop::Slides(other));
-  other = plain;
-  other.half_gap = 4.9;
-  EXPECT_FALSE(loop::Slides(other)) << "less than half of T*: no plateau";
-  other.half_gap.reset();
-  EXPECT_FALSE(loop::Slides(other));
-}
-
 TEST(Grade, MisfitIsHeldAgainstWhatWasMeasured) {
   EXPECT_EQ(ScaleOfMisfit(SlidingFit()), 8.0);
   EXPECT_EQ(ScaleOfMisfit(SlidingFit(/*energy_ratio=*/0.2)), 10.0);
@@ -135,12 +119,6 @@ TEST(Grade, GapIsThatAtTheMeanLoad) {
   fit.records[0].load_ratio = 2.0;
   ASSERT_TRUE(MeasuredHalfGap(fit));
   EXPECT_EQ(*MeasuredHalfGap(fit), 4.0);
-}
-
-TEST(Grade, EffectiveParametersAreNotNamed) {
-  FitResult fit = SlidingFit();
-  fit.parameters[0].includes_discrepancy = true;
-  EXPECT_EQ(WithoutEffective(fit, {"sigma", "alpha"}), std::vector<std::string>{"alpha"});
 }
 
 }  // namespace

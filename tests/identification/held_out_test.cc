@@ -6,37 +6,6 @@
 namespace mindahl::identification::held_out_test {
 namespace {
 
-constexpr double kRounding = 1e-14;
-
-TEST(MeanOverParts, HasTheErrorOfWeightedPartsOfFoldsThatShareTheirSamples) {
-  // 1, 2, 6 of 1, 1 and 2 samples: mean 15/4, deviations weighted −11/16, −7/16 and 18/16. Three
-  // parts leave two degrees of freedom, and of three folds 1 + 3/2 counts.
-  const std::vector<Part> parts = {{.samples = 1}, {.samples = 1}, {.samples = 2}};
-  const MeanOverParts mean = Mean(std::vector<double>{1, 2, 6}, parts, 3);
-  EXPECT_NEAR(mean.mean, 3.75, kRounding);
-  const double squares = (11.0 * 11 + 7.0 * 7 + 18.0 * 18) / 256;
-  EXPECT_NEAR(mean.standard_error, std::sqrt(squares * 3 / 2 * 2.5), kRounding);
-}
-
-TEST(PredictsWorse, IsByMoreThanAStandardErrorOfTheDifference) {
-  // The mean difference is 3.75 with a standard error of √(446/256·15/4) = 2.556, as above, then
-  // 2.25 with the same error.
-  const std::vector<Part> parts = {{.samples = 1}, {.samples = 1}, {.samples = 2}};
-  const std::vector<double> best = {7, 5, 3};
-  EXPECT_TRUE(PredictsWorse(std::vector<double>{8, 7, 9}, best, parts, 3, 0.0));
-  EXPECT_FALSE(PredictsWorse(std::vector<double>{6.5, 5.5, 7.5}, best, parts, 3, 0.0));
-  EXPECT_FALSE(PredictsWorse(std::vector<double>{8, 7, 9}, best, parts, 3, 1.5)) << "rounding";
-  EXPECT_FALSE(PredictsWorse({}, best, parts, 3, 0.0)) << "nothing was predicted";
-}
-
-TEST(MeanOverParts, IsAboveZeroByChanceAsStudentsDistributionHasIt) {
-  // Student's t exceeds 2.7764451 with a probability of 2.5 % at four degrees of freedom.
-  EXPECT_NEAR(ChanceOfMean({.mean = 2.7764451 * 3, .standard_error = 3}, 5), 0.025, 1e-8);
-  EXPECT_NEAR(ChanceOfMean({.mean = -2.7764451 * 3, .standard_error = 3}, 5), 0.975, 1e-8);
-  EXPECT_EQ(ChanceOfMean({.mean = 1, .standard_error = 0}, 5), 0.5)
-      << "parts that agree to the bit";
-}
-
 /// A record that turns at 10, 20, … 70, of which the samples from one on count.
 FitResult FitThatTurns() {
   FitResult fit;
@@ -72,26 +41,6 @@ TEST(Strokes, BeginWithTheFirstThatIsNotSkipped) {
   EXPECT_EQ(strokes.back().end, 70U);
 }
 
-TEST(ContinuedFrom, HoldsWhatRanToABoundAndBeginsWithTheRest) {
-  FitResult fit = FitThatTurns();
-  fit.force_sense = -1;
-  fit.records[0].initial_state = models::InitialState::kVirgin;
-  for (const auto& [name, status] : {std::pair("sigma", ParameterStatus::kFree),
-                                     {"alpha", ParameterStatus::kAtLowerBound},
-                                     {"slip_force", ParameterStatus::kFixed}}) {
-    ParameterEstimate& estimate = fit.parameters.emplace_back();
-    estimate.name = name;
-    estimate.status = status;
-    estimate.value = 7.0;
-  }
-  const FitOptions options = ContinuedFrom(fit, {});
-  EXPECT_EQ(options.start, (std::map<std::string, double>{{"sigma", 7.0}}));
-  EXPECT_EQ(options.fixed, (std::map<std::string, double>{{"alpha", 7.0}}));
-  EXPECT_EQ(options.starts, 1U);
-  EXPECT_EQ(options.preparation.force_sense, -1);
-  EXPECT_THAT(options.initial_states, ElementsAre(models::InitialState::kVirgin));
-}
-
 /// Three cycles of 100 samples from rest: they turn at 25, 75, … 275, and two of them close.
 struct ThreeCycles {
   ThreeCycles() {
@@ -120,14 +69,6 @@ struct ThreeCycles {
   std::vector<Part> cycles;
 };
 
-TEST(PredictParts, NeedAsManySamplesAsParametersBesideThoseHeldOut) {
-  const ThreeCycles made;
-  ASSERT_EQ(made.samples.count, 301U);
-  ASSERT_EQ(made.cycles.size(), 2U);
-  EXPECT_THAT(made.Predict(201), SizeIs(2));
-  EXPECT_THAT(made.Predict(202), IsEmpty());
-}
-
 TEST(PredictParts, AreMeanSquaresOfAFitThatHasNotSeenThePart) {
   const ThreeCycles made;
   const std::vector<double> predicted = made.Predict(5);
@@ -147,22 +88,6 @@ TEST(PredictParts, AreMeanSquaresOfAFitThatHasNotSeenThePart) {
     constexpr double kSameMinimum = 1e-4;
     EXPECT_NEAR(predicted[k] / (squares / 100), 1.0, kSameMinimum) << k;
   }
-}
-
-TEST(PredictParts, LeaveOutWhatTheOptionsHoldOut) {
-  // The last quarter of a cycle is spoilt and held out: the fits to the rest must not see it.
-  ThreeCycles made;
-  for (std::size_t i = 276; i < 301; ++i) made.record.force[i] += 100.0;
-  made.options.preparation.held_out = {std::vector<bool>(301, false)};
-  for (std::size_t i = 276; i < 301; ++i) made.options.preparation.held_out[0][i] = true;
-  made.views = {made.record};
-  made.fit = FitOne(made.record, made.options);
-  made.samples = CountedSamples(made.fit, made.views);
-  EXPECT_EQ(made.samples.count, 276U);
-  const std::vector<double> predicted = made.Predict(5);
-  ASSERT_THAT(predicted, SizeIs(2));
-  // Noise of 0.2 N: of a mean of 100 squares the error is √(2/100).
-  for (const double square : predicted) EXPECT_NEAR(square / (0.2 * 0.2), 1.0, 5 * std::sqrt(0.02));
 }
 
 TEST(TermScores, ValuesOfLinearTermsAreThoseOfTheFitWithThem) {

@@ -176,36 +176,6 @@ TEST(Lag, ThatIsKnownIsTakenOff) {
   EXPECT_EQ(fit.records[0].left_out, 3U);
 }
 
-TEST(Lag, OfNoneIsAFitWithoutOne) {
-  const Record record = LateRecord(LawOf(0.7), TimesOf(2.25), 0.0);
-  FitOptions options;
-  options.fixed["lag"] = 0.0;
-  const FitResult with = FitOne(record, options);
-  const FitResult without = FitOne(record);
-  EXPECT_TRUE(Recovers(with, LawOf(0.7), kNoiseFree));
-  EXPECT_TRUE(Recovers(without, LawOf(0.7), kNoiseFree));
-  EXPECT_EQ(with.records[0].left_out, 0U);
-}
-
-TEST(Lag, IsLookedForUpToTenSamplesOfAFewAndATwentiethOfManyACycle) {
-  EXPECT_EQ(LongestLag(30), 0.2) << "no longer than a fifth of a cycle";
-  EXPECT_EQ(LongestLag(80), 10.0 / 80);
-  EXPECT_EQ(LongestLag(1000), 0.05);
-}
-
-TEST(Lag, LeavesOutWhatItsLongestMayCarryBeyondTheEnds) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  // 6 reversals, 7 strokes of 1200 samples: a mean cycle of 342.9, of which a twentieth is 17.1.
-  EXPECT_EQ(FitOne(LateRecord(law, TimesOf(3.0, kStep / 2), kStep), WithLag()).records[0].left_out,
-            2 * 18U);
-  const Record record = LateRecord(law, TimesOf(3.0), kStep);
-  FitOptions bounded = WithLag();
-  bounded.bounds["lag"] = {0.0, 4.5 * kStep};
-  const FitResult fit = FitOne(record, bounded);
-  EXPECT_EQ(fit.records[0].left_out, 5U) << "of the start alone";
-  EXPECT_TRUE(Recovers(fit, law, kWithLag));
-}
-
 TEST(Lag, IsRecoveredWhereSamplesAreUnevenAndStampsRepeat) {
   const BranchLaw law = LawOf(1.0 / 3);
   std::vector<double> time = TimesOf(2.25);
@@ -319,29 +289,6 @@ TEST(Lag, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
           << parameters.NameOf(free[static_cast<std::size_t>(j)]) << has_rig;
     }
   }
-}
-
-TEST(LaggedSamples, PutsReversalsWhereTheyAreAndSamplesWhereTheyWere) {
-  // Up to 3 and back to 0, a sample a unit of time, seen half a sample later.
-  Record record = MakeRecord({0, 1, 2, 3, 2, 1, 0}, {0, 1, 2, 3, 2, 1, 0});
-  FitOptions options;
-  options.fixed["lag"] = 0.5;
-  const Stages stages(record, options);
-  const ScaledRecord& scaled = stages.data.records[0];
-  LaggedSamples motion;
-  motion.MoveTo(scaled, 0.5 / scaled.units.half_duration, Memory::kReturnPoint, {});
-  std::vector<double> metres;
-  for (const double x : motion.displacement()) {
-    metres.push_back(x * stages.data.length + scaled.units.displacement_reference);
-  }
-  EXPECT_THAT(metres, ::testing::Pointwise(::testing::DoubleNear(1e-12),
-                                           {0.0, 0.0, 0.5, 1.5, 2.5, 3.0, 2.5, 1.5, 0.5, 0.0}));
-  EXPECT_THAT(motion.places(), ::testing::ElementsAre(1, 2, 3, 4, 6, 7, 8));
-  // Of those that were there: the first was not.
-  const auto rate = [&](std::size_t sample) { return motion.rates()[motion.places()[sample]]; };
-  EXPECT_EQ(rate(0), 0.0);
-  EXPECT_LT(rate(3), 0.0);
-  EXPECT_GT(rate(4), 0.0);
 }
 
 }  // namespace

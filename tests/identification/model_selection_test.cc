@@ -184,27 +184,6 @@ TEST(ModelSelection, RecordsAreJudgedTogether) {
   EXPECT_EQ(selection.held_out_cycles, 5u);
 }
 
-TEST(ModelSelection, CyclesThatAreSkippedAreNeitherScoredNorHeldOut) {
-  Record record = Measure({}, 10);
-  // 1.75 of 4.3 cycles end with the fourth reversal.
-  for (std::size_t i = 0; i < 105; ++i) record.force[i] += 20;
-  FitOptions options;
-  options.preparation.skip_cycles = 2;
-  const ModelSelection selection = Select({record}, options);
-  EXPECT_EQ(selection.held_out_cycles, 2u);
-  EXPECT_LT(selection.scores[selection.chosen].rms, 2 * kQuiet * kMindlin.slip_force);
-}
-
-TEST(ModelSelection, OutliersOfARobustFitAreNotScored) {
-  Record record = Measure({}, 11);
-  for (std::size_t i = 7; i < record.size(); i += 40) record.force[i] += 30;
-  FitOptions options;
-  options.loss = Loss::kTukey;
-  const ModelSelection selection = Select({record}, options);
-  EXPECT_EQ(Chosen(selection), "mindlin");
-  EXPECT_LT(selection.scores[selection.chosen].rms, 2 * kQuiet * kMindlin.slip_force);
-}
-
 TEST(ModelSelection, KnownPropertiesLimitTheCandidates) {
   const Record record = Measure({.cycles = 1.5}, 12);
   FitOptions options;
@@ -216,18 +195,6 @@ TEST(ModelSelection, KnownPropertiesLimitTheCandidates) {
   selection = Select({record}, options);
   ASSERT_EQ(selection.scores.size(), 4u);
   for (const ModelScore& score : selection.scores) EXPECT_FALSE(score.model->shape_exponent);
-}
-
-TEST(ModelSelection, NothingIsClaimedWhereNoFitConverges) {
-  FitOptions options;
-  options.max_iterations = 1;
-  const ModelSelection selection = Select({Measure({.cycles = 2.3}, 13)}, options);
-  EXPECT_FALSE(selection.fit.converged);
-  EXPECT_THAT(selection.verdict, HasSubstr("No model converged"));
-  for (const ModelScore& score : selection.scores) {
-    EXPECT_EQ(score.akaike_weight, 0);
-    EXPECT_THAT(score.remark, HasSubstr("not converged"));
-  }
 }
 
 TEST(ModelSelection, OptionsThatBreakARuleAreNamed) {
@@ -251,28 +218,6 @@ TEST(ModelSelection, OptionsThatBreakARuleAreNamed) {
   EXPECT_THAT(refusal(options, {}), HasSubstr("held-out mask has 1 values and samples has 91"));
   options.preparation.held_out = {std::vector<bool>(record.size(), true)};
   EXPECT_THAT(refusal(options, {}), HasSubstr("nothing is left of record 1"));
-}
-
-TEST(HeldOutSamples, DoNotCountButMakeHistory) {
-  const Record record = Measure({.cycles = 2.3, .noise = 0.0}, 0);
-  FitOptions options;
-  options.preparation.held_out = {std::vector<bool>(record.size(), false)};
-  Record spoiled = record;
-  // The two reversals in it make the history of what follows.
-  for (std::size_t i = 10; i < 60; ++i) {
-    options.preparation.held_out[0][i] = true;
-    spoiled.force[i] = -record.force[i];
-  }
-  options.preparation.force_sense = 1;
-  const FitResult fit = testing::FitOne(spoiled, options);
-  EXPECT_TRUE(testing::Recovers(fit, kMindlin, testing::kNoiseFree));
-  EXPECT_EQ(fit.records.front().left_out, 50u);
-  EXPECT_EQ(fit.residuals.samples, record.size() - 50);
-  // Held-out samples are predicted all the same: the residual is what was done to them.
-  for (std::size_t i = 10; i < 60; ++i) {
-    EXPECT_NEAR(fit.records.front().residual[i], 2 * record.force[i],
-                testing::kNoiseFree * kMindlin.slip_force);
-  }
 }
 
 TEST(ModelSelection, TheTribometerDoesNotTellAFreeShapeFromASoftRig) {

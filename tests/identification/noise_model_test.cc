@@ -123,45 +123,6 @@ TEST(NoiseModel, WhiteNoiseHasOrderZero) {
   RecordProperty("white_of_200", white);
 }
 
-TEST(NoiseModel, SamplesThatDoNotCountLeaveTheProcessAsItIs) {
-  constexpr double kRho = 0.9;
-  Generator generator(4);
-  // In one run, and scattered: half of the samples each, so the errors grow; pairs of neighbours
-  // that both count are a quarter where they are scattered.
-  const double error = std::sqrt((1 - kRho * kRho) / kSamples);
-  constexpr double kFewerPairs = 4.0;
-  const std::vector<double> series = Autoregressive({kRho}, kSamples, generator);
-  std::vector<unsigned char> in_one_run(kSamples, 1);
-  std::vector<unsigned char> scattered(kSamples, 1);
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    if (i < kSamples / 2) in_one_run[i] = 0;
-    if (Uniform(generator, 0, 1) < 0.5) scattered[i] = 0;
-  }
-  for (const std::vector<unsigned char>& counts : {in_one_run, scattered}) {
-    // What does not count may be anything.
-    std::vector<double> spoilt = series;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      if (counts[i] == 0) spoilt[i] = 1e6;
-    }
-    const Autocorrelation noise = EstimateNoise({spoilt}, {counts});
-    ASSERT_GT(noise.order, 0U);
-    // Higher orders may come with scattered samples: what counts is the correlation they make.
-    double correlation = noise.coefficients[0];
-    if (noise.order > 1) {
-      correlation =
-          std::sqrt((noise.SquaredCorrelations() - 1) / (noise.SquaredCorrelations() + 1));
-    }
-    EXPECT_NEAR(correlation, kRho, kSurely * kFewerPairs * error);
-  }
-}
-
-TEST(NoiseModel, RecordsOfZerosOrOfTooFewSamplesAreWhite) {
-  const std::vector<std::vector<double>> nothing = {{}, {0.0, 0.0, 0.0}};
-  EXPECT_TRUE(EstimateNoise(nothing).order == 0);
-  const std::vector<std::vector<double>> few = {{1.0, 1.0, 1.0, 1.0}};
-  EXPECT_TRUE(EstimateNoise(few).order == 0);
-}
-
 TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
   constexpr double kForgotten = 1e-7;  // what the sum over lags leaves off, relative
   for (const double rho : {-0.6, 0.3, 0.9, 0.99}) {
@@ -174,53 +135,6 @@ TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
   for (std::size_t k = 1; k < rho.size(); ++k) exact += 2 * rho[k] * rho[k];
   const Autocorrelation noise = Process({1.2, -0.5}, rho, SecondOrderShare(1.2, -0.5));
   EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact);
-}
-
-TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
-  constexpr std::size_t kRows = 60;
-  constexpr std::size_t kColumns = 3;
-  constexpr double kForgotten = 1e-8;
-  Generator generator(9);
-  std::vector<double> jacobian;
-  for (std::size_t i = 0; i < kRows * kColumns; ++i) jacobian.push_back(Normal(generator));
-  const Eigen::MatrixXd columns =
-      Eigen::Map<const Eigen::MatrixXd>(jacobian.data(), kColumns, kRows).transpose();
-  // JᵀRJ with every R_ij = ρ_|i−j| written out.
-  const auto explicit_form = [&](const std::vector<double>& rho) {
-    std::vector<double> form(kColumns * kColumns, 0.0);
-    for (std::size_t i = 0; i < kRows; ++i) {
-      for (std::size_t j = 0; j < kRows; ++j) {
-        for (std::size_t a = 0; a < kColumns; ++a) {
-          for (std::size_t b = 0; b < kColumns; ++b) {
-            form[a * kColumns + b] += jacobian[i * kColumns + a] * rho[i > j ? i - j : j - i] *
-                                      jacobian[j * kColumns + b];
-          }
-        }
-      }
-    }
-    return form;
-  };
-  struct Case {
-    double first;
-    double second;
-  };
-  for (const auto& [first, second] : {Case{0.9, 0.0}, {1.2, -0.5}, {-0.7, 0.0}, {0.999, 0.0}}) {
-    const Autocorrelation noise =
-        Process({first, second}, SecondOrderCorrelations(first, second, 3),
-                SecondOrderShare(first, second));
-    const Eigen::MatrixXd form = noise.Quadratic(columns);
-    const std::vector<double> exact = explicit_form(SecondOrderCorrelations(first, second, kRows));
-    ASSERT_EQ(static_cast<std::size_t>(form.size()), exact.size());
-    for (std::size_t k = 0; k < exact.size(); ++k) {
-      EXPECT_NEAR(form.data()[k], exact[k], kForgotten * (std::abs(exact[0]) + std::abs(exact[4])))
-          << first << ", " << second;
-    }
-  }
-  std::vector<double> uncorrelated(kRows, 0.0);
-  uncorrelated[0] = 1.0;
-  const Eigen::MatrixXd white = Autocorrelation{}.Quadratic(columns);
-  const std::vector<double> exact = explicit_form(uncorrelated);
-  for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(white.data()[k], exact[k], 1e-12);
 }
 
 /// Root mean square of Tc's stated standard errors, and of its errors, over many loops.
@@ -255,26 +169,6 @@ Tally TallyOf(const std::vector<double>& coefficients, int loops) {
     tally.scatter += error * error / loops;
   }
   return {std::sqrt(tally.stated), std::sqrt(tally.scatter)};
-}
-
-TEST(NoiseModel, AppliesTheCorrelationMatrix) {
-  // Of a first order R_ij = ρ^|i−j|.
-  constexpr double kRho = 0.7;
-  constexpr Eigen::Index kRows = 40;
-  Generator generator(2);
-  Eigen::MatrixXd columns(kRows, 3);
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    for (Eigen::Index i = 0; i < kRows; ++i) columns(i, j) = Normal(generator);
-  }
-  Eigen::MatrixXd matrix(kRows, kRows);
-  for (Eigen::Index i = 0; i < kRows; ++i) {
-    for (Eigen::Index j = 0; j < kRows; ++j) {
-      matrix(i, j) = std::pow(kRho, static_cast<double>(std::abs(i - j)));
-    }
-  }
-  const Autocorrelation process = Process({kRho}, {1.0, kRho}, 1 - kRho * kRho);
-  constexpr double kForgotten = 1e-7;  // what the filter has died away to, of the largest
-  EXPECT_LT((process.Apply(columns) - matrix * columns).cwiseAbs().maxCoeff(), kForgotten);
 }
 
 TEST(NoiseModel, AutocorrelationThatColumnsTookUpIsGivenBack) {

@@ -21,58 +21,6 @@ Record NoisyLoop(double lambda, double noise, std::uint64_t seed) {
       noise * kMindlin.slip_force, generator);
 }
 
-TEST(Profile, ThatIsNotNeededWouldHaveChangedNothing) {
-  // Skipped where the parabola is off by less than 15 % of 2 ln Λ, that is 7 % of the width; the
-  // grid's bisections find an end to 1/64 of a step.
-  constexpr double kSame = 0.1;
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const Record record = NoisyLoop(2.0, 0.003, seed);
-    FitOptions forced;
-    forced.thresholds.parabola_error = 0.0;
-    const FitResult skipped = FitOne(record);
-    const FitResult profiled = FitOne(record, forced);
-    for (const char* name : {"sigma", "alpha", "slip_force"}) {
-      const ParameterEstimate& one = *skipped.Find(name);
-      const ParameterEstimate& other = *profiled.Find(name);
-      EXPECT_EQ(one.value, other.value);
-      const double width = *one.upper95 - *one.lower95;
-      EXPECT_NEAR(*one.lower95, *other.lower95, kSame * width) << name;
-      EXPECT_NEAR(*one.upper95, *other.upper95, kSame * width) << name;
-      EXPECT_EQ(one.identifiability, other.identifiability) << name;
-    }
-  }
-}
-
-TEST(Profile, LooksAtTheEndsOfTheParabolaInOneStepAsInMany) {
-  // What the last step gains is predicted, and left, to a fifth of what it may gain: a hundredth of
-  // what would ask for a profile.
-  constexpr double kLeft = 0.2 * kLastGainAtEnds;  // of F
-  int asked = 0;
-  for (const double lambda : {0.95, 1.2, 2.0}) {
-    for (const double noise_level : {0.003, 0.02}) {
-      Stages stages(NoisyLoop(lambda, noise_level, 5));
-      const Solution best = stages.Solve();
-      const Noise noise = KnownNoise(best.sum_of_squares / static_cast<double>(stages.data.counted),
-                                     stages.data.counted);
-      const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
-      const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
-      if (half > stages.options.thresholds.parabola_error) continue;
-      ++asked;
-      const auto ratios = [&](double last_gain) {
-        return RatiosAtEnds({stages.problem, best, noise, estimates}, stages.options, last_gain,
-                            stages.buffers);
-      };
-      const std::array<double, 2> quick = ratios(kLastGainAtEnds);
-      const std::array<double, 2> exact = ratios(0.0);
-      for (std::size_t end = 0; end < 2; ++end) {
-        EXPECT_NEAR(quick[end], exact[end], kLeft / (estimates.quantile() * estimates.quantile()))
-            << lambda << " " << noise_level;
-      }
-    }
-  }
-  EXPECT_GE(asked, 4);
-}
-
 /// Made estimates of σ, α and Tc, widened by a profile.
 FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape_is_fixed = false) {
   const auto displacement = Cycling(Wave::kSine, 1.0, 2.0, 40);
@@ -208,61 +156,6 @@ TEST(Profile, OfAlphaStaysInItsIntervalIfFewSamplesIdentifyIt) {
       EXPECT_TRUE(!estimate.upper95 || truth <= *estimate.upper95) << name << ", seed " << seed;
     }
   }
-}
-
-TEST(Profile, OfASmallShapeReachesAsFarAsTheIntervalsAtZero) {
-  // Jenkins' own loop stops at α = 0 in about half of the cases, and σ and Tc have there what the
-  // parabola allows, to either side.
-  int at_zero = 0;
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
-    Generator generator(seed);
-    const auto displacement = Cycling(Wave::kSine, 2 * kGrossSlip, 2.0, 120);
-    Stages stages(WithForceNoise(
-        MakeRecord(displacement, Respond(Model("mindlin-dahl"), {4e7, 0.0, 40.0}, displacement)),
-        0.2, generator));
-    const Solution best = stages.Solve();
-    const Noise noise = KnownNoise(best.sum_of_squares / static_cast<double>(stages.data.counted),
-                                   stages.data.counted);
-    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
-    const auto ranges =
-        ProfileSmallShape({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
-    if (!ranges) continue;
-    ++at_zero;
-    for (const std::size_t p : {kStiffness, kSlipForce}) {
-      const Range& range = (*ranges)[p];
-      const double half = estimates.quantile() * estimates.ErrorOfTheta(p);
-      ASSERT_TRUE(half > 0 && std::isfinite(half));
-      EXPECT_LE(range.lower, best.theta[p] - 0.999 * half) << seed;
-      EXPECT_GE(range.upper, best.theta[p] + 0.999 * half) << seed;
-    }
-  }
-  EXPECT_GE(at_zero, 1);
-}
-
-TEST(Profile, IsAskedForAtABoundAndNotForAHeldSlipForce) {
-  Stages stages(NoisyLoop(2.0, 0.003, 1));
-  Solution best = stages.Solve();
-  const Noise noise = KnownNoise(1e-6, stages.data.counted);
-  const auto needed = [&] {
-    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
-    return NeedsSlipForceProfile({stages.problem, best, noise, estimates}, 1.0, stages.options,
-                                 stages.buffers);
-  };
-  EXPECT_FALSE(needed());
-  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
-    best.side[p] = BoundSide::kUpper;
-    EXPECT_TRUE(needed()) << p;
-    best.side[p] = BoundSide::kInside;
-  }
-  // However good the parabola is at its ends, it is not trusted where it is wide.
-  Thresholds narrow;
-  narrow.parabola_error = 1e-12;
-  narrow.parabola_departure = 0.999;
-  stages.options.thresholds = narrow;
-  EXPECT_TRUE(needed());
-  stages.options.thresholds = {};
-  stages.problem.parameters.Fix(kSlipForce, best.theta[kSlipForce]);
-  EXPECT_FALSE(needed());
 }
 
 }  // namespace

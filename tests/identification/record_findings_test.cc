@@ -58,14 +58,6 @@ TEST(FindInRecords, GlitchesAreANoteWithRowsCountedFromOne) {
   EXPECT_THAT(FindIn(record)[0].numbers, SizeIs(3 + 2));
 }
 
-TEST(FindInRecords, WayLongerThanTheStrokesIsWarnedOf) {
-  RecordFit record = Flawless();
-  record.facts.path_ratio = 1.5;
-  const std::vector<Finding> findings = FindIn(record);
-  ASSERT_THAT(Codes(findings), ElementsAre("path_too_long"));
-  EXPECT_EQ(findings[0].Number("path_ratio"), 1.5);
-}
-
 TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   RecordFit open;
   EXPECT_THAT(Codes(FindIn(open)), ElementsAre("no_closed_cycle"));
@@ -124,14 +116,6 @@ TEST(FindEnergyContradiction, TakesTheTravelOfTheRigOff) {
   EXPECT_FALSE(FindEnergyContradiction(fit, {}));
 }
 
-TEST(FindEnergyContradiction, AsksOnlyOfCyclesThatCount) {
-  FitResult fit = FitThatLoses(0.5);
-  std::fill_n(fit.records[0].counts.begin(), 4, 0);  // of 10
-  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
-  std::fill_n(fit.records[0].counts.begin(), 6, 0);
-  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
-}
-
 TEST(FindEnergyContradiction, IsSilentWhereAnotherForceTakesPart) {
   FitResult viscous = FitThatLoses(0.5);
   viscous.parameters.emplace_back().name = "viscous";
@@ -174,18 +158,6 @@ TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {
   EXPECT_FALSE(fitter.Fit(views, Depth::kEstimate).records[0].facts.closed);
 }
 
-TEST(FitOfARecord, SaysWhichGlitchesItLeavesOut) {
-  Record record = Loop();
-  record.force[123] += 20 * kLaw.slip_force;
-  const std::vector<RecordView> views = {record};
-  Fitter fitter;
-  const FitResult& fit = fitter.Fit(views, Depth::kIntervals);
-  EXPECT_EQ(fit.records[0].glitches.spikes, 1U);
-  const Finding* finding = fit.FindFinding("glitches_left_out");
-  ASSERT_NE(finding, nullptr);
-  EXPECT_EQ(finding->Number("row"), 124);
-}
-
 TEST(FitOfARecord, WhoseReversalsAreNoiseKnowsNothingOfTheLaw) {
   Record record = Loop();
   testing::Generator generator(5);
@@ -226,27 +198,6 @@ TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
   ASSERT_EQ(findings.size(), 1U);
   // The variance of 0.5, 0.3 and 0.1 is 0.08/3.
   EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
-}
-
-TEST(FindEnergyContradiction, IsSilentWithEachTermThatLosesOrShiftsEnergyAndWithNoOther) {
-  for (const std::string& name :
-       {std::string("viscous"), std::string("lag"), NameOfCovariate("p")}) {
-    FitResult fit = FitThatLoses(0.5);
-    fit.parameters.emplace_back().name = name;
-    EXPECT_TRUE(FindEnergyContradiction(fit, {})) << name << " held at 0";
-    fit.parameters.back().value = -2.0;
-    EXPECT_FALSE(FindEnergyContradiction(fit, {})) << name;
-  }
-  FitResult sloping = FitThatLoses(0.5);
-  sloping.parameters.emplace_back().name = "plateau_slope";  // conserves energy
-  sloping.parameters.back().value = 2.0;
-  EXPECT_TRUE(FindEnergyContradiction(sloping, {}));
-  FitResult robust = FitThatLoses(0.5);
-  robust.outliers = 1;
-  EXPECT_FALSE(FindEnergyContradiction(robust, {}));
-  FitResult loaded = FitThatLoses(0.5);
-  loaded.records[0].load_varies = true;
-  EXPECT_FALSE(FindEnergyContradiction(loaded, {}));
 }
 
 }  // namespace

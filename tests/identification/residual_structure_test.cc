@@ -76,29 +76,6 @@ TEST(ResidualStructure, FractionIsVarianceThatRepeats) {
   }
 }
 
-TEST(ResidualStructure, NoiseOfTheMeansIsNotTakenForWhatRepeats) {
-  // Two strokes a direction and one sample a bin: the means alone have a half of the noise's
-  // variance too, 0.2 of all. A share scatters by some 0.1, its mean over the seeds by 0.02.
-  constexpr double kShareError = 0.06;
-  constexpr int kSeeds = 30;
-  constexpr double kNoise = 0.7;
-  const History displacement = Cycling(Wave::kTriangle, 1.0, 2.75, 40);
-  double shares = 0.0;
-  double squares = 0.0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    Generator generator(static_cast<std::uint64_t>(seed));
-    std::vector<double> residual =
-        ResidualsOf(displacement, [](double x, int) { return 1.3 * std::sin(3 * x); });
-    squares = 0.0;
-    for (double& value : residual) {
-      squares += value * value / static_cast<double>(residual.size());
-      value += kNoise * Normal(generator);
-    }
-    shares += StructureOf(displacement, residual).repeatable_share / kSeeds;
-  }
-  EXPECT_NEAR(shares, squares / (squares + kNoise * kNoise), kShareError);
-}
-
 TEST(ResidualStructure, BinsHaveTheMeanAndSignOfEachDirection) {
   // Growing: linear in the position. Falling: constant, of the other sign. Off centre.
   constexpr double kOffset = 37.0;
@@ -165,65 +142,6 @@ TEST(ResidualStructure, SingleStrokeOrNoneGivesNoResult) {
   EXPECT_EQ(StructureOf(cycle, residual(cycle)).repeatable_share, 0.0);
   EXPECT_EQ(StructureOf({}, {}).strokes, 0U);
   EXPECT_THROW(StructureOf(cycle, {1.0}), InvalidArgument);
-}
-
-TEST(ResidualStructure, ComesBackWhereAMainStrokeHasASecondInItsDirection) {
-  const auto comes_back = [](double cycles) {
-    const History displacement = Cycling(Wave::kSine, 1.0, cycles, 200);
-    return AnyComesBack(MainStrokes(displacement, FindReversals(displacement, 0.0),
-                                    ResidualStructureOptions{}.main_stroke));
-  };
-  // A quarter up, then half a cycle a stroke: the second one down ends at 1¾ cycles.
-  EXPECT_FALSE(comes_back(1.0));
-  EXPECT_FALSE(comes_back(1.25));
-  EXPECT_TRUE(comes_back(1.75));
-}
-
-TEST(ResidualStructure, StrokesOfUnequalLengthCountWhenTheyAreNearlyAsLongAsTheLongest) {
-  // Between 0 and tops of 10, 8.5, 4, 9: the strokes of 4 are another motion, not this one.
-  History displacement = {0.0};
-  for (const double top : {10.0, 8.5, 4.0, 9.0, 10.0}) {
-    for (int i = 1; i <= 200; ++i) displacement.push_back(top * i / 200);
-    for (int i = 199; i >= 0; --i) displacement.push_back(top * i / 200);
-  }
-  Generator generator(3);
-  constexpr double kNoise = 0.05;
-  std::vector<double> residual = ResidualsOf(
-      displacement, [](double, int direction) { return static_cast<double>(direction); });
-  for (double& value : residual) value += kNoise * Normal(generator);
-  const ResidualStructure structure = StructureOf(displacement, residual);
-  EXPECT_EQ(structure.directions[0].strokes, 4U);
-  EXPECT_EQ(structure.directions[1].strokes, 4U);
-  EXPECT_GT(structure.repeatable_share, 0.95);
-  EXPECT_NEAR(structure.directions[0].mean, 1.0, 0.02);
-  EXPECT_NEAR(structure.directions[1].mean, -1.0, 0.02);
-}
-
-TEST(ResidualStructure, SamplesThatDoNotCountChangeNothing) {
-  // The first five cycles left out, to the reversal, and every third sample of the others.
-  constexpr std::size_t kReversal = 5 * 240 + 60;
-  const History displacement = Cycling(Wave::kTriangle, 1.0, 10.0, 240);
-  Generator generator(17);
-  std::vector<double> residual = ResidualsOf(
-      displacement, [](double x, int direction) { return direction * (1 + std::sin(3 * x)); });
-  for (double& value : residual) value += 0.3 * Normal(generator);
-  const ResidualStructure all = StructureOf(displacement, residual);
-  std::vector<unsigned char> counts(residual.size(), 1);
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (i >= kReversal && i % 3 != 1) continue;
-    counts[i] = 0;
-    residual[i] = 1e3;  // what does not count may be anything
-  }
-  const ResidualStructure rest = StructureOf(displacement, residual, counts);
-  EXPECT_EQ(all.strokes, 10U);
-  EXPECT_EQ(rest.directions[0].strokes, 4U);  // not the one of which only the reversal counts
-  EXPECT_EQ(rest.directions[1].strokes, 5U);
-  EXPECT_NEAR(rest.repeatable_share, all.repeatable_share, 0.05);
-  for (std::size_t side = 0; side < 2; ++side) {
-    // Noise of 0.3 over 400 samples: 0.015 each.
-    EXPECT_NEAR(rest.directions[side].mean, all.directions[side].mean, 0.06);
-    EXPECT_NEAR(rest.directions[side].rms, all.directions[side].rms, 0.06);
-  }
 }
 
 }  // namespace

@@ -73,21 +73,6 @@ TEST(Solver, ReachesTheSameMinimumInNaturalCoordinates) {
   }
 }
 
-TEST(Solver, ReachesTheSameMinimumWithARigInEitherCoordinates) {
-  Generator generator(6);
-  const Record record = WithForceNoise(testing::SprungLoop({4e7, 0.4, 40.0}, 6e7), 0.05, generator);
-  FitOptions options;
-  options.terms = {"rig_stiffness"};
-  Stages eliminated(record, options);
-  const Solution one = eliminated.Solve();
-  options.bounds["rig_stiffness"] = {1e6, 1e10};
-  Stages natural(record, options);
-  const Solution other = natural.Solve();
-  EXPECT_NEAR(other.sum_of_squares / one.sum_of_squares, 1.0, 1e-8);
-  EXPECT_LT(GradientAt(eliminated, one), kStationary);
-  EXPECT_LT(GradientAt(natural, other), kStationary);
-}
-
 TEST(Solver, HeldStiffnessRigOrSlipForceLeaveTheOthersAtTheirMinimum) {
   Generator generator(6);
   const Record record = WithForceNoise(testing::SprungLoop({4e7, 0.4, 40.0}, 6e7), 0.05, generator);
@@ -136,17 +121,6 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
   EXPECT_EQ(at_bound.side[kSlipForce], BoundSide::kUpper);
 }
 
-TEST(Solver, CanBeBoundAgainToAnotherProblem) {
-  Stages first(NoisyLoop());
-  Stages second(testing::Scaled(NoisyLoop(7), 2.0, 3.0));
-  const Solution alone = second.Solve();
-  first.Solve();
-  Solution reused;
-  first.buffers.solver.Bind(second.problem, first.buffers.response);
-  first.buffers.solver.Solve(alone.theta, {}, reused);
-  EXPECT_NEAR(reused.sum_of_squares / alone.sum_of_squares, 1.0, 1e-10);
-}
-
 TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
   Record record = NoisyLoop();
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -175,32 +149,6 @@ TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
   }
   EXPECT_EQ(thin.counted, counted);
   EXPECT_EQ(thin.samples(), thin.records[0].size() + thin.records[1].size());
-}
-
-TEST(Starts, RespectTheMaskAndARowThatIsLoadedFirst) {
-  // Garbage where samples do not count, and a record that begins at the top of its loop.
-  Record record = testing::From(Loop(3.0), 25);
-  FitOptions options;
-  options.preparation.held_out = {std::vector<bool>(record.size(), false)};
-  options.preparation.force_sense = 1;
-  for (std::size_t i = 40; i < record.size(); i += 3) {
-    options.preparation.held_out[0][i] = true;
-    record.force[i] = -300.0;
-  }
-  const FitResult fit = testing::FitOne(record, options);
-  EXPECT_TRUE(testing::Recovers(fit, kLaw, testing::kNoiseFree));
-  Stages stages(record, options);
-  ThinnedRecords thinned(stages.data, Stages::Memory());
-  const ScaledRecords& thin = thinned.Get();
-  const Problem problem{&thin, stages.problem.model, stages.problem.state,
-                        Parameters(stages.problem.parameters, Stages::Memory())};
-  Solution scratch;
-  const auto starts =
-      FindStarts(problem, options, std::numeric_limits<double>::infinity(), stages.buffers.solver,
-                 stages.buffers.response, scratch, Stages::Memory());
-  ASSERT_FALSE(starts.empty());
-  EXPECT_LT(starts.front().cost, 1e-3) << "the garbage alone would cost hundreds";
-  EXPECT_NEAR(problem.parameters.LawAt(starts.front().theta).slip_force / kLaw.slip_force, 1, 0.05);
 }
 
 }  // namespace

@@ -106,23 +106,6 @@ TEST(DisplacementSmoother, LeavesARecordWithoutNoiseAsItIs) {
   EXPECT_EQ(smoother.Smooth(drive), drive);
 }
 
-TEST(DisplacementSmoother, LeavesAParabolaAsItIs) {
-  History parabola;
-  for (int i = 0; i < 200; ++i) parabola.push_back(0.3 - 0.02 * i + 1e-4 * i * i);
-  const DisplacementSmoother smoother(parabola, kNoise);
-  // Smoothing is linear: what it leaves of an impulse is the middle weight of the window there,
-  // 3(3h² + 3h − 1)/((2h − 1)(2h + 1)(2h + 3)), 0.0347 for h = 32.
-  History impulse(parabola.size());
-  impulse[parabola.size() / 2] = 1.0;
-  constexpr double kOfAWideWindow = 0.035;
-  ASSERT_LT(std::ranges::max(smoother.Smooth(impulse)), kOfAWideWindow);
-  constexpr double kRounding = 1e-14;  // some ε of the largest value, 1
-  const History smoothed = smoother.Smooth(parabola);
-  for (std::size_t i = 0; i < parabola.size(); ++i) {
-    EXPECT_NEAR(smoothed[i], parabola[i], kRounding);
-  }
-}
-
 TEST(DisplacementSmoother, TakesMostOfTheNoiseFromASine) {
   Generator generator(3);
   const History drive = Sine(3, 200);

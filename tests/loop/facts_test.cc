@@ -85,12 +85,12 @@ TEST(LoopFacts, OfALoopThatIsSofterOneWayAreOfBothStrokes) {
   EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
 }
 
-TEST(Slides, FromAnEnergyRatioOfThreeQuartersOn) {
+TEST(Slides, FromAnEnergyRatioOfThreeFifthsOn) {
   // A parallelogram's is 1 − Tc/(σX).
   Parallelogram loop;
-  for (const double ratio : {0.7, 0.8}) {
+  for (const double ratio : {0.55, 0.65}) {
     loop.stiffness = loop.slip_force / (1 - ratio);
-    EXPECT_EQ(Slides(FactsOf(MakeRecord(loop))), ratio > 0.75);
+    EXPECT_EQ(Slides(FactsOf(MakeRecord(loop))), ratio > 0.6);
   }
   EXPECT_FALSE(Slides(LoopFacts()));
 }
@@ -111,16 +111,16 @@ TEST(Slides, BesideASpringThatRaisesThePeakForce) {
   Parallelogram loop;
   loop.stiffness = loop.slip_force / 0.05;  // slides over 95 % of the stroke
   Record record = MakeRecord(loop);
-  // A spring that adds 0.5 Tc at the ends lowers the energy ratio to 0.95/1.5.
+  // A spring that adds 0.7 Tc at the ends lowers the energy ratio to 0.95/1.7.
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] -= 0.5 * loop.slip_force * record.displacement[i];
+    record.force[i] -= 0.7 * loop.slip_force * record.displacement[i];
   }
   const LoopFacts facts = FactsOf(record);
-  ASSERT_LT(facts.energy_ratio, 0.75);
+  ASSERT_LT(facts.energy_ratio, 0.6);
   EXPECT_TRUE(Slides(facts));
   // One that adds twice Tc leaves a gap below half the peak: friction of a guide would be alike.
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] -= 1.5 * loop.slip_force * record.displacement[i];
+    record.force[i] -= 1.3 * loop.slip_force * record.displacement[i];
   }
   EXPECT_FALSE(Slides(FactsOf(record)));
 }
@@ -251,18 +251,6 @@ TEST(MeasureFacts, AsymmetryIsHowMuchTheStrokesDifferTurnedAboutTheCentre) {
   EXPECT_NEAR(*facts.asymmetry * facts.peak_force, kCurvature * std::sqrt(variance), kChord);
 }
 
-TEST(MeasureFacts, SlopeOfBothStrokesIsPlateauSlopeAndNoAsymmetry) {
-  constexpr double kSlope = -0.6;  // [N/m]
-  Record record = MakeRecord({});
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] += kSlope * record.displacement[i];
-  }
-  const LoopFacts facts = FactsOf(record);
-  EXPECT_NEAR(*facts.asymmetry, 0.0, kRounding);
-  EXPECT_NEAR(*facts.plateau_slope, kSlope, kRounding);
-  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
-}
-
 TEST(MeasureFacts, ATrendIsFoundWhereThereIsOne) {
   Generator generator(1);
   Record record = MakeRecord({.growth = 0.02, .amplitudes = std::vector<double>(10, 1.0)});
@@ -274,30 +262,6 @@ TEST(MeasureFacts, ATrendIsFoundWhereThereIsOne) {
   EXPECT_LT(facts.energy_trend->p_value, 1e-6);
 }
 
-TEST(MeasureFacts, ATrendIsOverTheCyclesOfTheRecord) {
-  // Those of the widest amplitude are not numbered in a row, and a cycle makes 2 % of 2 N.
-  const LoopFacts facts =
-      FactsOf(MakeRecord({.growth = 0.02, .amplitudes = {1.0, 1.0, 0.6, 1.0, 1.0, 1.0}}));
-  ASSERT_TRUE(facts.cycles[1].steady && facts.cycles[4].steady);
-  ASSERT_FALSE(facts.cycles[2].steady);
-  ASSERT_TRUE(facts.half_gap_trend);
-  EXPECT_NEAR(facts.half_gap_trend->slope, 0.04, kRounding);
-}
-
-TEST(MeasureFacts, ATrendIsFoundByChanceAsOftenAsItsProbabilitySays) {
-  // Of 400 records one in twenty, ±4 standard deviations of a binomial.
-  constexpr int kRecords = 400;
-  constexpr double kLevel = 0.05;
-  Generator generator(2);
-  int found = 0;
-  for (int i = 0; i < kRecords; ++i) {
-    Record record = MakeRecord({.amplitudes = std::vector<double>(6, 1.0)});
-    for (double& force : record.force) force += 0.05 * Normal(generator);
-    found += FactsOf(record).half_gap_trend->p_value < kLevel ? 1 : 0;
-  }
-  EXPECT_NEAR(found, kLevel * kRecords, 4 * std::sqrt(kLevel * (1 - kLevel) * kRecords));
-}
-
 TEST(MeasureFacts, HiddenReversalsLengthenThePath) {
   Generator generator(3);
   Record record = MakeRecord({});
@@ -306,20 +270,6 @@ TEST(MeasureFacts, HiddenReversalsLengthenThePath) {
   // Steps of N(0.005, 0.01√2): their mean size is 0.0145·√(2/π)·(1 + …) = 0.0120 for 0.005.
   EXPECT_NEAR(facts.path_ratio, 2.4, 0.2);
   EXPECT_NEAR(*facts.half_gap, 2.0, 0.02);
-}
-
-TEST(MeasureFacts, OfFewSamplesACycleComeFromLinesBetweenThem) {
-  Record record;
-  for (int i = 0; i < 40; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 8;
-    record.displacement.push_back(std::sin(angle));
-    record.force.push_back(std::cos(angle) > 1e-9 || std::sin(angle) > 0.99 ? 1.0 : -1.0);
-  }
-  const LoopFacts facts = FactsOf(record);
-  ASSERT_TRUE(facts.closed);
-  EXPECT_NEAR(*facts.half_gap, 1.0, kRounding);
-  EXPECT_TRUE(facts.slope_after_reversal.has_value());
-  EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
 }
 
 TEST(MeasureFacts, ReportsThatNoCycleCloses) {

@@ -75,20 +75,6 @@ TEST(LoadSteps, AreFoundUnderNoiseAndSpikes) {
   ExpectThreeLoads(FindLoadSteps(record), 0.003);
 }
 
-TEST(LoadSteps, UnderNoiseAreMoreThanTwentyOfItsDeviations) {
-  // Five deviations are the tolerance, and four tolerances a step; of 2000 readings the median of
-  // their steps knows the deviation to 3 %.
-  const auto steps = [](double step) {
-    Record record = Cycled(10, [step](double cycle) { return cycle < 5 ? 50.0 : 50.0 + step; });
-    boost::random::mt19937_64 generator(2);
-    boost::random::normal_distribution<double> noise(0.0, 0.5);
-    for (double& load : record.normal_load) load += noise(generator);
-    return FindLoadSteps(record).size();
-  };
-  EXPECT_EQ(steps(0.5 * 20 * 0.85), 0U);
-  EXPECT_EQ(steps(0.5 * 20 * 1.15), 2U);
-}
-
 TEST(LoadSteps, LeaveTheRampsBetweenThemOut) {
   const Record record = Cycled(17, [](double cycle) {
     if (cycle < 5) return 20.0;

@@ -167,21 +167,6 @@ TEST(ChooseReversalGate, IsZeroOnWhiteSequences) {
   }
 }
 
-TEST(ChooseReversalGate, IsHardlyEverSureOfAGateOnARandomWalk) {
-  // A walk has excursions of all ranges and no gate: 6 % of 5000 looked like a noisy swing, most of
-  // them of a few dozen steps.
-  constexpr int kWalks = 1000;
-  constexpr int kGated = 100;
-  Generator generator(5);
-  int gated = 0;
-  for (int i = 0; i < kWalks; ++i) {
-    const History walk = testing::RandomWalk(generator, 5 + generator() % 1500, 1.0);
-    const ReversalGate choice = ChooseReversalGate(walk);
-    if (choice.gate > 0 && choice.certain) ++gated;
-  }
-  EXPECT_LE(gated, kGated);
-}
-
 TEST(ChooseReversalGate, CountsTheReversalsOfANoisySineAsOfTheCleanOne) {
   // Noise of 1e-5 to 3e-2 of the amplitude, 50 to 2000 samples a cycle, 1 to 10 cycles that begin
   // and end in mid-swing: an end within the noise of an extreme could be called either way.
@@ -251,17 +236,6 @@ History TwoAmplitudes(double small, std::size_t samples_per_cycle) {
   return history;
 }
 
-History GrowingSine(double from, double cycles, double samples_per_cycle) {
-  History history;
-  const auto samples = static_cast<std::size_t>(cycles * samples_per_cycle);
-  for (std::size_t i = 0; i <= samples; ++i) {
-    const double part = static_cast<double>(i);
-    const double envelope = from + (1 - from) * part / static_cast<double>(samples);
-    history.push_back(envelope * std::sin(0.3 + 2 * std::numbers::pi * part / samples_per_cycle));
-  }
-  return history;
-}
-
 /// The gauge reads up to `depth` less for 1 to 12 samples, at one sample in `rarity`.
 History WithStepsBack(Generator& generator, History history, double depth, std::size_t rarity) {
   for (std::size_t i = 2; i + 20 < history.size(); ++i) {
@@ -284,19 +258,6 @@ TEST(ChooseReversalGate, KeepsTheSmallCyclesOfANoisyDriveOfTwoAmplitudes) {
     const ReversalGate choice = ChooseReversalGate(WithNoise(generator, clean, noise));
     ASSERT_EQ(choice.count, FindReversals(clean, 0.0).size()) << small << ' ' << noise;
     ASSERT_TRUE(choice.certain) << small << ' ' << noise;
-  }
-}
-
-TEST(ChooseReversalGate, KeepsTheFirstCyclesOfAGrowingSine) {
-  Generator generator(11);
-  for (int i = 0; i < 200; ++i) {
-    const double from = testing::LogUniform(generator, 0.05, 0.5);
-    const History coarse = GrowingSine(from, 12, Uniform(generator, 6, 12));
-    ASSERT_EQ(ChooseReversalGate(coarse).gate, 0.0) << from;
-    const History clean = GrowingSine(from, 12, testing::LogUniform(generator, 50, 500));
-    const double noise = from * testing::LogUniform(generator, 1e-4, 1e-2);
-    ASSERT_EQ(CountGated(WithNoise(generator, clean, noise)), FindReversals(clean, 0.0).size())
-        << from << ' ' << noise;
   }
 }
 
@@ -335,47 +296,6 @@ TEST(ChooseReversalGate, SeesThroughStepsBackOfAGaugeOrIsNotSure) {
   }
   EXPECT_LE(miscounted, kMiscounted);
   EXPECT_LE(sure, 1);
-}
-
-TEST(ChooseReversalGate, SeesThroughNoiseInADwell) {
-  Generator generator(14);
-  for (int i = 0; i < 200; ++i) {
-    const History swing = Sine(4, 100 + generator() % 400, 0.3);
-    const Indices turns = FindReversals(swing, 0.0);
-    const std::size_t rest = generator() % 200;
-    History clean;
-    for (std::size_t k = 0; k < swing.size(); ++k) {
-      const bool rests = std::ranges::find(turns, k) != turns.end();
-      clean.insert(clean.end(), rests ? 1 + rest : 1, swing[k]);
-    }
-    const double noise = testing::LogUniform(generator, 1e-5, 2e-2);
-    ASSERT_EQ(CountGated(WithNoise(generator, clean, noise)), turns.size()) << rest << ' ' << noise;
-  }
-}
-
-TEST(ChooseReversalGate, SeesThroughJerksThatTheRecordMayEndIn) {
-  // An encoder's last digit everywhere, and on the way twelve jerks of some samples that grow to a
-  // thirtieth of a stroke; the record ends within one of them.
-  constexpr std::size_t kStroke = 2000;
-  constexpr double kDigit = 1e-3;
-  History history;
-  for (std::size_t i = 0; i < 6 * kStroke; ++i) {
-    const double way = static_cast<double>(i % kStroke) / kStroke;
-    history.push_back(i / kStroke % 2 == 0 ? way : 1 - way);
-  }
-  for (std::size_t jerk = 0; jerk < 12; ++jerk) {
-    const std::size_t begin = 900 + 800 * jerk;
-    const double size = 0.005 + 0.002 * static_cast<double>(jerk);
-    for (std::size_t k = 0; k < 20; ++k) {
-      history[begin + k] -= size * std::sin(std::numbers::pi * static_cast<double>(k) / 20);
-    }
-  }
-  for (std::size_t k = 0; k < 10; ++k) history.push_back(0.006 * static_cast<double>(k + 1) / 10);
-  Generator generator(11);
-  for (double& x : history) {
-    x = kDigit * std::round(x / kDigit + 0.5 * Normal(generator));
-  }
-  EXPECT_EQ(CountGated(history), 5U);
 }
 
 TEST(ChooseReversalGate, ASingleNoisyStrokeHasNone) {
@@ -488,38 +408,6 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
   // 0.5 Hz for 18 s and a ramp at either end.
   EXPECT_EQ(CountGated(position), 17U);
   EXPECT_GT(FindReversals(position, 0.0).size(), 1000U) << "the gate has nothing to do";
-}
-
-TEST(ChooseReversalGate, IsTwiceWhatItRejectsButNotAtTheSmallStrokes) {
-  // Ramps of ±1 with a jump back and forth of 0.01 in their middle, and one with an inner loop of
-  // 0.3 or of 0.03, a third of a ramp long: of the jumps the gate is twice as wide, of those next
-  // to the inner loop the geometric mean.
-  const auto gate_with = [](double inner) {
-    History history = {-1.0};
-    const auto ramp_to = [&](double target, int samples) {
-      const double from = history.back();
-      for (int k = 1; k <= samples; ++k) history.push_back(from + (target - from) * k / samples);
-    };
-    for (int swing = 0; swing < 12; ++swing) {
-      const double target = swing % 2 == 0 ? 1.0 : -1.0;
-      ramp_to(0.0, 60);
-      if (swing == 5) {
-        ramp_to(-target * inner, 60);
-      } else {
-        history.push_back(-target * 0.01);
-        history.push_back(target * 1e-3);
-      }
-      ramp_to(target, 60);
-    }
-    return ChooseReversalGate(history);
-  };
-  constexpr double kRounding = 1e-12;
-  const ReversalGate wide = gate_with(0.3);
-  EXPECT_EQ(wide.count, 13U);  // eleven turns and the inner loop's two
-  EXPECT_NEAR(wide.gate, 2 * 0.01, kRounding);
-  const ReversalGate narrow = gate_with(0.03);
-  EXPECT_EQ(narrow.count, 13U);
-  EXPECT_NEAR(narrow.gate, std::sqrt(0.01 * 0.03), kRounding);
 }
 
 }  // namespace

@@ -147,28 +147,6 @@ TEST(Asymmetry, IsAnOffsetOfTheForceOnceTheContactHasSlippedAsAWhole) {
   }
 }
 
-TEST(Asymmetry, TurnsThroughTheOriginWithTheMotion) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  const std::vector<double> walk = RandomWalk(2 * GrossSlipDisplacement(law), 30, 11);
-  std::vector<double> turned = walk;
-  for (double& x : turned) x = -x;
-  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = 0.4});
-  const std::vector<double> of_turned = ForceOn(law, turned, {.asymmetry = -0.4});
-  for (std::size_t i = 0; i < walk.size(); ++i) {
-    EXPECT_NEAR(force[i], -of_turned[i], kRounding * kSlipForce);
-  }
-}
-
-TEST(Asymmetry, StaysWithinSlipForcesOfBothDirections) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  constexpr double kAsymmetry = 0.7;
-  const std::vector<double> walk = RandomWalk(3 * GrossSlipDisplacement(law), 60, 4);
-  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = kAsymmetry});
-  const auto [lowest, highest] = std::ranges::minmax(force);
-  EXPECT_NEAR(highest, kSlipForce * (1 + kAsymmetry), kRounding * kSlipForce);
-  EXPECT_NEAR(lowest, -kSlipForce * (1 - kAsymmetry), kRounding * kSlipForce);
-}
-
 /// Behind a spring every force belongs to the contact's own displacement, δ − T/k.
 TEST(Asymmetry, BehindARigIsThatOfTheContactsOwnDisplacement) {
   const BranchLaw law = LawOf(1.0 / 3);
@@ -221,44 +199,6 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
       }
     }
   }
-}
-
-/// The other derivatives are those of a larger or a smaller virgin curve.
-TEST(Asymmetry, LeavesTheOtherDerivativesRight) {
-  constexpr double kStep = 1e-6;
-  constexpr double kDifference = 1e-6;  // as above, of a smooth backbone
-  constexpr double kAsymmetry = 0.3;
-  const std::vector<double> walk = RandomWalk(1.8, 30, 22);
-  const auto evaluate = [&](double log_rate, double alpha, double unloaded,
-                            const NormalizedGradient& gradient) {
-    const LoadingPath path =
-        PathOf(walk, {.unloaded_displacement = unloaded, .asymmetry = kAsymmetry});
-    std::vector<double> t(walk.size());
-    NormalizedResponse response;
-    response.Differentiate(Masing(), {.rate = std::exp(log_rate), .shape_exponent = alpha}, path,
-                           walk, t, gradient);
-    return t;
-  };
-  std::vector<double> by_rate(walk.size());
-  std::vector<double> by_shape(walk.size());
-  std::vector<double> by_origin(walk.size());
-  constexpr double kUnloaded = 0.03;
-  evaluate(0.2, 0.9, kUnloaded,
-           {.log_rate = by_rate,
-            .shape_exponent = by_shape,
-            .unloaded_displacement = by_origin,
-            .log_spring_travel = {}});
-  const auto compare = [&](const std::vector<double>& derivative, double rate, double shape,
-                           double origin) {
-    const auto above = evaluate(0.2 + rate, 0.9 + shape, kUnloaded + origin, {});
-    const auto below = evaluate(0.2 - rate, 0.9 - shape, kUnloaded - origin, {});
-    for (std::size_t i = 0; i < walk.size(); ++i) {
-      EXPECT_NEAR(derivative[i], (above[i] - below[i]) / (2 * kStep), kDifference) << i;
-    }
-  };
-  compare(by_rate, kStep, 0, 0);
-  compare(by_shape, 0, kStep, 0);
-  compare(by_origin, 0, 0, kStep);
 }
 
 TEST(Asymmetry, IsRefusedBeyondOneAndOfALawWithoutMemory) {

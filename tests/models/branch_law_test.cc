@@ -45,17 +45,6 @@ TEST(BranchLaw, WithTwoIsHyperbolic) {
   EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 / (1.8 * 1.8), 2 * kClosedForm);
 }
 
-TEST(BranchLaw, IsContinuousThroughOne) {
-  for (const double off : {1e-15, 1e-12, 1e-9}) {
-    for (const double x : {0.01, 1.0, 20.0}) {
-      // ∂f/∂α = −u·y²/2 at α = 1, at most 2/e² of Tc.
-      const double one = BackboneForce({1.0, 1.0, 1.0}, x);
-      EXPECT_NEAR(BackboneForce({1.0, 1.0 + off, 1.0}, x), one, off + kClosedForm);
-      EXPECT_NEAR(BackboneForce({1.0, 1.0 - off, 1.0}, x), one, off + kClosedForm);
-    }
-  }
-}
-
 TEST(BranchLaw, SolvesItsDifferentialEquation) {
   // dT/dx = σ(1 − T/Tc)^α: slope against force.
   for (const double alpha : {0.1, 1.0 / 3.0, 0.7, 1.0, 1.5, 4.0}) {
@@ -108,17 +97,6 @@ TEST(BranchLaw, NeverSlipsFullyFromOneOn) {
   EXPECT_EQ(GrossSlipDisplacement({1.0, 1.0, 1.0}), kInfinity);
   EXPECT_EQ(GrossSlipDisplacement({1.0, 3.0, 1.0}), kInfinity);
   EXPECT_GT(BackboneRemaining({1.0, 3.0, 1.0}, 1e12), 0.0);
-}
-
-TEST(BranchLaw, GradientObeysItsScaling) {
-  // f depends on σ and Tc as Tc·φ(σx/Tc): ∂f/∂ln σ + ∂f/∂ln Tc = f.
-  for (const double alpha : {0.0, 1.0 / 3.0, 1.0, 7.0}) {
-    const BranchLaw law{3.0, alpha, 2.0};
-    const BackboneGradient gradient = DifferentiateBackbone(law, 0.4);
-    EXPECT_NEAR(gradient.log_stiffness + gradient.log_slip_force, BackboneForce(law, 0.4),
-                kClosedForm);
-    EXPECT_NEAR(gradient.log_stiffness, 0.4 * BackboneSlope(law, 0.4), kClosedForm);
-  }
 }
 
 TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {

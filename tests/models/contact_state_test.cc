@@ -170,39 +170,6 @@ TEST(ContactBehindGap, BearsNoForceUntilTheGapIsClosedAgain) {
               ::testing::HasSubstr("gap [m] = -1 is invalid"));
 }
 
-TEST(ContactState, DoesSoBehindASpring) {
-  Generator generator(2);
-  for (const Case& c : Cases()) {
-    SCOPED_TRACE(std::string(c.model->name) + ", alpha " + std::to_string(c.shape_exponent));
-    for (const double stiffness : {1e-3, 0.5, 1.0, 1e3, 1e300}) {
-      for (int i = 0; i < 30; ++i) {
-        ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0}, DrawHistory(generator),
-                        {.rig = {.stiffness = stiffness}});
-        if (HasFatalFailure()) FAIL() << "history " << i << ", rig " << stiffness;
-      }
-    }
-  }
-}
-
-TEST(ContactState, DoesSoHoweverDeepTheNesting) {
-  constexpr std::size_t kReversals = 1'000'000;
-  const History history = Spiral(kReversals);
-  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
-  for (const char* name : {"mindlin", "dahl"}) {
-    const std::vector<double> expected = Respond(Model(name), law, history, {});
-    ContactState contact(Model(name), law);
-    double largest = 0.0;
-    std::size_t deepest = 0;
-    for (std::size_t i = 0; i < history.size(); ++i) {
-      largest = std::max(largest, std::abs(contact.Move(history[i]) - expected[i]));
-      deepest = std::max(deepest, contact.RememberedExtremes());
-    }
-    EXPECT_LE(largest, kAgreement) << name;
-    EXPECT_EQ(deepest, Model(name).memory == Memory::kNone ? 0 : kReversals - 1) << name;
-    EXPECT_EQ(contact.RememberedExtremes(), 0U) << name;
-  }
-}
-
 TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
   // docs/theory.md §8 by way of the histories of tests/properties.
   constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
@@ -237,34 +204,6 @@ TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
             ASSERT_LE(std::abs(force[i]), slip_force);
           }
         }
-      }
-    }
-  }
-}
-
-TEST(ContactState, ReachesTheEndsOfItsRange) {
-  constexpr double kLargest = 1e307;
-  for (const Case& c : Cases()) {
-    if (c.shape_exponent > 1) continue;
-    ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0},
-                    {kLargest, -kLargest, -kLargest, 0.5 * kLargest, kLargest, -1.0}, {});
-    ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0}, {-kLargest, kLargest, 0.0},
-                    {.unloaded_displacement = kLargest});
-  }
-}
-
-TEST(ContactState, AStepOfNoLengthChangesNothing) {
-  Generator generator(4);
-  for (const Case& c : Cases()) {
-    for (int i = 0; i < 100; ++i) {
-      ContactState once(*c.model, {1.0, c.shape_exponent, 1.0});
-      ContactState often = once;
-      for (const double displacement : DrawHistory(generator)) {
-        once.Move(displacement);
-        for (std::uint64_t k = 1 + generator() % 3; k > 0; --k) often.Move(displacement);
-        ASSERT_EQ(often.Force(), once.Force());
-        ASSERT_EQ(often.TangentStiffness(), once.TangentStiffness());
-        ASSERT_EQ(often.RememberedExtremes(), once.RememberedExtremes());
       }
     }
   }
@@ -306,22 +245,6 @@ TEST(ContactState, HasTheStiffnessThatItsLawStates) {
   }
 }
 
-TEST(ContactState, KeepsTheDigitsOfItsStiffnessNextToSlip) {
-  // Where y = δ is exact so is what is left to go, and φ' has its 4 ε (backbone.h).
-  constexpr double kRounding = 4 * kEpsilon;
-  for (const double alpha : {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    const double slip = GrossSlipDisplacement(law);
-    for (int k = 1; k <= 53; ++k) {
-      for (const double x : {slip * (1 - std::ldexp(1.0, -k)), slip * (1 + std::ldexp(1.0, -k))}) {
-        ContactState contact(Model("mindlin-dahl"), law);
-        EXPECT_NEAR(contact.PeekTangentStiffness(x), BackboneSlope(law, x), kRounding)
-            << alpha << ' ' << k;
-      }
-    }
-  }
-}
-
 TEST(ContactState, HasTheStiffnessOfItsForce) {
   // Central differences within a branch, of every model and behind a spring.
   constexpr double kStep = 1e-5;  // of the elastic limit; errs by kStep²·f'''/6
@@ -356,34 +279,6 @@ TEST(ContactState, HasTheStiffnessOfItsForce) {
   }
 }
 
-TEST(ContactState, IsAsStiffAsSpringAndContactInSeries) {
-  constexpr double kRounding = 64 * kEpsilon;
-  constexpr SeriesSpring kRig{2.0};
-  for (const double alpha : {0.0, 1.0 / 3.0, 0.5, 1.0, 2.0}) {
-    const BranchLaw law{3.0, alpha, 5.0};
-    ContactState both(Model("mindlin-dahl"), law, {.rig = kRig});
-    ContactState alone(Model("mindlin-dahl"), law);
-    EXPECT_NEAR(both.TangentStiffness(), 1.2, 1.2 * kRounding);  // 1/(1/3 + 1/2)
-    for (const double x : {0.1, 0.5, 0.9, 0.4, 0.2, 0.5}) {
-      const double force = alone.Move(x);
-      both.Move(x + force / kRig.stiffness);
-      const double series = 1 / (1 / alone.TangentStiffness() + 1 / kRig.stiffness);
-      EXPECT_NEAR(both.TangentStiffness(), series, kRounding) << alpha << ' ' << x;
-    }
-  }
-}
-
-TEST(ContactState, HasNoStiffnessInSlip) {
-  for (const SeriesSpring rig : {SeriesSpring{}, SeriesSpring{1.0}}) {
-    for (const double alpha : {0.0, 1.0 / 3.0, 0.5}) {
-      ContactState contact(Model("mindlin-dahl"), {1.0, alpha, 1.0}, {.rig = rig});
-      EXPECT_EQ(contact.Move(10.0), 1.0);
-      EXPECT_EQ(contact.TangentStiffness(), 0.0);
-      EXPECT_GT(contact.PeekTangentStiffness(9.9), 0.0);  // back
-    }
-  }
-}
-
 // --- A state as a value --------------------------------------------------------------------------
 
 TEST(ContactState, ACopyGoesItsOwnWay) {
@@ -402,23 +297,6 @@ TEST(ContactState, ACopyGoesItsOwnWay) {
       ASSERT_EQ(trial.Force(), trial_force);
     }
     ASSERT_EQ(contact.Force(), Respond(Model("mindlin"), law, history, {}).back());
-  }
-}
-
-TEST(ContactState, ResetMakesItVirgin) {
-  Generator generator(7);
-  for (const Case& c : Cases()) {
-    ContactState contact(*c.model, {1.0, c.shape_exponent, 1.0}, {.unloaded_displacement = 0.5});
-    for (const double displacement : Spiral(9)) contact.Move(displacement);
-    contact.Reset();
-    EXPECT_EQ(contact.Force(), 0.0);
-    EXPECT_EQ(contact.Displacement(), 0.5);
-    EXPECT_EQ(contact.RememberedExtremes(), 0U);
-    const History history = DrawHistory(generator);
-    std::vector<double> force;
-    for (const double displacement : history) force.push_back(contact.Move(displacement));
-    EXPECT_EQ(force, Respond(*c.model, {1.0, c.shape_exponent, 1.0}, history,
-                             {.unloaded_displacement = 0.5}));
   }
 }
 
@@ -447,21 +325,6 @@ TEST(ContactState, RemembersAsManyExtremesAsTheLoopIsDeepNotAsItIsLong) {
   EXPECT_EQ(drifted, 0U);
   EXPECT_EQ(allocations, allocated);
   EXPECT_LE(most, 4U);
-}
-
-TEST(ContactState, RemembersLittleOfALongRandomWalk) {
-  // Surviving extremes of n random steps grow as log n, by a few a decade.
-  constexpr std::size_t kFew = 100;
-  Generator generator(8);
-  ContactState contact(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0});
-  std::size_t most = 0;
-  double displacement = 0.0;
-  for (int i = 0; i < 1'000'000; ++i) {
-    contact.Move(displacement += Uniform(generator, -0.1, 0.1));
-    most = std::max(most, contact.RememberedExtremes());
-  }
-  EXPECT_LE(most, kFew);
-  EXPECT_GT(most, 5U);
 }
 
 TEST(ContactState, AllocatesNothingWithinItsReserve) {
@@ -510,16 +373,6 @@ TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
       EXPECT_EQ(contact.Move(0.25), ContactState(copy).Move(0.25));
     }
   }
-}
-
-TEST(ContactState, RefusesAForceThatStillGrowsBeyondItsReach) {
-  using ::testing::HasSubstr;
-  ContactState contact(Model("mindlin-dahl"), {1.0, 2.0, 1.0});
-  contact.Move(1e200);
-  EXPECT_THAT(MessageOf([&] { contact.Move(1e201); }),
-              HasSubstr("displacement [m] = 1e+201 is invalid: must be within 1.8e+200 elastic"));
-  EXPECT_EQ(contact.Displacement(), 1e200);
-  EXPECT_NO_THROW(contact.Move(-1e200));
 }
 
 TEST(ContactState, RefusesAModelThatHasToKnowTheAmplitude) {

@@ -107,36 +107,6 @@ TEST(EquivalentLaw, LosesTheSameEnergyAndReachesTheSamePeak) {
   });
 }
 
-TEST(EquivalentLaw, ComesBackToTheLawItCameFrom) {
-  Worst stiffness;
-  Worst slip_force;
-  ForEveryLoop([&](const BranchLaw& law, double amplitude) {
-    const BranchLaw back = MasingEquivalent(DahlEquivalent(law, amplitude), amplitude);
-    const auto say = [&] { return Say(law, amplitude); };
-    // The stated errors of both ways, T* being off by what σ' and Tc' are.
-    stiffness.Add(std::abs(back.tangential_stiffness - 1) / (1 + law.shape_exponent), say);
-    slip_force.Add(std::abs(back.slip_force - 1), say);
-  });
-  EXPECT_LT(stiffness.value, 32 * kEpsilon) << stiffness.where;
-  EXPECT_LT(slip_force.value, 32 * kEpsilon) << slip_force.where;
-}
-
-TEST(EquivalentLaw, OfGrossSlipKeepsTheSlipForceAndOfNoneDoublesIt) {
-  const BranchLaw mindlin{4e7, 1.0 / 3, 40.0};
-  const double onset = GrossSlipDisplacement(mindlin);
-  for (const double amplitude : {onset, 2 * onset, 1e6 * onset}) {
-    const BranchLaw dahl = DahlEquivalent(mindlin, amplitude);
-    EXPECT_EQ(dahl.slip_force, mindlin.slip_force);
-    EXPECT_DOUBLE_EQ(dahl.tangential_stiffness, mindlin.tangential_stiffness / std::cbrt(2.0));
-    // Dahl's law slips steadily from 2^{−α}·δc' on: that is Mindlin's δc.
-    EXPECT_DOUBLE_EQ(GrossSlipDisplacement(dahl) / std::cbrt(2.0), onset);
-  }
-  const BranchLaw line = DahlEquivalent(mindlin, 0.0);
-  EXPECT_EQ(line.tangential_stiffness, mindlin.tangential_stiffness);
-  EXPECT_EQ(line.slip_force, 2 * mindlin.slip_force);
-  EXPECT_EQ(MasingEquivalent(line, 0.0).slip_force, mindlin.slip_force);
-}
-
 TEST(EquivalentLaw, IsOfOneAmplitudeOnly) {
   // Small loops of α = 1/3 lose twice as much by Dahl's own law: σ' and Tc' are those of the wide
   // one.
@@ -149,19 +119,6 @@ TEST(EquivalentLaw, IsOfOneAmplitudeOnly) {
             1.1);
   // Nor is the virgin curve the same: it starts with σ' instead of σ.
   EXPECT_LT(dahl.tangential_stiffness, 0.9 * mindlin.tangential_stiffness);
-}
-
-TEST(EquivalentLaw, HoldsFromAtomsToFaults) {
-  for (const double slip_force : {1e-15, 1.0, 1e12}) {
-    for (const double stiffness : {1e-9, 1e7, 1e15}) {
-      const BranchLaw law{stiffness, 1.0 / 3, slip_force};
-      const BranchLaw dahl = DahlEquivalent(law, 0.75 * slip_force / stiffness);
-      // y = 3/4: z = 1/2, u = z^{3/2} = 2^{−3/2}
-      const double half = (1 + std::sqrt(0.125)) / 2;
-      EXPECT_NEAR(dahl.tangential_stiffness / stiffness, std::cbrt(half), 8 * kEpsilon);
-      EXPECT_NEAR(dahl.slip_force / slip_force, 2 * half, 8 * kEpsilon);
-    }
-  }
 }
 
 TEST(EquivalentLaw, RefusesInvalidAmplitudeOrLaw) {

@@ -23,19 +23,6 @@ TEST(Excitation, SineIsExactAtZerosAndExtremesAndRepeatsBitForBit) {
   }
 }
 
-TEST(Excitation, SineIsASine) {
-  constexpr double kRounding = 1e-15;
-  const Excitation sine =
-      MakeExcitation({.amplitude = 2.0, .cycles = 1.5, .samples_per_cycle = 90, .frequency = 4.0});
-  ASSERT_EQ(sine.displacement.size(), 136U);
-  for (std::size_t i = 0; i < sine.time.size(); ++i) {
-    EXPECT_NEAR(sine.time[i], static_cast<double>(i) / 360, kRounding);
-    EXPECT_NEAR(sine.displacement[i], 2 * std::sin(2 * std::numbers::pi * 4.0 * sine.time[i]),
-                20 * kRounding);  // the argument of this one is rounded, to 1e-15 of 10
-    EXPECT_EQ(sine.envelope[i], 2.0);
-  }
-}
-
 TEST(Excitation, TriangleIsStraightBetweenTheSameExtremes) {
   const Excitation triangle = MakeExcitation(
       {.waveform = Waveform::kTriangle, .amplitude = 1.0, .cycles = 1, .samples_per_cycle = 8});
@@ -99,27 +86,6 @@ TEST(Excitation, RandomTurnsBackTwiceACycleAndReachesItsAmplitude) {
   }
 }
 
-TEST(Excitation, RandomExtremesAreUniformBeyondTheLast) {
-  constexpr std::size_t kCycles = 20'000;
-  const Excitation random = MakeExcitation(
-      {.waveform = Waveform::kRandom, .amplitude = 1.0, .cycles = kCycles, .samples_per_cycle = 4});
-  const std::vector<double> extremes = AtExtremes(random.displacement, 4);
-  ASSERT_EQ(extremes.size(), 2 * kCycles);
-  std::vector<double> shares;  // of the way from the last extreme to the bound
-  for (std::size_t k = 1; k < extremes.size(); ++k) {
-    const double bound = extremes[k] > extremes[k - 1] ? 1.0 : -1.0;
-    shares.push_back((extremes[k] - extremes[k - 1]) / (bound - extremes[k - 1]));
-  }
-  std::ranges::sort(shares);
-  // Kolmogorov: sup |F_n − F| exceeds 1.95/√n with probability 1e-3. That the largest is scaled to
-  // 1 shifts a share by some 1/n.
-  const auto count = static_cast<double>(shares.size());
-  const double tolerance = 2 / std::sqrt(count);
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    ASSERT_NEAR(shares[i], (static_cast<double>(i) + 0.5) / count, tolerance);
-  }
-}
-
 TEST(Excitation, RandomIsThatOfItsSeedOnEveryPlatform) {
   const auto random = [](std::uint64_t seed) {
     return MakeExcitation({.waveform = Waveform::kRandom, .amplitude = 1.0, .seed = seed})
@@ -155,36 +121,6 @@ TEST(Excitation, NestedExtremesCloseEveryLoopOnReturn) {
         EXPECT_GT(size(k), size(2 * innermost - k)) << "does not close its loop";
         EXPECT_EQ(std::signbit(extremes[k]), std::signbit(extremes[2 * innermost - k]));
       }
-    }
-  }
-}
-
-TEST(Excitation, NestedExtremesFallAndGrowByEqualSteps) {
-  constexpr double kRounding = 1e-15;
-  const auto extremes = [](double cycles) {
-    return AtExtremes(MakeExcitation({.waveform = Waveform::kNested,
-                                      .amplitude = 1.0,
-                                      .cycles = cycles,
-                                      .samples_per_cycle = 8})
-                          .displacement,
-                      8);
-  };
-  const auto expect_equal = [](const std::vector<double>& actual, std::vector<double> expected) {
-    ASSERT_EQ(actual.size(), expected.size());
-    for (std::size_t k = 0; k < actual.size(); ++k) EXPECT_NEAR(actual[k], expected[k], kRounding);
-  };
-  expect_equal(extremes(1), {1.0, -1.0 / 3});
-  expect_equal(extremes(2), {1.0, -3.0 / 7, 1.0 / 7, -5.0 / 7});
-  expect_equal(extremes(2.25), {7.0 / 9, -3.0 / 9, 1.0 / 9, -5.0 / 9, 1.0});
-}
-
-TEST(Excitation, NestedEnvelopeTouchesTheExtremesAndIsNowhereExceeded) {
-  const Excitation nested = MakeExcitation(
-      {.waveform = Waveform::kNested, .amplitude = 5.0, .cycles = 7.5, .samples_per_cycle = 1000});
-  for (std::size_t i = 0; i < nested.displacement.size(); ++i) {
-    EXPECT_LE(std::abs(nested.displacement[i]), nested.envelope[i]);
-    if (i % 500 == 250) {
-      EXPECT_EQ(std::abs(nested.displacement[i]), nested.envelope[i]);
     }
   }
 }
@@ -247,46 +183,6 @@ TEST(Excitation, IsWithinItsBoundOfTheExactWave) {
                   kBound * grown * 1.7e-7);
     }
   }
-}
-
-TEST(Excitation, HalfCosinesAreWithinTheirBound) {
-  using Real = boost::multiprecision::cpp_bin_float_50;
-  constexpr double kBound = 6 * std::numeric_limits<double>::epsilon();  // excitation.h
-  constexpr std::size_t kFine = 4004;
-  for (const Waveform waveform : {Waveform::kRandom, Waveform::kNested}) {
-    const Excitation made = MakeExcitation(
-        {.waveform = waveform, .amplitude = 1.7e-7, .cycles = 5, .samples_per_cycle = kFine});
-    const std::vector<double> extremes = AtExtremes(made.displacement, kFine);
-    for (std::size_t k = 0; k + 1 < extremes.size(); ++k) {
-      for (std::size_t i = 0; i <= kFine / 2; ++i) {
-        const Real angle = boost::math::constants::pi<Real>() * Real(2 * i) / Real(kFine);
-        const Real exact = (Real(extremes[k]) + Real(extremes[k + 1])) / 2 +
-                           (Real(extremes[k]) - Real(extremes[k + 1])) / 2 * cos(angle);
-        const double actual = made.displacement[kFine / 4 + k * kFine / 2 + i];
-        ASSERT_NEAR(static_cast<double>(Real(actual) - exact), 0.0, kBound * 1.7e-7);
-      }
-    }
-  }
-}
-
-// The noise of a record and its random waveform are drawn with one seed.
-TEST(Excitation, RandomDoesNotRepeatTheNumbersOfTheNoise) {
-  constexpr std::size_t kCycles = 20'000;
-  const std::vector<double> extremes = AtExtremes(MakeExcitation({.waveform = Waveform::kRandom,
-                                                                  .amplitude = 1.0,
-                                                                  .cycles = kCycles,
-                                                                  .samples_per_cycle = 4,
-                                                                  .seed = 7})
-                                                      .displacement,
-                                                  4);
-  boost::random::mt19937_64 engine(7);
-  double sum = 0.0;
-  for (const double extreme : extremes) {
-    sum += extreme * (std::ldexp(static_cast<double>(engine()), -63) - 1);
-  }
-  // Each term has mean 0 and variance at most 1/3; four standard deviations of the sum.
-  const auto count = static_cast<double>(extremes.size());
-  EXPECT_LT(std::abs(sum), 4 * std::sqrt(count / 3));
 }
 
 }  // namespace

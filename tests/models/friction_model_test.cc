@@ -23,16 +23,6 @@ TEST(FrictionModels, PrescribeTheShapeExponentWhereTheNameDoes) {
   EXPECT_FALSE(FindFrictionModel("dahl")->shape_exponent.has_value());
 }
 
-TEST(FrictionModels, AreDescribedInFull) {
-  for (const FrictionModel& model : FrictionModels()) {
-    EXPECT_FALSE(model.title.empty()) << model.name;
-    EXPECT_FALSE(model.source.empty()) << model.name;
-    EXPECT_NE(model.scale, nullptr) << model.name;
-    EXPECT_NE(model.steady_peak, nullptr) << model.name;
-    EXPECT_EQ(std::ranges::count(FrictionModels(), model.name, &FrictionModel::name), 1);
-  }
-}
-
 TEST(FrictionModels, ScaleDerivativesAreThoseOfTheScale) {
   // v is linear in force and peak: differences are exact but for rounding.
   constexpr double kStep = 0x1p-10;

@@ -153,10 +153,6 @@ struct Case {
   double size;  // of the history over the elastic limit
 };
 
-void PrintTo(const Case& test, std::ostream* out) {
-  *out << "alpha = " << test.shape_exponent << ", size = " << test.size;
-}
-
 std::string NameOf(const ::testing::TestParamInfo<Case>& info) {
   std::string name =
       info.param.model + (info.param.state == InitialState::kVirgin ? "_virgin" : "_steady");
@@ -257,34 +253,6 @@ TEST(Gradient, IsFiniteOnTheCornersAndAtTheEndsOfTheRange) {
       }
     }
   }
-}
-
-TEST(Gradient, ComesWithTheForceOfEvaluateForce) {
-  constexpr double kTolerance = 5e-14;  // of Tc: two roundings of what response.h bounds
-  Generator generator(11);
-  for (const FrictionModel& model : FrictionModels()) {
-    for (int i = 0; i < 200; ++i) {
-      const History history = testing::RandomHistory(generator);
-      const BranchLaw law{1.0, testing::Uniform(generator, 0.0, 2.0), 1.0};
-      std::vector<double> force(history.size());
-      std::vector<double> gradient(history.size() * kGradientColumns);
-      EvaluateForceAndGradient(model, law, PathOf(model, history), history, force, gradient);
-      const std::vector<double> alone = Respond(model, law, history);
-      for (std::size_t j = 0; j < force.size(); ++j) {
-        ASSERT_NEAR(force[j], alone[j], kTolerance) << model.name;
-      }
-    }
-  }
-}
-
-TEST(Gradient, NeedsARowOfAllColumnsASample) {
-  const History history = {0.0, 1.0};
-  std::vector<double> force(2);
-  std::vector<double> gradient(history.size() * kGradientColumns - 1);
-  EXPECT_THROW(
-      EvaluateForceAndGradient(Model("mindlin"), {1.0, 0.5, 1.0}, PathOf(Model("mindlin"), history),
-                               history, force, gradient),
-      std::invalid_argument);
 }
 
 }  // namespace

@@ -160,21 +160,6 @@ TEST(ImposedForce, IsExactForDahlsLawWithinRoundingOfForces) {
   }
 }
 
-TEST(ImposedForce, KeepsItsDigitsFarFromSlipAndNextToIt) {
-  for (const double exponent : kExponents) {
-    const BranchLaw law{2.0, exponent, 1.0};
-    const reference::Law<Real> exact{2, exponent, 1};
-    for (const double force : {1e-40, 1e-17, 1e-3, 0.4999, 0.5, 0.75, 1 - 1e-9, 1 - kEpsilon}) {
-      const Expected expected = MasingDisplacement(exact, {Real(force)});
-      const std::vector<double> up = Displacements(Model("mindlin-dahl"), law, {force});
-      const std::vector<double> down = Displacements(Model("mindlin-dahl"), law, {-force});
-      EXPECT_LE(std::abs(static_cast<double>(up[0] - expected.displacement)), expected.bound)
-          << "alpha = " << exponent << ", T = " << force;
-      EXPECT_EQ(down[0], -up[0]);
-    }
-  }
-}
-
 /// Largest |T(δ(T)) − T| of a history, over what rounding makes of it.
 double RoundTrip(const FrictionModel& model, const BranchLaw& law, const History& force,
                  const SeriesSpring& rig = {}) {
@@ -224,23 +209,6 @@ TEST(ImposedForce, LeavesNothingOfAnInnerLoopBehind) {
   const History with = {0.8, -0.3, 0.2, 0.0, 0.1, 0.05, 0.6};
   EXPECT_EQ(Displacements(Model("mindlin"), law, with).back(),
             Displacements(Model("mindlin"), law, without).back());
-}
-
-TEST(ImposedForce, DoesNotDependOnHowDenselyTheHistoryIsSampled) {
-  for (const char* model : {"mindlin-dahl", "dahl"}) {
-    const BranchLaw law{2.0, 0.6, 1.0};
-    const History turns = {0.9, -0.7, 0.5, -0.95};
-    History dense;
-    double from = 0.0;
-    for (const double to : turns) {
-      for (int i = 1; i < 50; ++i) dense.push_back(from + (to - from) * i / 50);
-      dense.push_back(to);
-      from = to;
-    }
-    EXPECT_EQ(Displacements(Model(model), law, dense).back(),
-              Displacements(Model(model), law, turns).back())
-        << model;
-  }
 }
 
 TEST(ImposedForce, ASpringInSeriesAddsItsOwnTravel) {

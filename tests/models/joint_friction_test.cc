@@ -94,19 +94,6 @@ TEST(JointFriction, SlipsAtTcOnePlusOrMinusTheAsymmetryUnderTheReferenceLoad) {
   EXPECT_EQ(at(1, 0), 0.0);
 }
 
-TEST(JointFriction, IsDahlsOwnLawUnderOneLoadWithoutAsymmetry) {
-  JointFriction joint = kDrive;
-  joint.asymmetry = 0;
-  History history = Drive(joint.law.slip_force / joint.law.tangential_stiffness);
-  history.load.assign(history.load.size(), joint.reference_load);
-  std::vector<double> force(history.load.size());
-  EvaluateJointFriction(joint, history.displacement, history.load, force);
-  ContactState dahl(testing::Model("dahl"), joint.law);
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    EXPECT_NEAR(force[i], dahl.Move(history.displacement[i]), kError * joint.law.slip_force);
-  }
-}
-
 TEST(JointState, IsTheSameHoweverItsStepsAreSplit) {
   const History history = Drive(kDrive.law.slip_force / kDrive.law.tangential_stiffness);
   std::vector<double> force(history.load.size());

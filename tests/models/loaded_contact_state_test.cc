@@ -66,33 +66,6 @@ TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
   }
 }
 
-TEST(LoadedContactState, IsAContactStateWhereTheLoadIsConstant) {
-  constexpr double kRounding = 1e-13;  // of Tc: both bounds, of variable_load.h and response.h
-  Generator generator(2);
-  for (const double alpha : {0.0, 1.0 / 3.0, 0.5, 0.9}) {
-    for (int i = 0; i < 300; ++i) {
-      const double unloaded_displacement = Uniform(generator, -1, 1);
-      ContactState constant(Model("mindlin-dahl"), {1.0, alpha, 1.0},
-                            {.unloaded_displacement = unloaded_displacement});
-      LoadedContactState loaded(UnitLaw(alpha), {2.0, unloaded_displacement});
-      for (const double displacement : mindahl::testing::RandomHistory(generator)) {
-        ASSERT_NEAR(loaded.Move(displacement, 2.0), constant.Move(displacement), kRounding)
-            << alpha << ' ' << i;
-      }
-    }
-  }
-}
-
-TEST(LoadedContactState, CarriesNothingBeforeItsBodiesTouch) {
-  LoadedContactState contact(UnitLaw(1.0 / 3.0));
-  EXPECT_EQ(contact.NormalLoad(), 0.0);
-  EXPECT_EQ(contact.Move(3.0, 0.0), 0.0);
-  EXPECT_EQ(contact.Move(3.0, 2.0), 0.0);  // touches without sliding
-  EXPECT_GT(contact.Move(3.1, 2.0), 0.0);
-  EXPECT_EQ(contact.Move(3.2, 0.0), 0.0);  // lifted off
-  EXPECT_EQ(contact.RememberedZones(), 0U);
-}
-
 TEST(LoadedContactState, ACopyGoesItsOwnWayAndResetForgets) {
   const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
   LoadedContactState contact(law, {.normal_load = 2.0, .unloaded_displacement = 0.25});

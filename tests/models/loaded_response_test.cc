@@ -146,60 +146,6 @@ TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
   }
 }
 
-TEST(NormalizedLoadedResponse, HasTheGradientOfTheBranchLawWhereTheLoadIsConstant) {
-  // Both exact: roundings of at most 7 strokes, but for samples within ε of slip.
-  constexpr double kRounding = 1e-11;
-  const FrictionModel& model = testing::Model("mindlin-dahl");
-  for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-    for (const double lambda : {0.7, 1.4}) {
-      const Path path = PathOf({.lambda = lambda, .swing = 0.0});
-      const std::size_t samples = path.load.size();
-      const NormalizedLaw law{.rate = kRate, .shape_exponent = 1.0 / 3};
-      const double unloaded = 0.01;  // not where the record starts: a point is no step
-      std::array<History, 8> columns;
-      for (History& column : columns) column.resize(samples);
-      NormalizedLoadedResponse().Differentiate(law, HistoryOf(path, state), unloaded, columns[0],
-                                               {.log_rate = columns[1],
-                                                .shape_exponent = columns[2],
-                                                .unloaded_displacement = columns[3],
-                                                .log_spring_travel = {}});
-      NormalizedResponse().Differentiate(
-          model, law,
-          testing::PathOf(model, path.displacement,
-                          {.state = state, .unloaded_displacement = unloaded}),
-          path.displacement, columns[4],
-          {.log_rate = columns[5],
-           .shape_exponent = columns[6],
-           .unloaded_displacement = columns[7],
-           .log_spring_travel = {}});
-      // Each column alone is the same.
-      for (std::size_t c = 1; c < 4; ++c) {
-        History t(samples);
-        History column(samples);
-        const NormalizedGradient alone{
-            .log_rate = c == 1 ? column : std::span<double>(),
-            .shape_exponent = c == 2 ? column : std::span<double>(),
-            .unloaded_displacement = c == 3 ? column : std::span<double>(),
-            .log_spring_travel = {}};
-        NormalizedLoadedResponse().Differentiate(law, HistoryOf(path, state), unloaded, t, alone);
-        EXPECT_EQ(column, columns[c]);
-        NormalizedResponse().Differentiate(
-            model, law,
-            testing::PathOf(model, path.displacement,
-                            {.state = state, .unloaded_displacement = unloaded}),
-            path.displacement, t, alone);
-        EXPECT_EQ(column, columns[c + 4]);
-      }
-      for (std::size_t c = 0; c < 4; ++c) {
-        for (std::size_t k = 0; k < samples; ++k) {
-          ASSERT_NEAR(columns[c][k], columns[c + 4][k], kRounding)
-              << "column " << c << ", sample " << k;
-        }
-      }
-    }
-  }
-}
-
 TEST(LoadedHistory, OfASteadyContactIsThatOfOneThatHasCycledForLong) {
   // The law repeats itself from the second cycle on, exactly; the jump from the extremes into the
   // first cycle leaves nothing where that cycle reaches them.
@@ -228,42 +174,6 @@ TEST(LoadedHistory, OfASteadyContactIsThatOfOneThatHasCycledForLong) {
         for (std::size_t k = 0; k < of_short.size(); ++k) ASSERT_NEAR(of_short[k], t[k], kRounding);
       }
     }
-  }
-}
-
-TEST(LoadedHistory, OfASteadyContactBeginsAtTheExtremesAndGoesRoundOnce) {
-  const auto before = [](History displacement, const std::vector<std::size_t>& reversals,
-                         double sign) {
-    for (double& x : displacement) x *= sign;
-    LoadedHistory history;
-    MakeLoadedHistory(displacement, History(displacement.size(), 1.0), reversals,
-                      InitialState::kSteady, history);
-    return history.before;
-  };
-  for (const double sign : {1.0, -1.0}) {
-    // Back beyond its first sample at the seventh, and a later stroke that does not matter.
-    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, 0.25, 1, 1.5, 0}, {2, 5, 8}, sign),
-                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6));
-    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, 0.25, 1, 1.5}, {2, 5}, sign),
-                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6));
-    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1, -0.5, 0.25, -0.5}, {2, 5, 7}, sign),
-                ElementsAre(2, 5, 0, 1, 2, 3, 4, 5, 6, 7));
-    EXPECT_THAT(before({0.5, 1, 2, 1, 0, -1}, {2}, sign), ElementsAre(2, 5));
-    EXPECT_THAT(before({0.5, 1, 2}, {}, sign), ElementsAre(2, 0));
-  }
-}
-
-TEST(LoadedHistory, GoesOneWayFromReversalToReversal) {
-  const History displacement = {0.0, 1.0, 0.8, 0.9, 2.0, 1.0, 1.1, -1.0};
-  const std::vector<std::size_t> reversals = {4};
-  LoadedHistory history;
-  MakeLoadedHistory(displacement, History(displacement.size(), 1.0), reversals,
-                    InitialState::kVirgin, history);
-  // The mean of what steps back: least squares.
-  const History expected = {0.0, 0.9, 0.9, 0.9, 2.0, 1.05, 1.05, -1.0};
-  ASSERT_EQ(history.displacement.size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_DOUBLE_EQ(history.displacement[i], expected[i]) << i;
   }
 }
 

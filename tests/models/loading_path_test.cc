@@ -181,66 +181,6 @@ TEST(LoadingPath, WithoutMemoryEveryReversalStartsFromTheLast) {
   EXPECT_EQ(OriginsAtTheEnd(MemorylessPath({4, 0, 2, -0.1})), (Origins{2, 0, 4, 0}));
 }
 
-/// Extremes ±size, ∓(size − 1), … in steps of 2⁻²¹: every one is remembered.
-History Spiral(std::size_t reversals) {
-  History history(reversals);
-  for (std::size_t i = 0; i < reversals; ++i) {
-    const double size = static_cast<double>(reversals - i) * 0x1p-21;
-    history[i] = i % 2 == 0 ? size : -size;
-  }
-  return history;
-}
-
-TEST(LoadingPath, ADeepSpiralCostsOneBranchAReversalAndOutwardsAgainNoneIsLeft) {
-  // Linear by structure: a reversal opens one branch, which is closed at most once.
-  constexpr std::size_t kReversals = 1'000'000;
-  History history = Spiral(kReversals);
-  const LoadingPath inwards = MasingPath(history);
-  EXPECT_EQ(inwards.branches.size(), kReversals);
-  EXPECT_LE(inwards.runs.size(), kReversals);
-  EXPECT_EQ(OriginsAtTheEnd(inwards).size(), kReversals);
-
-  const History back(history.rbegin(), history.rend());
-  history.insert(history.end(), back.begin() + 1, back.end());
-  history.push_back(2 * history.front());
-  const LoadingPath outwards = MasingPath(history);
-  EXPECT_LE(outwards.branches.size(), history.size());
-  EXPECT_LE(outwards.runs.size(), history.size());
-  EXPECT_EQ(OriginsAtTheEnd(outwards), (Origins{0.0}));
-}
-
-TEST(LoadingPath, MemoryGrowsWithTheReversalsNotWithTheSamples) {
-  static_assert(sizeof(Branch) <= 24 && sizeof(BranchRun) <= 12);  // loading_path.h: 36 bytes
-  constexpr std::size_t kBetween = 50;
-  const History corners = Spiral(100);
-  History history = {0.0};
-  for (const double corner : corners) {
-    const double from = history.back();
-    for (std::size_t k = 1; k < kBetween; ++k) {
-      history.push_back(from + (corner - from) * static_cast<double>(k) / kBetween);
-    }
-    history.push_back(corner);
-  }
-  EXPECT_EQ(MasingPath(history).branches.size(), MasingPath(corners).branches.size());
-  EXPECT_LE(MasingPath(history).runs.size(), corners.size() + 1);
-}
-
-TEST(LoadingPath, AnEnvelopeMakesEverySampleABranch) {
-  const History history = {1, -2, -2, 3};
-  const std::vector<double> envelope = {1, 2, 2, 3};
-  const LoadingPath path = MakeEnvelopePath(history, envelope, 0.5);
-  ASSERT_EQ(path.branches.size(), 4U);
-  EXPECT_EQ(path.branches[0].origin, 0.5);
-  EXPECT_EQ(path.branches[0].start, BranchStart::kUnloaded);
-  for (std::size_t i = 1; i < 4; ++i) {
-    EXPECT_EQ(path.branches[i].origin, history[i - 1]);
-    EXPECT_EQ(path.branches[i].amplitude, envelope[i]);
-  }
-  EXPECT_EQ(path.branches[1].direction, -1.0);
-  EXPECT_EQ(path.branches[2].direction, -1.0);  // a repeated sample keeps it
-  EXPECT_EQ(path.branches[3].direction, 1.0);
-}
-
 TEST(LoadingPath, RejectsInvalidHistory) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(MakeLoadingPath({}, {}, Memory::kNone, {}), InvalidArgument);
@@ -251,18 +191,6 @@ TEST(LoadingPath, RejectsInvalidHistory) {
                InvalidArgument);
   EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1}, 0.0), InvalidArgument);
   EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1, -1}, 0.0), InvalidArgument);
-}
-
-TEST(LoadingPath, NamesTheSampleThatIsNotFinite) {
-  const History bad = {0, 1, std::numeric_limits<double>::infinity()};
-  try {
-    MakeLoadingPath(bad, {}, Memory::kNone, {});
-    FAIL() << "accepted";
-  } catch (const InvalidArgument& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "displacement [m] of sample 2 = inf is invalid: must be finite and within +-1e307 m");
-  }
 }
 
 }  // namespace

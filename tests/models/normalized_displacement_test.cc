@@ -8,8 +8,6 @@
 namespace mindahl::models::normalized_displacement_test {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kExponents[] = {0.0, 0.2, 1.0 / 3, 0.5, 0.9, 1.0, 1.5, 3.0};
 constexpr double kSlipForce = 7.0;  // [N]
 
 /// Cycles between ±peak and nested ones, all below slip.
@@ -36,57 +34,6 @@ History Reduced(const FrictionModel& model, const ForcedLaw& law, const History&
   NormalizedDisplacement displacement;
   EXPECT_TRUE(displacement.Evaluate(model, law, PathOfForces(model, force, initial), force, d));
   return d;
-}
-
-TEST(NormalizedDisplacement, IsThatOfAVirginContactOverTcBySigma) {
-  // Either rounds a few times a branch, and the displacement of Dahl's law walks along.
-  constexpr double kRoundings = 1000;
-  Generator generator(1);
-  const BranchLaw law{3e6, 0.0, kSlipForce};
-  for (const std::string_view name : {"mindlin-dahl", "dahl"}) {
-    for (const double alpha : kExponents) {
-      const History force = Forces(generator, 0.97 * kSlipForce);
-      BranchLaw with_shape = law;
-      with_shape.shape_exponent = alpha;
-      History expected(force.size());
-      EvaluateDisplacement(Model(name), with_shape, force, expected);
-      const History d = Reduced(Model(name), {kSlipForce, alpha}, force);
-      double largest = 0.0;
-      for (const double x : expected) largest = std::max(largest, std::abs(x));
-      for (std::size_t i = 0; i < d.size(); ++i) {
-        EXPECT_NEAR(d[i] * kSlipForce / law.tangential_stiffness, expected[i],
-                    kRoundings * kEpsilon * largest)
-            << name << " " << alpha;
-      }
-    }
-  }
-}
-
-TEST(NormalizedDisplacement, OfASteadyLoopIsThatOfADrivenOne) {
-  // The response to a displacement, put back: both round a few times, magnified next to slip by the
-  // branch's stiffness over its tangent, (1 − φ)^−α < 1e3 here.
-  constexpr double kRounding = 1e-11;
-  for (const std::string_view name : {"mindlin-dahl", "dahl"}) {
-    for (const double alpha : {0.2, 1.0 / 3, 0.9, 1.0, 1.5}) {
-      const BranchLaw law{2.0, alpha, kSlipForce};
-      History displacement;
-      for (int i = 0; i <= 240; ++i)
-        displacement.push_back(1.5 * std::sin(0.7 + i * 0.0523598775598));
-      const FrictionModel& model = Model(name);
-      const LoadingPath path = MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0),
-                                               model.memory, {.state = InitialState::kSteady});
-      History force(displacement.size());
-      EvaluateForce(model, law, path, displacement, force);
-      const History d =
-          Reduced(model, {kSlipForce, alpha}, force, {.state = InitialState::kSteady});
-      const double offset = displacement[0] - d[0] * kSlipForce / law.tangential_stiffness;
-      for (std::size_t i = 0; i < d.size(); ++i) {
-        EXPECT_NEAR(d[i] * kSlipForce / law.tangential_stiffness + offset, displacement[i],
-                    kRounding)
-            << name << " " << alpha << " " << i;
-      }
-    }
-  }
 }
 
 struct Gradient {

@@ -79,16 +79,6 @@ TEST(FullDahl, IsMindlinIdentically) {
   }
 }
 
-TEST(FullDahl, IsTheMindlinModelOnAnyHistory) {
-  Generator generator(31);
-  for (int i = 0; i < 2000; ++i) {
-    const History history = testing::RandomHistory(generator);
-    const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
-    EXPECT_EQ(Respond(Model("mindlin-dahl"), law, history),
-              Respond(Model("mindlin"), law, history));
-  }
-}
-
 /// Largest |T − Mindlin| in each cycle of a sine, in % of T*.
 std::vector<double> ErrorsByCycle(const History& history, const std::vector<double>& force) {
   const std::vector<double> mindlin = Respond(Model("mindlin"), kPaperLaw, history);
@@ -234,27 +224,6 @@ TEST(MasingMemory, IsThatOfManyJenkinsElements) {
   }
 }
 
-TEST(MasingMemory, KeepsItsDigitsOverAMillionNestedReversals) {
-  // response.h: roundings add up as in a random walk. Jenkins' law is exact here in whole steps:
-  // ±n, ∓(n−1), … in units of 2⁻²¹ below the limit all round is T = δ.
-  constexpr std::size_t kReversals = 1'000'000;
-  History history(kReversals);
-  for (std::size_t i = 0; i < kReversals; ++i) {
-    const double size = static_cast<double>(kReversals - i) * 0x1p-21;
-    history[i] = i % 2 == 0 ? size : -size;
-  }
-  const std::vector<double> elastic = Respond(Model("jenkins"), {1.0, 0.0, 1.0}, history);
-  EXPECT_EQ(elastic, history);
-
-  // For any law the last points lie at the middle of the spiral, demagnetised: T → 0.
-  constexpr double kDemagnetised = 1e-6;  // half the last swing
-  constexpr double kRounding = 2e-13;
-  for (const double alpha : {1.0 / 3.0, 1.0, 3.0}) {
-    const auto force = Respond(Model("mindlin-dahl"), {1.0, alpha, 1.0}, history);
-    EXPECT_NEAR(force.back(), 0.0, kDemagnetised + kRounding);
-  }
-}
-
 TEST(MasingMemory, AddsUpAMillionNestedReversalsAsARandomWalkOfRoundings) {
   // T = f(e₀) + Σ 2·sgn·f(|eₖ₊₁ − eₖ|/2), summed in long double.
   constexpr std::size_t kReversals = 1'000'000;
@@ -279,22 +248,6 @@ TEST(MasingMemory, AddsUpAMillionNestedReversalsAsARandomWalkOfRoundings) {
   }
 }
 
-TEST(MasingMemory, RepeatsALoopBitForBitAfterTenMillionReversals) {
-  constexpr std::size_t kReversals = 10'000'000;
-  const History once = {1.3, 0.2, 0.9, -0.7, 0.4, -0.1, 0.1, -0.4};
-  History history(kReversals);
-  for (std::size_t i = 0; i < kReversals; ++i) history[i] = once[i % once.size()];
-  for (const auto& [name, alpha] : {std::pair{"mindlin", 1.0 / 3.0}, {"mindlin-dahl", 0.8}}) {
-    const std::vector<double> force = Respond(Model(name), {1.0, alpha, 1.0}, history);
-    const auto period = static_cast<std::ptrdiff_t>(once.size());
-    // The first turn has the virgin loading in it; from its second extreme on, all are alike.
-    const std::vector<double> first(force.begin() + period, force.begin() + 2 * period);
-    const std::vector<double> last(force.end() - period, force.end());
-    EXPECT_EQ(first, last) << name;
-    EXPECT_EQ(force[1], last[1]) << name;
-  }
-}
-
 TEST(DahlsLaw, IsSteeperAfterAReversalThanMasings) {
   // Eq. 12: σ(1 + T*/Tc)^α against σ.
   constexpr double kStep = 1e-7;
@@ -307,32 +260,6 @@ TEST(DahlsLaw, IsSteeperAfterAReversalThanMasings) {
     const auto masing = Respond(Model("mindlin-dahl"), law, history);
     EXPECT_NEAR((masing[0] - masing[1]) / kStep, 1.0, kSecant);
   }
-}
-
-TEST(DahlsLaw, HasTheSameVirginBranch) {
-  constexpr double kRounding = 1e-15;
-  Generator generator(33);
-  for (int i = 0; i < 500; ++i) {
-    const BranchLaw law{1.0, Uniform(generator, 0.0, 3.0), 1.0};
-    History history = testing::WhiteSequence(generator, 20, 2.0);
-    for (double& displacement : history) displacement = std::abs(displacement);
-    std::ranges::sort(history);
-    const auto dahl = Respond(Model("dahl"), law, history);
-    const auto masing = Respond(Model("mindlin-dahl"), law, history);
-    for (std::size_t k = 0; k < history.size(); ++k) EXPECT_NEAR(dahl[k], masing[k], kRounding);
-  }
-}
-
-TEST(EnvelopePath, OfAConstantEnvelopeIsTheOrdinaryPath) {
-  constexpr double kRounding = 1e-13;
-  const Excitation sine = MakeExcitation({.amplitude = 1.2, .cycles = 3, .samples_per_cycle = 100});
-  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
-  const FrictionModel& model = Model("simplified-dahl");
-  std::vector<double> force(sine.displacement.size());
-  EvaluateForce(model, law, MakeEnvelopePath(sine.displacement, sine.envelope, 0.0),
-                sine.displacement, force);
-  const auto expected = Respond(model, law, sine.displacement);
-  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_NEAR(force[i], expected[i], kRounding);
 }
 
 TEST(EvaluateForce, RejectsSizesThatDiffer) {

@@ -107,37 +107,6 @@ TEST(SeriesShape, IsAccurateForEveryShapeAndCompliance) {
   EXPECT_GT(worst.value, kUseful) << "a bound that nothing comes near proves little";
 }
 
-TEST(SeriesShape, HasItsLimitsAtBothEnds) {
-  for (const double alpha : {0.0, 1e-16, 0.01, 1.0 / 3.0, 0.9, 1.0, 1 + 1e-8, 2.0, 100.0, 1e100}) {
-    for (const double kappa : {0.0, 1e-20, 0.3, 1.0, 2.0, 1e5, 1e12, 1e100}) {
-      const backbone::InSeries<backbone::GeneralShape<double>> shape({alpha}, kappa);
-      EXPECT_EQ(shape.Force(0.0), 0.0);
-      const double denormal = std::numeric_limits<double>::denorm_min();
-      EXPECT_LE(shape.Force(denormal), denormal);
-      const double tiny = 1e-205;  // far below 1/α even for α = 1e100: linear to rounding
-      EXPECT_NEAR(shape.Force(tiny), tiny / (1 + kappa), 2 * kEpsilon * tiny / (1 + kappa));
-      const double far = backbone::kLargestDisplacement<double>;
-      if (alpha < 1) {
-        EXPECT_EQ(shape.Force(far), 1.0);
-      }
-      EXPECT_TRUE(std::isfinite(shape.Force(far)));
-      EXPECT_LE(shape.Force(far), 1.0);
-    }
-  }
-}
-
-TEST(SeriesShape, OfARigidSpringIsTheContacts) {
-  constexpr double kRounding = 8 * kEpsilon;  // 4 of either
-  Generator generator(61);
-  for (int i = 0; i < 5000; ++i) {
-    const double alpha = Uniform(generator, 0.0, 3.0);
-    const double y = LogUniform(generator, 1e-10, 10.0);
-    const backbone::GeneralShape<double> contact{alpha};
-    const backbone::InSeries<backbone::GeneralShape<double>> shape(contact, 0.0);
-    EXPECT_NEAR(shape.Force(y), contact.Force(y), kRounding * contact.Force(y));
-  }
-}
-
 // ---- Along histories ------------------------------------------------------------------------
 
 TEST(Rig, LeavesTheForceThatTheContactHasAtItsOwnDisplacement) {
@@ -203,54 +172,6 @@ TEST(Rig, OfASteadyContactIsItself) {
   }
 }
 
-TEST(Rig, KeepsMasingsRule) {
-  // After a reversal at δr the curve is the virgin one doubled: T = Tr − 2F((δr − δ)/2).
-  constexpr double kRounding = 20 * kEpsilon;
-  for (const double alpha : {0.0, 1.0 / 3.0, 0.9, 1.0, 3.0}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    const SeriesSpring rig{0.7};
-    const FrictionModel& model = Model("mindlin-dahl");
-    const History turn = {2.1, 1.3, 0.6, -0.2, -1.4};
-    const auto force = RespondWithRig(model, law, rig, turn);
-    for (std::size_t i = 1; i < turn.size(); ++i) {
-      const auto virgin = RespondWithRig(model, law, rig, {(turn[0] - turn[i]) / 2});
-      EXPECT_NEAR(force[i], force[0] - 2 * virgin[0], kRounding) << alpha << ' ' << i;
-    }
-  }
-}
-
-TEST(Rig, RemembersTheReturnPoint) {
-  // An inner loop closes at the force it left from, and then is forgotten.
-  for (const double alpha : {0.0, 1.0 / 3.0, 1.0, 2.0}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    const SeriesSpring rig{0.4};
-    const FrictionModel& model = Model("mindlin-dahl");
-    const auto with = RespondWithRig(model, law, rig, {1.7, 0.4, 1.1, 0.4, -0.3, -2.9});
-    const auto without = RespondWithRig(model, law, rig, {1.7, 0.4, -0.3, -2.9});
-    EXPECT_EQ(with[3], with[1]);
-    EXPECT_EQ(with[4], without[2]);
-    EXPECT_EQ(with[5], without[3]);
-  }
-}
-
-TEST(Rig, LowersTheFirstSlopeAsSpringsInSeriesDo) {
-  // 1/σ_seen = 1/σ + 1/k_r; at 1e-9 of the elastic limit curvature is below α·1e-9.
-  constexpr double kStep = 1e-9;
-  Generator generator(63);
-  for (const FrictionModel& model : Models()) {
-    for (int i = 0; i < 100; ++i) {
-      const BranchLaw law{LogUniform(generator, 1e-3, 1e9),
-                          model.shape_exponent.value_or(Uniform(generator, 0.0, 2.0)),
-                          LogUniform(generator, 1e-3, 1e3)};
-      const SeriesSpring rig{law.tangential_stiffness * LogUniform(generator, 1e-3, 1e3)};
-      const double seen = 1 / (1 / law.tangential_stiffness + 1 / rig.stiffness);
-      const double step = kStep * law.slip_force / law.tangential_stiffness;
-      const double slope = RespondWithRig(model, law, rig, {step})[0] / step;
-      EXPECT_NEAR(slope / seen, 1.0, 2 * kStep) << model.name;
-    }
-  }
-}
-
 TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
   Generator generator(64);
   for (const FrictionModel& model : FrictionModels()) {
@@ -263,35 +184,6 @@ TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
     const auto rigid = Respond(model, law, history);
     for (std::size_t i = 0; i < stiff.size(); ++i) EXPECT_NEAR(stiff[i], rigid[i], 1e-13);
   }
-}
-
-TEST(Rig, SoftRigTakesAllDisplacementUntilSlip) {
-  // T = k_r(δ − x), and up to 0.9·Tc the contact's x is below u^{1−α}-fold 10 elastic limits.
-  constexpr double kStiffness = 1e-12;
-  for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 1.0, 1.5}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    for (const double share : {1e-6, 0.2, 0.9}) {
-      const double force =
-          RespondWithRig(Model("mindlin-dahl"), law, {kStiffness}, {share / kStiffness})[0];
-      EXPECT_LE(force, share);
-      EXPECT_NEAR(force, share, 10 * kStiffness) << alpha;
-    }
-    const double slipped = 1.01 / kStiffness;
-    const double force = RespondWithRig(Model("mindlin-dahl"), law, {kStiffness}, {slipped})[0];
-    EXPECT_EQ(force, 1.0 - (alpha > 1 ? 1.0 - force : 0.0));
-  }
-}
-
-TEST(Rig, DelaysGrossSlipByItsOwnTravel) {
-  const BranchLaw law{4.839e8, 1.0 / 3.0, 30.0};
-  const SeriesSpring rig{2e8};
-  const double slip = GrossSlipDisplacement(law, rig);
-  EXPECT_NEAR(slip / (GrossSlipDisplacement(law) + 1.5e-7), 1.0, 4 * kEpsilon);
-  const FrictionModel& model = Model("mindlin");
-  EXPECT_EQ(RespondWithRig(model, law, rig, {slip * (1 + 1e-12)})[0], law.slip_force);
-  EXPECT_LT(RespondWithRig(model, law, rig, {slip * (1 - 1e-6)})[0], law.slip_force);
-  EXPECT_EQ(GrossSlipDisplacement(law, {}), GrossSlipDisplacement(law));
-  EXPECT_TRUE(std::isinf(GrossSlipDisplacement({1.0, 1.0, 1.0}, rig)));
 }
 
 TEST(Rig, IsRefusedWhereItMeansNothing) {
@@ -398,11 +290,6 @@ struct Case {
   double stiffness;  // of the spring over σ
 };
 
-void PrintTo(const Case& test, std::ostream* out) {
-  *out << "alpha = " << test.shape_exponent << ", size = " << test.size
-       << ", spring = " << test.stiffness;
-}
-
 std::string NameOf(const ::testing::TestParamInfo<Case>& info) {
   std::string name =
       info.param.model + (info.param.state == InitialState::kVirgin ? "_virgin" : "_steady");
@@ -490,41 +377,6 @@ TEST_P(RigGradient, AgreesWithDifferencesOfTheExactLaws) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryModel, RigGradient, ::testing::ValuesIn(Cases()), NameOf);
-
-TEST(RigGradient, IsFiniteOnTheCornersAndAtTheEndsOfTheRange) {
-  for (const FrictionModel& model : Models()) {
-    for (const double alpha : {0.0, 1e-300, 1e-16, 1.0 / 3.0, 0.5, 1.0, 2.0, 100.0}) {
-      for (const double stiffness : {1e-30, 1e-12, 1.0, 1e12, 1e300}) {
-        for (const double size : {0.0, 1e-300, 1e-18, 1.0, 2.0, 1 + 1 / stiffness, 1e12, 1e60}) {
-          const History history = {0.0, size, size, -size, 0.0, size / 2, -2 * size, 2 * size};
-          for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-            std::vector<double> force(history.size());
-            std::vector<double> gradient(history.size() * kGradientColumns);
-            EvaluateForceAndGradient(model, {1.0, alpha, 1.0},
-                                     PathOf(model, history, {.state = state}), history, force,
-                                     gradient, {stiffness});
-            const auto finite = [](double value) { return std::isfinite(value); };
-            EXPECT_TRUE(std::ranges::all_of(force, finite) && std::ranges::all_of(gradient, finite))
-                << model.name << " alpha " << alpha << " spring " << stiffness << " size " << size;
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(RigGradient, OfARigidRigHasNoEntryForIt) {
-  const History history = {0.0, 0.5, 1.5, -0.5, 0.7};
-  for (const FrictionModel& model : FrictionModels()) {
-    std::vector<double> force(history.size());
-    std::vector<double> gradient(history.size() * kGradientColumns, 1.0);
-    EvaluateForceAndGradient(model, {1.0, 0.5, 1.0}, PathOf(model, history), history, force,
-                             gradient);
-    for (std::size_t i = 0; i < history.size(); ++i) {
-      EXPECT_EQ(gradient[i * kGradientColumns + kPerLogSeriesStiffness], 0.0);
-    }
-  }
-}
 
 }  // namespace
 }  // namespace mindahl::models::rig_test

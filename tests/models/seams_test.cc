@@ -116,63 +116,6 @@ TEST(Seams, AreNotSeenAlongADisplacement) {
   }
 }
 
-TEST(Seams, AreNotSeenWhereTheDisplacementVanishes) {
-  // f = σx(1 − αy/2 − α(1−2α)y²/6 + …): the ratio to σx runs to 1 from below.
-  for (const double alpha : kShapeExponents) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    double before = 1.0;
-    for (double y = 1e-320; y < 1e-3 / std::max(alpha, 1.0); y *= 1.7) {
-      const double ratio = BackboneForce(law, y) / y;
-      EXPECT_LE(ratio, before * (1 + kScalarStep)) << alpha << ' ' << y;
-      EXPECT_GE(ratio, 1 - alpha * y / 2 - alpha * y * y / 5 - kScalarStep) << alpha << ' ' << y;
-      before = ratio;
-    }
-  }
-}
-
-/// Shape exponents around `centre`, ascending.
-std::vector<double> ExponentsAround(double centre) {
-  if (centre > 0) return Around(centre);
-  std::vector<double> exponents = {0.0};
-  for (double alpha = 5e-324; alpha < 1e-3; alpha *= 3.0) exponents.push_back(alpha);
-  return exponents;
-}
-
-TEST(Seams, AreNotSeenAcrossAShapeExponent) {
-  // Across α = 0 and 1/3, which have kernels of their own, 1, 2 and the limits of the integrals.
-  // f falls with α: |∂f/∂α| <= Tc, and by no more than that a step.
-  for (const double centre : {0.0, 1.0 / 3.0, 0.5, 1.0, 2.0}) {
-    for (const double y :
-         {1e-9, 0.1, 0.3, 0.49, 0.5, 0.51, 0.9, 1.0, 1.2, 1.49, 1.5, 1.51, 3.0, 40.0}) {
-      double before_alpha = -1.0;
-      double force = 0.0, kernel = 0.0, work = 0.0, energy = 0.0;
-      for (const double alpha : ExponentsAround(centre)) {
-        const BranchLaw law{1.0, alpha, 1.0};
-        const double next_force = BackboneForce(law, y);
-        const double next_kernel = testing::Respond(Model("mindlin-dahl"), law, {{y}}).front();
-        const double next_work = BackboneWork(law, y);
-        const double next_energy = SteadyLoopEnergy(Model("mindlin-dahl"), law, y);
-        if (before_alpha >= 0) {
-          const double step = alpha - before_alpha;
-          EXPECT_LE(next_force, force * (1 + kScalarStep)) << alpha << ' ' << y;
-          EXPECT_LE(next_kernel, kernel * (1 + kKernelStep)) << alpha << ' ' << y;
-          EXPECT_NEAR(next_force, force, step + kScalarStep * force) << alpha << ' ' << y;
-          EXPECT_NEAR(next_kernel, kernel, step + kKernelStep * force) << alpha << ' ' << y;
-          // ∂/∂α of ∫f is at most y; of the loop's energy at most 8y + 4y.
-          EXPECT_NEAR(next_work, work, y * step + kScalarStep * work) << alpha << ' ' << y;
-          EXPECT_NEAR(next_energy, energy, 12 * y * step + kScalarStep * energy)
-              << alpha << ' ' << y;
-        }
-        before_alpha = alpha;
-        force = next_force;
-        kernel = next_kernel;
-        work = next_work;
-        energy = next_energy;
-      }
-    }
-  }
-}
-
 TEST(Seams, AreNotSeenWhereThePeakForceReachesTheSlipForce) {
   // Loops whose extreme is δc to the ulp, on every scale: the peak within rounding of Tc, never
   // above it, the branch back from it to −T* exactly or within rounding.

@@ -64,7 +64,7 @@ double SquaresOf(std::span<const FittedSample> samples, std::span<const double> 
 }
 
 constexpr std::size_t kAlike = 60;  // samples that one width is taken from
-constexpr double kFarOff = 6.0;       // of their widths
+constexpr double kFarOff = 6.0;     // of their widths
 /// Chance that a reading is so far off: 2e-9 of a normal law whose width is known, and below this
 /// of one that 60 samples determine to 15 % (1.17/√60).
 constexpr double kChance = 1e-5;
