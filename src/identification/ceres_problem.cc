@@ -40,7 +40,7 @@ ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& opti
   ScaledRecords data = Scale(prepared, options, memory);
   AddCovariates(options.covariates, /*with_others=*/false, prepared, options.offsets, data);
   AddColumnsOfTerms(options, data);
-  if (HasTerm(options, "lag")) SetClocks(data);
+  if (HasTerm(options, TermId::kLag)) SetClocks(data);
   WeighAsFit(fit, data);
   return data;
 }

@@ -362,7 +362,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     without_priors = FitWithoutPriors(records, depth, given);
     data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
   }
-  if (HasTerm(given, "lag")) SetClocks(data);
+  if (HasTerm(given, TermId::kLag)) SetClocks(data);
   ThinnedRecords thin(data, &arena);
   RequireOneLoad(data);
   RequireRigStifferThanLoop(given, prepared);

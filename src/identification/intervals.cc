@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mindahl/identification/terms.h"
+
 namespace mindahl::identification {
 
 namespace {
@@ -51,6 +53,13 @@ void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.lower95.reset();
   estimate.upper95.reset();
   estimate.interval.clear();
+}
+
+bool TurnsWithMotion(const ParameterEstimate& estimate) {
+  const bool is_covariate = estimate.name.starts_with(NameOfCovariate(""));
+  const Term* const term =
+      is_covariate ? &TermOf(TermId::kCovariate) : FindTerm(TermNameOf(estimate.name));
+  return term != nullptr && term->turns_with_motion;
 }
 
 bool IsScaledByLoad(const FitResult& result) {

@@ -161,7 +161,8 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
     }
     for (const bool rig : {false, true}) {
       if (rig && rig_is_known) continue;
-      if (rig && model.memory == models::Memory::kNone && HasTerm(options, "asymmetry")) continue;
+      if (rig && model.memory == models::Memory::kNone && HasTerm(options, TermId::kAsymmetry))
+        continue;
       ModelScore& score = scores.emplace_back();
       score.model = &model;
       score.rig = rig;

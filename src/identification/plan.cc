@@ -29,16 +29,13 @@ namespace {
 
 using models::InitialState;
 
-/// Lists the terms whose columns the motion of a protocol determines.
-constexpr std::array<std::string_view, 4> kPlanned = {"rig_stiffness", "plateau_slope", "viscous",
-                                                      "force_drift"};
-
 /// @throws InvalidArgument for a term that is not planned for
 void RequireTerms(const FitOptions& options) {
   for (const std::string& name : options.terms) {
-    if (FindTerm(name) == nullptr || std::ranges::find(kPlanned, name) != kPlanned.end()) continue;
+    const Term* const term = FindTerm(name);
+    if (term == nullptr || term->is_planned) continue;
     throw InvalidArgument(fmt::format("'{}' cannot be planned for: must be one of {}", name,
-                                      fmt::join(kPlanned, ", ")));
+                                      fmt::join(PlannedTerms(), ", ")));
   }
   if (!options.covariates.empty()) {
     throw InvalidArgument("a covariate cannot be planned for: it is not known before");

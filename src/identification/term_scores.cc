@@ -213,7 +213,7 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
       data_(Scale(prepared_, options, &arena_)) {
   AddCovariates(covariates_, false, prepared_, options.offsets, data_);
   AddColumnsOfTerms(with_all, data_);
-  if (HasTerm(with_all, "lag")) SetClocks(data_);
+  if (HasTerm(with_all, TermId::kLag)) SetClocks(data_);
 }
 
 std::vector<std::vector<bool>> TermScores::LeftOut() const {

@@ -155,21 +155,13 @@ bool OpensSlipForce(const FitResult& without, const FitResult& with, double wide
 /// known. Where a contact that slides was unloaded is no such term, and others end where the theory
 /// does.
 bool StopsAtLimit(const FitResult& fit) {
-  constexpr std::array<std::string_view, 11> kMayEnd = {"sigma",
-                                                        "alpha",
-                                                        "slip_force",
-                                                        "rig_stiffness",
-                                                        "slip_speed",
-                                                        "slip_speed_exponent",
-                                                        "drag_fraction",
-                                                        "drag_exponent",
-                                                        "backlash",
-                                                        "ripple_period",
-                                                        "displacement_offset"};
   return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
     const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
                              estimate.status == ParameterStatus::kAtUpperBound;
-    return is_at_bound && std::ranges::find(kMayEnd, TermNameOf(estimate.name)) == kMayEnd.end();
+    const Term& term = *FindTerm(TermNameOf(estimate.name));
+    const bool may_end = term.positive || term.theory_bound != TheoryBound::kNone ||
+                         term.id == TermId::kDisplacementOffset;
+    return is_at_bound && !may_end;
   });
 }
 
@@ -179,8 +171,10 @@ bool IsNearlyWhite(const FitResult& fit) {
   return fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
 }
 
-/// True if a term cannot be negative: a mass or a damping that is stands for something else.
-bool IsPositiveTerm(std::string_view name) { return name == "inertia" || name == "viscous"; }
+bool IsPositiveTerm(std::string_view parameter) {
+  const Term* const term = FindTerm(TermNameOf(parameter));
+  return term != nullptr && term->is_never_negative;
+}
 
 bool IsUnphysical(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& estimate) {
@@ -857,37 +851,6 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
 }
 
 }  // namespace
-
-std::span<const TermGroup> TermGroups() {
-  static const std::vector<TermGroup> groups = {
-      {"viscous", {"viscous"}},
-      {"speed_exponent", {"speed_exponent", "viscous"}},
-      {"drag", {"drag_fraction", "drag_exponent"}},
-      {"inertia", {"inertia"}},
-      {"plateau_slope", {"plateau_slope"}},
-      {"slip_speed", {"slip_speed", "slip_speed_exponent"}},
-      {"slip_trend", {"slip_trend"}},
-      {"slip_position", {"slip_slope", "plateau_slope"}},
-      {"slip_position_quadratic",
-       {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"}},
-      {"ripple",
-       {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
-        "ripple_sine_down"},
-       /*is_tried=*/false},
-      {"force_drift", {"force_drift"}},
-      {"rig_stiffness", {"rig_stiffness"}},
-      {"asymmetry", {"asymmetry"}},
-      {"lag", {"lag"}},
-      {"backlash", {"backlash"}},
-  };
-  return groups;
-}
-
-const TermGroup* FindTermGroup(std::string_view name) {
-  const std::span<const TermGroup> groups = TermGroups();
-  const auto group = std::ranges::find(groups, name, &TermGroup::name);
-  return group == groups.end() ? nullptr : &*group;
-}
 
 TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
                           const TermSelectionOptions& selection) {

@@ -40,18 +40,15 @@ double SlipReach(const Expectation& expected) {
                                    expected.law.slip_force / expected.rig.stiffness;
 }
 
-/// Lists the terms that may be fitted in addition to the law before there is a record.
-constexpr std::array<std::string_view, 4> kTerms = {"rig_stiffness", "plateau_slope", "viscous",
-                                                    "force_drift"};
-
 FitOptions FitOptionsOf(const PlanRequest& request) {
   FitOptions fit;
+  const std::vector<std::string_view> planned = identification::PlannedTerms();
   for (const std::string& name : request.with) {
-    if (std::ranges::find(kTerms, name) == kTerms.end()) {
+    if (std::ranges::find(planned, name) == planned.end()) {
       throw InputError(
           fmt::format("--with: '{}' cannot be planned for{} must be one of {}", name,
-                      DidYouMean(name, std::vector<std::string>(kTerms.begin(), kTerms.end())),
-                      fmt::join(kTerms, ", ")));
+                      DidYouMean(name, std::vector<std::string>(planned.begin(), planned.end())),
+                      fmt::join(planned, ", ")));
     }
     fit.terms.push_back(name);
   }

@@ -34,19 +34,6 @@ struct TermSelectionOptions {
   std::vector<std::string> named = {};
 };
 
-/// A term, or a few that belong together, that a record may require.
-struct TermGroup {
-  std::string_view name;
-  std::vector<std::string_view> terms;  ///< names in FitOptions::terms
-  bool is_tried = true;                 ///< false if it is added only where it is named
-};
-
-/// Returns the terms that can be added, apart from covariates; `--terms` takes these names.
-std::span<const TermGroup> TermGroups();
-
-/// Returns nullptr where there is none of that name.
-const TermGroup* FindTermGroup(std::string_view name);
-
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
   std::string name;  ///< name of the group, or NameOfCovariate()

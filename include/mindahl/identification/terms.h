@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mindahl/loop/record.h"
 
@@ -60,10 +62,56 @@ enum class Regressor {
   kCovariate,  ///< the column of the record that the parameter is called after
 };
 
+/// Says where the contact is at the time of a force.
+enum class ContactMotion {
+  kMeasured,   ///< at the displacement, behind a rig's spring
+  kLate,       ///< at the displacement of an earlier time
+  kBehindGap,  ///< at the displacement less what a gap takes of it
+};
+
+/// Names the default bounds that are ends of the theory's: Jenkins' α, no slip force at rest, no
+/// gap. At the others a search that stops is cut short.
+enum class TheoryBound { kNone, kLower, kUpper, kBoth };
+
+/// The rows of the table, in their order, which is the order of the parameters of a fit.
+enum class TermId : std::size_t {
+  kSigma,
+  kAlpha,
+  kSlipForce,
+  kRigStiffness,
+  kLoadExponent,
+  kAsymmetry,
+  kPlateauSlope,
+  kViscous,
+  kSpeedExponent,
+  kInertia,
+  kSlipSlope,
+  kSlipCurvature,
+  kSlipSpeed,
+  kSlipSpeedExponent,
+  kSlipTrend,
+  kDragFraction,
+  kDragExponent,
+  kPlateauCurvature,
+  kRipplePeriod,
+  kRippleCosineUp,
+  kRippleSineUp,
+  kRippleCosineDown,
+  kRippleSineDown,
+  kLag,
+  kBacklash,
+  kCovariate,
+  kForceOffset,
+  kDisplacementOffset,
+  kForceDrift,
+  kDisplacementDrift,
+};
+
 /// Describes a parameter of a fit for layout, solver, command line, help and documents. A new one
 /// is a row of the table in terms.cc.
 ///   value = scale·exp(θ) where positive,  else  value = reference + scale·θ
 struct Term {
+  TermId id{};
   std::string_view name;
   std::string_view unit = "-";
   std::string_view meaning;  ///< one line, for tables of the documents
@@ -84,6 +132,12 @@ struct Term {
   std::string_view shapes = {};
   /// Name of the term without which this one cannot be fitted; empty: none.
   std::string_view needs = {};
+  ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
+  TheoryBound theory_bound = TheoryBound::kNone;
+  /// Its force turns with the motion: it loses, or shifts, energy that is not the contact's.
+  bool turns_with_motion = false;
+  bool is_never_negative = false;  ///< a mass or a damping that is stands for something else
+  bool is_planned = false;         ///< its column follows from a protocol, before any record
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
@@ -102,8 +156,27 @@ struct Term {
 /// contact's force has no place.
 std::span<const Term> Terms(loop::Channel response = loop::Channel::kForce);
 
+/// Returns the row of an id.
+const Term& TermOf(TermId id, loop::Channel response = loop::Channel::kForce);
+
 /// Returns nullptr when there is none of that name, which is without a record's number.
 const Term* FindTerm(std::string_view name, loop::Channel response = loop::Channel::kForce);
+
+/// A term, or a few that belong together, that a record may require.
+struct TermGroup {
+  std::string_view name;
+  std::vector<std::string_view> terms;  ///< names in FitOptions::terms
+  bool is_tried = true;                 ///< false if it is added only where it is named
+};
+
+/// Returns the terms that can be added, apart from covariates; `--terms` takes these names.
+std::span<const TermGroup> TermGroups();
+
+/// Returns nullptr where there is none of that name.
+const TermGroup* FindTermGroup(std::string_view name);
+
+/// Returns the names of the terms that can be planned for.
+std::vector<std::string_view> PlannedTerms();
 
 /// Returns the name without a record's number: force_offset for force_offset_2.
 std::string_view TermNameOf(std::string_view parameter);

@@ -41,7 +41,7 @@ std::vector<Advised> OptionsAmong(std::string_view words) {
   return found;
 }
 
-const Term* TermOf(std::string_view option, loop::Channel response) {
+const Term* TermOfOption(std::string_view option, loop::Channel response) {
   const auto terms = Terms(response);
   const auto term = std::ranges::find(terms, option, &Term::option);
   return term == terms.end() ? nullptr : &*term;
@@ -70,17 +70,17 @@ bool IsAccepted(const Problem& problem, std::string_view option) {
   if (option == "--loss") return true;
   // In a fit of the displacement the terms of the force do not exist.
   if (data.is_forced()) return option == "--drift";
-  const Term* const term = TermOf(option, loop::Channel::kForce);
+  const Term* const term = TermOfOption(option, loop::Channel::kForce);
   if (term == nullptr) return false;
   if (term->needs_time && !HasTimes(data)) return false;
-  if (ContactMotionOf(*term) != ContactMotion::kMeasured) {
+  if (term->motion != ContactMotion::kMeasured) {
     const std::size_t moved = problem.parameters.PositionOfMotion();
     const bool is_only =
-        !problem.parameters.moves_contact() || problem.parameters[moved].term->name == term->name;
-    const bool has_clocks = ContactMotionOf(*term) != ContactMotion::kLate || MayHaveClocks(data);
+        !problem.parameters.moves_contact() || problem.parameters[moved].term->id == term->id;
+    const bool has_clocks = term->motion != ContactMotion::kLate || MayHaveClocks(data);
     return is_only && has_clocks && !data.load_varies;
   }
-  if (term->name == "asymmetry") return MayBeAsymmetric(problem) && TellsAsymmetry(problem);
+  if (term->id == TermId::kAsymmetry) return MayBeAsymmetric(problem) && TellsAsymmetry(problem);
   return true;
 }
 
@@ -89,16 +89,17 @@ bool IsAccepted(const Problem& problem, std::string_view option) {
 std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
                             std::string_view wanted) {
   std::string accepted;
-  bool has_asymmetry = std::ranges::find(options.terms, "asymmetry") != options.terms.end();
+  bool has_asymmetry =
+      std::ranges::find(options.terms, TermOf(TermId::kAsymmetry).name) != options.terms.end();
   for (const Advised& advised : OptionsAmong(wanted)) {
     if (!IsAccepted(problem, advised.option)) return "";
-    const Term* const term = TermOf(advised.option, loop::Channel::kForce);
+    const Term* const term = TermOfOption(advised.option, loop::Channel::kForce);
     const bool is_named = term != nullptr && !term->of_column;
     const std::string name(is_named ? term->name : "");
     if (is_named && options.fixed.contains(name)) return "";  // two values of one option
     // A term that is fitted already is not advised.
     if (is_named && std::ranges::find(options.terms, name) != options.terms.end()) continue;
-    has_asymmetry = has_asymmetry || name == "asymmetry";
+    has_asymmetry = has_asymmetry || (is_named && term->id == TermId::kAsymmetry);
     accepted += accepted.empty() ? "" : " ";
     accepted += advised.words;
   }

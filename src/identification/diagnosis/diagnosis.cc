@@ -233,7 +233,7 @@ namespace {
 bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::size_t p) {
   constexpr double kSlides = 0.99;  // of Tc
   const Parameter& parameter = problem.parameters[p];
-  if (problem.data->is_forced() || parameter.term->name != OriginTerm(problem.data->excitation)) {
+  if (problem.data->is_forced() || parameter.term->id != OriginId(problem.data->excitation)) {
     return false;
   }
   const double first = problem.data->records[parameter.record].displacement.front();

@@ -135,9 +135,7 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   if (record.load_varies) return std::nullopt;
   // These lose, or shift, energy that is not the contact's.
   const bool has_other = std::ranges::any_of(result.parameters, [](const ParameterEstimate& other) {
-    const bool is_other = other.name == "viscous" || other.name == "lag" ||
-                          other.name.starts_with(NameOfCovariate(""));
-    return is_other && other.value != 0;
+    return TurnsWithMotion(other) && other.value != 0;
   });
   if (has_other) return std::nullopt;
   const double amplitude = record.facts.amplitude;

@@ -217,11 +217,7 @@ ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
   const RecordFit& widest = result.WidestRecord();
   if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return slip_force;
   if (IsScaledByLoad(result)) return slip_force;
-  const bool has_other =
-      std::ranges::any_of(result.parameters, [](const ParameterEstimate& estimate) {
-        return estimate.name == "viscous" || estimate.name == "lag" ||
-               estimate.name.starts_with(NameOfCovariate(""));
-      });
+  const bool has_other = std::ranges::any_of(result.parameters, TurnsWithMotion);
   constexpr std::array<std::string_view, 5> kTurnWithMotion = {
       "viscous_force", "covariate", "guide_friction", "channel_lag", "normal_load"};
   const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {

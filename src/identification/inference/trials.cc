@@ -77,7 +77,7 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   if (saturation != test.fits.end()) test.fits.erase(saturation);
   const auto fit = FindFit(test, "backlash");
   Problem behind = problem;
-  const std::size_t gap = problem.parameters.PositionOf("backlash", 0);
+  const std::size_t gap = problem.parameters.PositionOf(TermId::kBacklash, 0);
   std::vector<double> start = solution.theta;
   start[gap] = behind.parameters[gap].ToTheta(gaps.front()->width);
   behind.parameters.Release(gap);
@@ -186,11 +186,11 @@ void TryLag(const Problem& problem, const Solution& solution, const SolverOption
   Problem without = problem;
   without.data = &data;
   Problem with = without;
-  const std::size_t lag = problem.parameters.PositionOf("lag", 0);
+  const std::size_t lag = problem.parameters.PositionOf(TermId::kLag, 0);
   with.parameters.Release(lag);
   // Longer ones are looked for where they are asked for: a knee that depends on the speed is like a
   // lag of a tenth of a cycle too.
-  with.parameters.KeepWithin(lag, FindTerm("lag")->highest);
+  with.parameters.KeepWithin(lag, TermOf(TermId::kLag).highest);
   const Parameter& parameter = with.parameters[lag];
   LeaveOutEnds(data, parameter.scale * std::max(-parameter.lower, parameter.upper));
   if (data.counted <= 2 * with.parameters.free().size()) return;

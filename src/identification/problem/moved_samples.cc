@@ -57,7 +57,7 @@ Lags LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
 double LongestLag(double samples_a_cycle) {
   constexpr double kSamples = 10.0;
   constexpr double kLongest = 0.2;
-  return std::clamp(kSamples / samples_a_cycle, FindTerm("lag")->highest, kLongest);
+  return std::clamp(kSamples / samples_a_cycle, TermOf(TermId::kLag).highest, kLongest);
 }
 
 bool MayHaveClocks(const ScaledRecords& data) {
@@ -87,7 +87,7 @@ void SetClocks(ScaledRecords& data) {
 }
 
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
-  if (!HasTerm(options, "lag")) return;
+  if (!HasTerm(options, TermId::kLag)) return;
   const loop::PreparedRecord& first = records.records.front();
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> time = record.record.time;
@@ -113,12 +113,6 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
                     "counts is moved beyond one of its ends: give smaller ones, --bound lag=LO:HI",
                     r + 1, lags.least, lags.most));
   }
-}
-
-ContactMotion ContactMotionOf(const Term& term) {
-  if (term.name == "lag") return ContactMotion::kLate;
-  if (term.name == "backlash") return ContactMotion::kBehindGap;
-  return ContactMotion::kMeasured;
 }
 
 void MovedSamples::MoveTo(const ScaledRecord& record, double amount, models::Memory memory,

@@ -35,16 +35,6 @@ double LongestLag(double samples_a_cycle);
 ///   others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
-/// Says where the contact is at the time of a force.
-enum class ContactMotion {
-  kMeasured,   ///< at the displacement, behind a rig's spring
-  kLate,       ///< at the displacement of an earlier time
-  kBehindGap,  ///< at the displacement less what a gap takes of it
-};
-
-/// Returns what a term makes of it; one of a fit's terms may move the contact.
-ContactMotion ContactMotionOf(const Term& term);
-
 /// Samples of a record at the displacements at which the contact is, where these are not the
 /// measured ones: a path of its own, in which places may be put in between the samples.
 class MovedSamples {

@@ -119,21 +119,21 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
     RequirePositive(quantity, value);
     // Rounding errors would decide the phase of a shorter one.
     const double shortest = 2e-9 * parameter.scale;
-    if (parameter.term->name == "ripple_period" && value < shortest) {
+    if (parameter.term->id == TermId::kRipplePeriod && value < shortest) {
       ThrowInvalid(
           quantity, value,
           fmt::format("must be at least {:.3g} m, 1e-9 of the displacement's range", shortest));
     }
-  } else if (parameter.term->name == "alpha" ||
-             ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap) {
+  } else if (parameter.term->id == TermId::kAlpha ||
+             parameter.term->motion == ContactMotion::kBehindGap) {
     RequireNonNegative(quantity, value);
-    const bool is_gap = ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap;
+    const bool is_gap = parameter.term->motion == ContactMotion::kBehindGap;
     if (is_gap && !(value < 2 * parameter.scale)) {
       ThrowInvalid(quantity, value,
                    fmt::format("must be below the range of the displacement, {:.6g} m",
                                2 * parameter.scale));
     }
-  } else if (parameter.term->name == "asymmetry") {
+  } else if (parameter.term->id == TermId::kAsymmetry) {
     if (!(std::abs(value) < 1)) ThrowInvalid(quantity, value, "must be in (-1, 1)");
   } else {
     RequireFinite(quantity, value);
@@ -180,7 +180,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   if (term.reference != nullptr) parameter.reference = term.reference(data.units);
   parameter.lower = term.positive ? std::log(term.lowest) : term.lowest;
   parameter.upper = term.positive ? std::log(term.highest) : term.highest;
-  if (term.name == "lag") {
+  if (term.id == TermId::kLag) {
     parameter.upper = LongestLag(MeanCycleDuration({}, data.size(), data.reversals.size()));
     parameter.lower = -parameter.upper;
   }
@@ -235,6 +235,8 @@ bool HasTerm(const FitOptions& options, std::string_view name) {
          std::ranges::find(options.terms, name) != options.terms.end();
 }
 
+bool HasTerm(const FitOptions& options, TermId id) { return HasTerm(options, TermOf(id).name); }
+
 double Parameter::ToValue(double at_theta) const {
   return term->positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
 }
@@ -253,15 +255,17 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed, no gap, no
-  // drag.
-  const std::string_view name = parameter.term->name;
-  if (name == "alpha" || name == "slip_speed_exponent") return side == BoundSide::kUpper;
-  if (name.starts_with("drag_")) return false;
-  if (name == "slip_speed") return side == BoundSide::kLower;
-  if (ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap)
-    return side == BoundSide::kUpper;
-  return true;
+  switch (parameter.term->theory_bound) {
+    case TheoryBound::kNone:
+      return true;
+    case TheoryBound::kLower:
+      return side == BoundSide::kUpper;
+    case TheoryBound::kUpper:
+      return side == BoundSide::kLower;
+    case TheoryBound::kBoth:
+      break;
+  }
+  return false;
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
@@ -342,7 +346,7 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
 
 bool Parameters::any_zero_is_known() const {
   return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
-    return parameter.term->name == "force_offset" && parameter.fixed;
+    return parameter.term->id == TermId::kForceOffset && parameter.fixed;
   });
 }
 
@@ -375,8 +379,7 @@ void Parameters::RequireNeededTerms() const {
 void Parameters::RequireOneMotion() const {
   const std::size_t first = PositionOfMotion();
   for (std::size_t p = first + 1; p < size(); ++p) {
-    if (parameters_[p].absent || ContactMotionOf(*parameters_[p].term) == ContactMotion::kMeasured)
-      continue;
+    if (parameters_[p].absent || parameters_[p].term->motion == ContactMotion::kMeasured) continue;
     throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
                                       parameters_[first].term->name, parameters_[p].term->name));
   }
@@ -384,7 +387,7 @@ void Parameters::RequireOneMotion() const {
 
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
-  Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
+  Parameter& asymmetry = parameters_[PositionOf(TermId::kAsymmetry, 0)];
   if (asymmetry.fixed || any_zero_is_known()) return;
   asymmetry.theta = 0.0;
   asymmetry.fixed = asymmetry.confounded = true;
@@ -422,6 +425,15 @@ void Parameters::Sort() {
   }
 }
 
+std::size_t Parameters::PositionOf(TermId id, std::size_t record) const {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.term->id != id) continue;
+    if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
+  }
+  return parameters_.size();
+}
+
 std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) const {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
@@ -433,7 +445,7 @@ std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) co
 
 std::size_t Parameters::PositionOfMotion() const {
   const auto moves = [](const Parameter& parameter) {
-    return !parameter.absent && ContactMotionOf(*parameter.term) != ContactMotion::kMeasured;
+    return !parameter.absent && parameter.term->motion != ContactMotion::kMeasured;
   };
   return static_cast<std::size_t>(std::ranges::find_if(parameters_, moves) - parameters_.begin());
 }
@@ -618,7 +630,7 @@ double Parameters::LoadExponentAt(std::span<const double> theta) const {
 }
 
 double Parameters::AsymmetryAt(std::span<const double> theta) const {
-  return theta[PositionOf("asymmetry", 0)];
+  return theta[PositionOf(TermId::kAsymmetry, 0)];
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

@@ -55,6 +55,7 @@ double StartingPeriod(const ScaledRecords& data);
 
 /// True if a fit has a term that is on demand, fitted or at a given value.
 bool HasTerm(const FitOptions& options, std::string_view name);
+bool HasTerm(const FitOptions& options, TermId id);
 
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
 ///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ
@@ -110,8 +111,11 @@ inline constexpr std::size_t kLoadExponent = 4;
 inline constexpr double kHighestShapeUnderLoad = 0.99;
 
 /// Returns the term of where a contact is unloaded: the offset of the channel that is imposed.
-constexpr std::string_view OriginTerm(loop::Channel excitation) {
-  return excitation == loop::Channel::kForce ? "force_offset" : "displacement_offset";
+constexpr TermId OriginId(loop::Channel excitation) {
+  return excitation == loop::Channel::kForce ? TermId::kForceOffset : TermId::kDisplacementOffset;
+}
+inline std::string_view OriginTerm(loop::Channel excitation) {
+  return TermOf(OriginId(excitation)).name;
 }
 
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
@@ -146,6 +150,7 @@ class Parameters {
   [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
   /// Returns the place of a record's reference position, in the imposed channel.
   [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const;
+  [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record) const;
   /// Returns the place of a record's term; size() where there is no such term.
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
@@ -154,11 +159,11 @@ class Parameters {
   [[nodiscard]] std::size_t PositionOfMotion() const;
   [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
   [[nodiscard]] bool has_asymmetry() const {
-    return !parameters_[PositionOf("asymmetry", 0)].absent;
+    return !parameters_[PositionOf(TermId::kAsymmetry, 0)].absent;
   }
   /// True if it is held for being confounded with the force's offset in every record.
   [[nodiscard]] bool asymmetry_is_confounded() const {
-    return parameters_[PositionOf("asymmetry", 0)].confounded;
+    return parameters_[PositionOf(TermId::kAsymmetry, 0)].confounded;
   }
   /// True if the force's offset of a record is held.
   [[nodiscard]] bool any_zero_is_known() const;

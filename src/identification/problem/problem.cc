@@ -37,23 +37,23 @@ namespace {
 
 /// Parameters of the law and the path with a derivative of t of their own.
 struct LawRow {
-  std::string_view term;
+  TermId term;
   std::span<double> ResponseColumns::*column;
   double longest_step;
   bool step_grows_with_theta = false;
 };
 constexpr std::array kLawRows = {
-    LawRow{"alpha", &ResponseColumns::shape_exponent, 1.0, true},
-    LawRow{"lag", &ResponseColumns::moved, 0.02},  // cycles
-    LawRow{"backlash", &ResponseColumns::moved, 0.1},
-    LawRow{"asymmetry", &ResponseColumns::asymmetry, 0.25},
-    LawRow{"slip_slope", &ResponseColumns::slip_slope, 0.25},
-    LawRow{"slip_curvature", &ResponseColumns::slip_curvature, 0.25},
-    LawRow{"slip_speed", &ResponseColumns::slip_speed, 0.25},
-    LawRow{"slip_speed_exponent", &ResponseColumns::slip_speed_exponent, 0.25},
-    LawRow{"slip_trend", &ResponseColumns::slip_trend, 0.25},
-    LawRow{"drag_fraction", &ResponseColumns::drag_fraction, 0.25},
-    LawRow{"drag_exponent", &ResponseColumns::drag_exponent, 0.25},
+    LawRow{TermId::kAlpha, &ResponseColumns::shape_exponent, 1.0, true},
+    LawRow{TermId::kLag, &ResponseColumns::moved, 0.02},  // cycles
+    LawRow{TermId::kBacklash, &ResponseColumns::moved, 0.1},
+    LawRow{TermId::kAsymmetry, &ResponseColumns::asymmetry, 0.25},
+    LawRow{TermId::kSlipSlope, &ResponseColumns::slip_slope, 0.25},
+    LawRow{TermId::kSlipCurvature, &ResponseColumns::slip_curvature, 0.25},
+    LawRow{TermId::kSlipSpeed, &ResponseColumns::slip_speed, 0.25},
+    LawRow{TermId::kSlipSpeedExponent, &ResponseColumns::slip_speed_exponent, 0.25},
+    LawRow{TermId::kSlipTrend, &ResponseColumns::slip_trend, 0.25},
+    LawRow{TermId::kDragFraction, &ResponseColumns::drag_fraction, 0.25},
+    LawRow{TermId::kDragExponent, &ResponseColumns::drag_exponent, 0.25},
 };
 
 }  // namespace
@@ -79,11 +79,11 @@ LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter) {
     if (has_rig) add({.column = &ResponseColumns::log_spring_travel, .factor = -1.0});
   } else if (parameter == kLoadExponent) {
     add({.column = &ResponseColumns::log_rate, .by_log_load = true});
-  } else if (term.name == OriginTerm(problem.data->excitation)) {
+  } else if (term.id == OriginId(problem.data->excitation)) {
     add({.column = &ResponseColumns::unloaded});
     result.longest_step = 0.5;
   } else {
-    const auto row = std::ranges::find(kLawRows, term.name, &LawRow::term);
+    const auto row = std::ranges::find(kLawRows, term.id, &LawRow::term);
     if (ShapesColumns(problem, parameter)) result.longest_step = 0.2;
     if (row == kLawRows.end()) return result;
     if (row->column == &ResponseColumns::moved && problem.parameters[parameter].absent)
@@ -148,15 +148,15 @@ void Response::Bind(const Problem& problem) {
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.state.Of(r), histories_[r]);
   }
-  asymmetry_ = problem.parameters.PositionOf("asymmetry", 0);
-  slip_slope_ = problem.parameters.PositionOf("slip_slope", 0);
-  slip_curvature_ = problem.parameters.PositionOf("slip_curvature", 0);
-  slip_speed_ = problem.parameters.PositionOf("slip_speed", 0);
-  slip_speed_exponent_ = problem.parameters.PositionOf("slip_speed_exponent", 0);
+  asymmetry_ = problem.parameters.PositionOf(TermId::kAsymmetry, 0);
+  slip_slope_ = problem.parameters.PositionOf(TermId::kSlipSlope, 0);
+  slip_curvature_ = problem.parameters.PositionOf(TermId::kSlipCurvature, 0);
+  slip_speed_ = problem.parameters.PositionOf(TermId::kSlipSpeed, 0);
+  slip_speed_exponent_ = problem.parameters.PositionOf(TermId::kSlipSpeedExponent, 0);
   slip_goes_by_speed_ = !problem.parameters[slip_speed_].absent;
-  slip_trend_ = problem.parameters.PositionOf("slip_trend", 0);
-  drag_fraction_ = problem.parameters.PositionOf("drag_fraction", 0);
-  drag_exponent_ = problem.parameters.PositionOf("drag_exponent", 0);
+  slip_trend_ = problem.parameters.PositionOf(TermId::kSlipTrend, 0);
+  drag_fraction_ = problem.parameters.PositionOf(TermId::kDragFraction, 0);
+  drag_exponent_ = problem.parameters.PositionOf(TermId::kDragExponent, 0);
   has_drag_ = !problem.parameters[drag_fraction_].absent;
   slip_varies_ = slip_goes_by_speed_ || has_drag_ || !problem.parameters[slip_slope_].absent ||
                  !problem.parameters[slip_curvature_].absent ||
@@ -165,7 +165,7 @@ void Response::Bind(const Problem& problem) {
   has_moved_ = problem.parameters.moves_contact();
   motions_.clear();
   for (std::size_t r = 0; has_moved_ && r < records; ++r) {
-    motions_.push_back(MakeMovedSamples(ContactMotionOf(*problem.parameters[moves_].term)));
+    motions_.push_back(MakeMovedSamples(problem.parameters[moves_].term->motion));
   }
 }
 
@@ -179,8 +179,7 @@ models::InitialContact Response::InitialOf(std::size_t r, std::span<const double
 
 double Response::UnitOfAmount(std::size_t r) const {
   const TermUnits& units = problem_->data->records[r].units;
-  const bool is_in_time =
-      ContactMotionOf(*problem_->parameters[moves_].term) == ContactMotion::kLate;
+  const bool is_in_time = problem_->parameters[moves_].term->motion == ContactMotion::kLate;
   return is_in_time ? units.half_duration : units.length;
 }
 
@@ -470,7 +469,7 @@ struct SpeedPower {
 
 SpeedPower SpeedPowerOf(const Problem& problem, const ScaledRecord& record,
                         std::span<const double> theta) {
-  const std::size_t p = problem.parameters.PositionOf("speed_exponent", 0);
+  const std::size_t p = problem.parameters.PositionOf(TermId::kSpeedExponent, 0);
   const bool is_there = p < problem.parameters.size() && !problem.parameters[p].absent;
   return {.exponent = is_there ? theta[p] : 1.0,
           .log_unit = std::log(record.units.speed),
@@ -498,7 +497,7 @@ Ripple RippleOf(const Problem& problem, const ScaledRecord& record, Regressor co
                 std::span<const double> theta) {
   const TermUnits& first = problem.data->records.front().units;
   const bool is_up = column == Regressor::kRippleCosineUp || column == Regressor::kRippleSineUp;
-  const std::size_t period = problem.parameters.PositionOf("ripple_period", 0);
+  const std::size_t period = problem.parameters.PositionOf(TermId::kRipplePeriod, 0);
   return {
       .is_sine = column == Regressor::kRippleSineUp || column == Regressor::kRippleSineDown,
       .direction = is_up ? 1.0 : -1.0,

@@ -58,7 +58,7 @@ std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOption
   if (options.cycles) masks.emplace_back("outside the requested cycles");
   if (options.samples) masks.emplace_back("outside the requested samples");
   if (!options.held_out.empty()) masks.emplace_back("held out");
-  if (HasTerm(fit, "lag")) masks.emplace_back("beyond the motion that a lag needs");
+  if (HasTerm(fit, TermId::kLag)) masks.emplace_back("beyond the motion that a lag needs");
   if (!masks.empty() && left_out > glitches) {
     reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
   }
@@ -109,8 +109,8 @@ void RequireOptions(const FitOptions& options) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1");
   }
   RequireTermsOfResponse(options);
-  if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry") &&
-      HasTerm(options, "rig_stiffness")) {
+  if (options.model->memory == models::Memory::kNone && HasTerm(options, TermId::kAsymmetry) &&
+      HasTerm(options, TermId::kRigStiffness)) {
     throw InvalidArgument(fmt::format(
         "asymmetry and rig_stiffness of {}: the rig deflects with the force, which is not the "
         "state that the law integrates; leave one out, or use --model mindlin-dahl, mindlin or "

@@ -190,11 +190,10 @@ bool HasStateOfJoint(const FitOptions& options) {
 bool KnowsVaryingLoads(const FitOptions& options) {
   const bool is_joint = HasStateOfJoint(options);
   return std::ranges::none_of(Terms(), [&](const Term& term) {
-    const ContactMotion motion = ContactMotionOf(term);
     const bool is_other =
-        term.name == "rig_stiffness" ||
-        (is_joint ? motion == ContactMotion::kBehindGap
-                  : motion != ContactMotion::kMeasured || term.name == "asymmetry");
+        term.id == TermId::kRigStiffness ||
+        (is_joint ? term.motion == ContactMotion::kBehindGap
+                  : term.motion != ContactMotion::kMeasured || term.id == TermId::kAsymmetry);
     return is_other && HasTerm(options, term.name);
   });
 }
@@ -470,10 +469,14 @@ std::vector<double> DirectionsOf(std::span<const double> displacement,
 
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
   const bool asks_slip_speed =
-      HasTerm(options, "slip_speed_exponent") || HasTerm(options, "drag_exponent");
-  const bool asks_power = HasTerm(options, "speed_exponent") || asks_slip_speed;
-  const bool asks_acceleration = HasTerm(options, "inertia");
-  const auto is_ripple = [](std::string_view name) { return name.starts_with("ripple_"); };
+      HasTerm(options, TermId::kSlipSpeedExponent) || HasTerm(options, TermId::kDragExponent);
+  const bool asks_power = HasTerm(options, TermId::kSpeedExponent) || asks_slip_speed;
+  const bool asks_acceleration = HasTerm(options, TermId::kInertia);
+  const auto is_ripple = [](std::string_view name) {
+    const Term* const term = FindTerm(name);
+    return term != nullptr && term->id >= TermId::kRipplePeriod &&
+           term->id <= TermId::kRippleSineDown;
+  };
   const bool asks_direction =
       std::ranges::any_of(options.terms, is_ripple) ||
       std::ranges::any_of(options.fixed, [&](const auto& fixed) { return is_ripple(fixed.first); });

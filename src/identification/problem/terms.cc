@@ -62,7 +62,7 @@ constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, R
           .column = column};
 }
 
-constexpr std::array kTerms = {
+constexpr std::array kRows = {
     Term{.name = "sigma",
          .unit = "N/m",
          .meaning = "σ, tangential stiffness at the start of every branch",
@@ -75,7 +75,8 @@ constexpr std::array kTerms = {
          .meaning = "α, shape exponent",
          .presence = Presence::kAlways,
          .lowest = 0.0,
-         .highest = kHighestShapeExponent},
+         .highest = kHighestShapeExponent,
+         .theory_bound = TheoryBound::kLower},
     Term{.name = "slip_force",
          .unit = "N",
          .meaning = "Tc",
@@ -92,6 +93,7 @@ constexpr std::array kTerms = {
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
          .scale = Stiffness,
+         .is_planned = true,
          .option = "--rig-stiffness",
          .argument = "K[+-U]|fit",
          .help = "stiffness of the rig in series with the contact [N/m], or fit;\n"
@@ -118,6 +120,7 @@ constexpr std::array kTerms = {
          .highest = kWidest,
          .scale = Stiffness,
          .column = Regressor::kDisplacement,
+         .is_planned = true,
          .option = "--plateau-slope",
          .help = "fit an additional force that grows with the displacement [N/m]"},
     Term{
@@ -131,6 +134,9 @@ constexpr std::array kTerms = {
             [](const TermUnits& units) { return units.force * units.half_duration / units.length; },
         .column = Regressor::kVelocity,
         .needs_time = true,
+        .turns_with_motion = true,
+        .is_never_negative = true,
+        .is_planned = true,
         .option = "--viscous",
         .argument = "C|fit",
         .help = "viscous force C·dδ/dt, C [N s/m], or fit; needs a time column"},
@@ -160,6 +166,7 @@ constexpr std::array kTerms = {
              },
          .column = Regressor::kAcceleration,
          .needs_time = true,
+         .is_never_negative = true,
          .option = "--inertia",
          .argument = "M|fit",
          .help = "force M·d²δ/dt² of a mass between contact and load cell, M [kg],\n"
@@ -187,7 +194,8 @@ constexpr std::array kTerms = {
          .needs_time = true,
          .has_start = true,
          .start = 0.3,
-         .needs = "slip_speed_exponent"},
+         .needs = "slip_speed_exponent",
+         .theory_bound = TheoryBound::kUpper},
     Term{.name = "slip_speed_exponent",
          .meaning = "m, likewise",
          .lowest = kLeastSlipSpeedExponent,
@@ -196,6 +204,7 @@ constexpr std::array kTerms = {
          .has_start = true,
          .start = 0.5,
          .needs = "slip_speed",
+         .theory_bound = TheoryBound::kLower,
          .option = "--slip-speed",
          .argument = "M|fit",
          .help = "fit a slip force Tc(1 + c((v/v₀)^M − 1)) that depends on the speed,\n"
@@ -219,7 +228,8 @@ constexpr std::array kTerms = {
          .needs_time = true,
          .has_start = true,
          .start = 0.3,
-         .needs = "drag_exponent"},
+         .needs = "drag_exponent",
+         .theory_bound = TheoryBound::kBoth},
     Term{.name = "drag_exponent",
          .meaning = "m, likewise",
          .lowest = kLeastSpeedExponent,
@@ -227,7 +237,8 @@ constexpr std::array kTerms = {
          .needs_time = true,
          .has_start = true,
          .start = 0.5,
-         .needs = "drag_fraction"},
+         .needs = "drag_fraction",
+         .theory_bound = TheoryBound::kBoth},
     Term{
         .name = "plateau_curvature",
         .unit = "N/m²",
@@ -267,6 +278,8 @@ constexpr std::array kTerms = {
          .lowest = -kLongestLag,
          .highest = kLongestLag,
          .scale = [](const TermUnits& units) { return units.cycle; },
+         .motion = ContactMotion::kLate,
+         .turns_with_motion = true,
          .unit_by_sample = "samples",
          .option = "--lag",
          .argument = "S|fit",
@@ -279,6 +292,8 @@ constexpr std::array kTerms = {
         .lowest = 0.0,
         .highest = kWidestGap,
         .scale = Length,
+        .motion = ContactMotion::kBehindGap,
+        .theory_bound = TheoryBound::kLower,
         .option = "--backlash",
         .argument = "G|fit",
         .help = "width G [m] of a gap that is crossed at zero force after each\nreversal, or fit"},
@@ -296,6 +311,7 @@ constexpr std::array kTerms = {
                return units.force_sense * units.force / units.covariate;
              },
          .column = Regressor::kCovariate,
+         .turns_with_motion = true,
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
@@ -333,6 +349,7 @@ constexpr std::array kTerms = {
          .highest = kWidest,
          .scale = ForceRateOfTheFile,
          .column = Regressor::kTime,
+         .is_planned = true,
          .option = "--drift",
          .help = "fit a force drift linear in time [N/s]"},
     Term{.name = "displacement_drift",
@@ -349,23 +366,30 @@ constexpr std::array kTerms = {
          .unit_by_sample = "m/sample"},
 };
 
+constexpr auto kTerms = [] {
+  auto terms = kRows;
+  for (std::size_t i = 0; i < terms.size(); ++i) terms[i].id = static_cast<TermId>(i);
+  return terms;
+}();
+static_assert(kTerms.back().id == TermId::kDisplacementDrift);
+
 /// The same of a displacement that answers an imposed force.
 constexpr auto kTermsOfDisplacement = [] {
   auto terms = kTerms;
   for (Term& term : terms) {
-    if (term.name == "sigma") {
+    if (term.id == TermId::kSigma) {
       term.entry = Entry::kLinear;
-    } else if (term.name == "slip_force") {
+    } else if (term.id == TermId::kSlipForce) {
       term.entry = Entry::kLaw;
-    } else if (term.name == "force_offset") {
+    } else if (term.id == TermId::kForceOffset) {
       term.entry = Entry::kLaw;
       term.column = Regressor::kNone;
-    } else if (term.name == "displacement_offset") {
+    } else if (term.id == TermId::kDisplacementOffset) {
       term.entry = Entry::kLinear;
       term.column = Regressor::kOne;
-    } else if (term.name == "displacement_drift") {
+    } else if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
-    } else if (term.name != "alpha" && term.name != "load_exponent") {
+    } else if (term.id != TermId::kAlpha && term.id != TermId::kLoadExponent) {
       term.presence = Presence::kNever;
     }
   }
@@ -379,10 +403,53 @@ std::span<const Term> Terms(loop::Channel response) {
   return kTermsOfDisplacement;
 }
 
+const Term& TermOf(TermId id, loop::Channel response) {
+  return Terms(response)[static_cast<std::size_t>(id)];
+}
+
 const Term* FindTerm(std::string_view name, loop::Channel response) {
   const std::span<const Term> terms = Terms(response);
   const auto term = std::ranges::find(terms, name, &Term::name);
   return term == terms.end() ? nullptr : &*term;
+}
+
+std::span<const TermGroup> TermGroups() {
+  static const std::vector<TermGroup> groups = {
+      {"viscous", {"viscous"}},
+      {"speed_exponent", {"speed_exponent", "viscous"}},
+      {"drag", {"drag_fraction", "drag_exponent"}},
+      {"inertia", {"inertia"}},
+      {"plateau_slope", {"plateau_slope"}},
+      {"slip_speed", {"slip_speed", "slip_speed_exponent"}},
+      {"slip_trend", {"slip_trend"}},
+      {"slip_position", {"slip_slope", "plateau_slope"}},
+      {"slip_position_quadratic",
+       {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"}},
+      {"ripple",
+       {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
+        "ripple_sine_down"},
+       /*is_tried=*/false},
+      {"force_drift", {"force_drift"}},
+      {"rig_stiffness", {"rig_stiffness"}},
+      {"asymmetry", {"asymmetry"}},
+      {"lag", {"lag"}},
+      {"backlash", {"backlash"}},
+  };
+  return groups;
+}
+
+const TermGroup* FindTermGroup(std::string_view name) {
+  const std::span<const TermGroup> groups = TermGroups();
+  const auto group = std::ranges::find(groups, name, &TermGroup::name);
+  return group == groups.end() ? nullptr : &*group;
+}
+
+std::vector<std::string_view> PlannedTerms() {
+  std::vector<std::string_view> names;
+  for (const Term& term : kTerms) {
+    if (term.is_planned) names.push_back(term.name);
+  }
+  return names;
 }
 
 std::string_view TermNameOf(std::string_view parameter) {

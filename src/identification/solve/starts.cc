@@ -46,20 +46,22 @@ constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of th
 /// A term with which a loop looks like one of another shape: the best look of each shape is tried
 /// with it.
 struct TermOfLook {
-  std::string_view name;
+  TermId id;
   std::size_t count;
   std::array<double, 10> trials;  // θ
   bool is_of_bound = false;       // times the bound on that side
   double stiffest = 1.0;          // what a gap takes of a stroke looked like compliance
 };
 constexpr std::array kTermsOfLook = {
-    TermOfLook{.name = "lag",
+    TermOfLook{.id = TermId::kLag,
                .count = 10,
                .trials = {-0.06, -0.15, -0.3, -0.6, -1.0, 0.06, 0.15, 0.3, 0.6, 1.0},
                .is_of_bound = true},
-    TermOfLook{.name = "asymmetry", .count = 4, .trials = {-0.6, -0.3, 0.3, 0.6}},
-    TermOfLook{
-        .name = "backlash", .count = 5, .trials = {0.02, 0.05, 0.1, 0.2, 0.4}, .stiffest = 8.0}};
+    TermOfLook{.id = TermId::kAsymmetry, .count = 4, .trials = {-0.6, -0.3, 0.3, 0.6}},
+    TermOfLook{.id = TermId::kBacklash,
+               .count = 5,
+               .trials = {0.02, 0.05, 0.1, 0.2, 0.4},
+               .stiffest = 8.0}};
 
 /// A point of the plane and its cost.
 struct Look {
@@ -80,7 +82,7 @@ class Plane {
     theta_.resize(parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
-      terms_[k] = parameters.PositionOf(kTermsOfLook[k].name, 0);
+      terms_[k] = parameters.PositionOf(kTermsOfLook[k].id, 0);
     }
     FindGuesses(memory);
   }
