@@ -114,7 +114,6 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   const double rms =
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
   if (rms < kOnlyRounding) {
-    result.adequacy.verdict = AdequacyVerdict::kAdequate;
     result.adequacy.tried = 1;
     result.adequacy = GradeUse(thresholds, result);
     return;
@@ -136,12 +135,13 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
     heavy_tails = FindHeavyTails(problem, solution.theta, {residual.data(), problem.size()}, noise,
                                  buffers.response);
   }
-  result.adequacy = JudgeAdequacy(problem, solution, {test, causes, heavy_tails, is_limited},
-                                  options, result.parameters);
-  if (const auto slow = FindSlowResiduals(result, thresholds)) {
-    Append(result.findings, slow);
-    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  }
+  result.adequacy =
+      JudgeAdequacy(problem, solution, {test, causes, heavy_tails}, options, result.parameters);
+  const std::optional<Finding> slow = FindSlowResiduals(result, thresholds);
+  Append(result.findings, slow);
+  const bool is_doubtful =
+      IsDoubtful(test, thresholds) || is_limited || slow || AreHeavy(heavy_tails, thresholds);
+  result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;

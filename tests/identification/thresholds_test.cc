@@ -133,28 +133,6 @@ bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
   return FindContradictedPrior(result, thresholds).has_value();
 }
 
-/// Places at which ten samples a cycle are, of which every other cycle is moved by so much of half
-/// the range.
-double PlacesOfMovedCycles(double moved) {
-  constexpr double kReach = 3e-6;
-  History displacement;
-  for (std::size_t i = 0; i < 100; ++i) {
-    const double phase = (static_cast<double>(i) + 0.3) / 10.0;
-    const double shift = (i / 10) % 2 == 0 ? 0.0 : moved;
-    displacement.push_back(kReach * (std::sin(2 * std::numbers::pi * phase) + shift));
-  }
-  Stages stages(LoopOf(kMindlin, displacement));
-  const std::optional<Finding> found = FindFewPlaces(stages.problem, {});
-  return found ? *found->Number("places") : 0.0;
-}
-
-TEST(FindFewPlaces, MergesPlacesWithinHalfAPercentOfTheRange) {
-  const double places = PlacesOfMovedCycles(0.0);
-  ASSERT_GT(places, 0.0);
-  EXPECT_EQ(PlacesOfMovedCycles(2 * 0.0035), places);
-  EXPECT_NE(PlacesOfMovedCycles(2 * 0.008), places) << "twenty are not few";
-}
-
 // --- tests and profiles on stages
 
 /// A rig tried for a loop of another shape, at a chance and a variance of the noise given by hand.
@@ -168,59 +146,6 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double p_val
   return TryRig({stages.problem, best, noise, estimates}, thin, MindlinTest{0.0, p_value, {}},
                 stages.options, stages.buffers)
       .has_value();
-}
-
-double SumOfSquaresWith(const Record& record, const FitOptions& options) {
-  return Stages(record, options).Solve().sum_of_squares;
-}
-
-/// A loop with known noise, for what is asked of its slip force.
-class SlipForceCase {
- public:
-  SlipForceCase(const Thresholds& thresholds, const Record& record, FitOptions options = {})
-      : stages_(record, WithThresholds(std::move(options), thresholds)), best_(stages_.Solve()) {}
-
-  /// Standard error of ln θ at unit variance.
-  double UnitError(std::size_t parameter) { return EstimatesAt(1.0).ErrorOfTheta(parameter); }
-  bool NeedsProfile(double variance, double peak_share) {
-    return NeedsSlipForceProfile({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
-                                 peak_share, stages_.options, stages_.buffers);
-  }
-  bool IsOpenAbove(double variance) {
-    return ProfileSlipForce({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
-                            stages_.options, stages_.buffers)
-        .open_above;
-  }
-  bool RigidPasses(double variance) {
-    return StiffnessIsOpenAbove({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
-                                stages_.options, stages_.buffers);
-  }
-  [[nodiscard]] double sum_of_squares() const { return best_.sum_of_squares; }
-  [[nodiscard]] double ValueOf(std::size_t parameter, double shift) const {
-    return stages_.problem.parameters[parameter].ToValue(best_.theta[parameter] + shift);
-  }
-  [[nodiscard]] double force() const { return stages_.data.force; }
-
- private:
-  static FitOptions WithThresholds(FitOptions options, const Thresholds& thresholds) {
-    options.thresholds = thresholds;
-    return options;
-  }
-  [[nodiscard]] Noise NoiseAt(double variance) const {
-    return KnownNoise(variance, stages_.data.counted);
-  }
-  Estimates EstimatesAt(double variance) {
-    return {stages_.problem,         best_, NoiseAt(variance), {}, stages_.options.thresholds,
-            stages_.buffers.response};
-  }
-
-  Stages stages_;
-  Solution best_;
-};
-
-const Record& SlippingLoop() {
-  static const Record record = LoopOf(kMindlin, Cycling(Wave::kSine, 1.3 * kGrossSlip, 2.0, 120));
-  return record;
 }
 
 // --- whole fits
@@ -271,14 +196,7 @@ bool IsSlow(const Thresholds& thresholds, double strokes) {
 
 /// Whether residuals of such a chance are doubted.
 bool IsDoubted(const Thresholds& thresholds, double chance) {
-  const Stages stages(SlippingLoop(), With(thresholds));
-  const auto judge = [&](double p_value) {
-    return JudgeAdequacy(stages.problem, {}, {TestWith({}, p_value), {}, {}}, With(thresholds), {});
-  };
-  // The chance that is judged is some multiple of the test's.
-  constexpr double kSmall = 1e-6;
-  const double multiple = judge(kSmall).p_value / kSmall;
-  return judge(chance / multiple).verdict != AdequacyVerdict::kAdequate;
+  return IsDoubtful(TestWith({}, chance / 2), thresholds);
 }
 
 DepartureFit FitWith(double p_value, double delta_aicc) {

@@ -112,6 +112,10 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
   return accepted;
 }
 
+bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds) {
+  return tails && tails->p_value < thresholds.cause && tails->delta_aicc < 0;
+}
+
 namespace {
 
 /// Returns the chance that noise alone makes what all omitted terms, or the best, explain.
@@ -274,11 +278,11 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
 }
 
-/// Adds heavy tails that noise alone does not make to the causes, and doubts the record.
+/// Adds heavy tails that noise alone does not make to the causes.
 void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tails,
                    const FitOptions& options, Adequacy& adequacy) {
   const Thresholds& thresholds = options.thresholds;
-  if (tails && tails->p_value < thresholds.cause && tails->delta_aicc < 0) {
+  if (AreHeavy(tails, thresholds)) {
     adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
     adequacy.causes.push_back({.code = kHeavyTails,
                                .delta_aicc = tails->delta_aicc,
@@ -286,7 +290,6 @@ void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tail
                                .size = tails->fraction,
                                .unit = "-",
                                .option = AcceptedOptions(problem, options, kHeavyTailsOption)});
-    adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
   Order(adequacy.causes, thresholds);
 }
@@ -304,7 +307,7 @@ void DropLesserCauses(std::vector<Cause>& causes) {
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
                        const AdequacyEvidence& evidence, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates) {
-  const auto& [test, causes, heavy_tails, ends_at_limit] = evidence;
+  const auto& [test, causes, heavy_tails] = evidence;
   const Thresholds& thresholds = options.thresholds;
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
@@ -329,7 +332,6 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
-  if (IsDoubtful(test, thresholds) || ends_at_limit) adequacy.verdict = AdequacyVerdict::kDoubtful;
   AddHeavyTails(problem, heavy_tails, options, adequacy);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;

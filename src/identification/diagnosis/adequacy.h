@@ -41,17 +41,17 @@ struct AdequacyEvidence {
   const AdequacyTest& test;
   std::span<const DepartureFit> causes;          ///< result of CausesOf()
   const std::optional<HeavyTails>& heavy_tails;  ///< result of FindHeavyTails()
-  bool ends_at_limit = false;                    ///< the search ended at a limit of its own
 };
 
 /// True if a column follows the force of the fitted model: its factor would take a part of Tc.
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force);
 
-/// Doubts the fit where noise hardly makes what omitted terms explain, where a disturbance is found
-/// that it does not make, or the search ended at a limit of its own. Causes are those of both kinds
-/// that noise alone does not make, the best first, without those that another beats clearly; of
-/// causes that explain nearly as much as the best those that were measured, or can be tried, come
-/// first.
+/// True if noise hardly makes these tails.
+bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds);
+
+/// Returns the misfit, its chance and its causes: those of both kinds that noise alone does not
+/// make, the best first, without those that another beats clearly; of causes that explain nearly as
+/// much as the best those that were measured, or can be tried, come first.
 /// @param estimates  of the reported parameters, with the intervals that the model itself gives
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
                        const AdequacyEvidence& evidence, const FitOptions& options,
