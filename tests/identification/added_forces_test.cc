@@ -221,63 +221,6 @@ TEST(AddedForces, MassIsRecovered) {
   EXPECT_NEAR(ValueOf(fit, "inertia"), kMass, kRecovered * kMass);
 }
 
-FitOptions AllOfThem() {
-  FitOptions options;
-  options.terms = {"slip_speed",     "slip_speed_exponent", "viscous",          "speed_exponent",
-                   "inertia",        "slip_slope",          "slip_curvature",   "slip_trend",
-                   "plateau_slope",  "plateau_curvature",   "ripple_period",    "ripple_cosine_up",
-                   "ripple_sine_up", "ripple_cosine_down",  "ripple_sine_down", "drag_fraction",
-                   "drag_exponent"};
-  return options;
-}
-
-/// A point away from all solutions.
-std::vector<double> PointOf(const Problem& problem) {
-  std::vector<double> theta;
-  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    const Parameter& parameter = problem.parameters[p];
-    theta.push_back(parameter.fixed ? parameter.theta : 0.1 + 0.01 * static_cast<double>(p));
-    if (parameter.term->name == "sigma") theta.back() = 1.5;
-    if (parameter.term->name == "speed_exponent") theta.back() = 0.6;
-    if (parameter.term->name == "drag_exponent") theta.back() = 0.7;
-    if (parameter.term->name == "ripple_period") theta.back() = std::log(0.4);
-  }
-  return theta;
-}
-
-/// Of the largest value: central differences err by h²f‴/6, f‴ up to (2π/0.4)³·0.3 of a ripple, and
-/// 1e-16/h by rounding.
-constexpr double kStepOfTheta = 1e-5;
-constexpr double kOfDifference = 1e-7;
-
-TEST(AddedForces, DerivativesAreThoseOfCentralDifferences) {
-  Stages stages(Loop(), AllOfThem());
-  const auto& free = stages.problem.parameters.free();
-  const std::vector<double> theta = PointOf(stages.problem);
-  const std::size_t samples = stages.problem.size();
-  std::vector<double> residual(samples);
-  std::vector<double> jacobian(samples * free.size());
-  Response response;
-  response.Bind(stages.problem);
-  Differentiate(stages.problem, theta, response, free, residual, jacobian);
-  for (std::size_t c = 0; c < free.size(); ++c) {
-    std::vector<double> moved = theta;
-    moved[free[c]] += kStepOfTheta;
-    const Eigen::VectorXd above = stages.ResidualsAt(moved);
-    moved[free[c]] -= 2 * kStepOfTheta;
-    const Eigen::VectorXd below = stages.ResidualsAt(moved);
-    const std::span<const double> column(jacobian.data() + c * samples, samples);
-    const auto [lowest, highest] = std::ranges::minmax(column);
-    const double size = std::max({1.0, highest, -lowest});
-    for (std::size_t i = 0; i < samples; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      ASSERT_NEAR(jacobian[c * samples + i], (above[row] - below[row]) / (2 * kStepOfTheta),
-                  size * kOfDifference)
-          << stages.problem.parameters.NameOf(free[c]) << " at " << i;
-    }
-  }
-}
-
 TEST(AddedForces, ExponentsMustBePositiveAndAPeriodNotBeyondRounding) {
   const std::vector<std::pair<std::vector<std::string>, double>> refused = {
       {{"speed_exponent", "viscous"}, 0.0},

@@ -202,45 +202,6 @@ TEST(Asymmetry, IsRecoveredWhereTheMotionTurnsBetweenTheSamples) {
   EXPECT_NEAR(fit.Find("asymmetry")->value, 0.3, kInterpolated);
 }
 
-TEST(Asymmetry, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
-  for (const char* beside : {"", "rig_stiffness", "lag"}) {
-    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-      const BranchLaw law{5e7, 0.7, 60.0};
-      FitOptions options = WithAsymmetry();
-      options.fixed["force_offset"] = 0.0;
-      if (*beside != '\0') options.terms.emplace_back(beside);
-      Stages stages(LoopOf(0.2, 1.1, 2.25, law), options, state);
-      const Parameters& parameters = stages.problem.parameters;
-      std::vector<double> theta;
-      for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
-      theta[kStiffness] = parameters[kStiffness].ToTheta(law.tangential_stiffness);
-      theta[kShape] = law.shape_exponent;
-      theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
-      if (parameters.has_rig()) theta[kRig] = theta[kStiffness] + 1;
-      const std::size_t lag = parameters.PositionOf("lag", 0);
-      if (parameters.moves_contact()) theta[lag] = parameters[lag].ToTheta(1.4);
-      theta[parameters.PositionOf("asymmetry", 0)] = 0.2;
-      const auto& free = parameters.free();
-      Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),
-                               static_cast<Eigen::Index>(free.size()));
-      std::vector<double> residual(stages.problem.size());
-      Response response;
-      response.Bind(stages.problem);
-      Differentiate(stages.problem, theta, response, free, residual,
-                    {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-      // As of the lag: third derivatives are bounded, and by θ of the lag some 20 times as large.
-      constexpr double kDifferenceStep = 1e-6;
-      constexpr double kDifferences = 1e-5;
-      const Eigen::MatrixXd differences = stages.DifferencesAt(theta, kDifferenceStep);
-      for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
-        EXPECT_LT((jacobian.col(j) - differences.col(j)).lpNorm<Eigen::Infinity>(),
-                  kDifferences * std::max(1.0, jacobian.col(j).lpNorm<Eigen::Infinity>()))
-            << parameters.NameOf(free[static_cast<std::size_t>(j)]) << " beside " << beside;
-      }
-    }
-  }
-}
-
 TEST(Asymmetry, IsRefusedOfDahlsLawBehindARigAndBeyondOne) {
   FitOptions options = WithAsymmetry();
   options.model = &Model("dahl");

@@ -97,25 +97,6 @@ TEST(Contradictions, DelayOfATenthOfACycleIsFoundAtThirtyToAHundredSamplesACycle
   }
 }
 
-TEST(Contradictions, DelayBeyondTheSearchIsNoAdequateFit) {
-  constexpr double kReach = 2.4e-6;
-  FitOptions options;
-  options.terms = {"lag"};
-  const FitResult fit = FitOne(Delayed(kMindlin, kReach, 14, 200), options);
-  const ParameterEstimate& lag = *fit.Find("lag");
-  EXPECT_EQ(lag.status, ParameterStatus::kAtUpperBound);
-  EXPECT_FALSE(lag.upper95);
-  ASSERT_NE(fit.FindFinding("search_limit"), nullptr);
-  EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  for (const char* name : {"lag", "sigma", "alpha", "slip_force"}) {
-    EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
-  }
-  // A bound that the user gives is an answer of the user's: no search stopped there.
-  options.bounds["lag"] = {0.0, 5.0};
-  EXPECT_EQ(FitOne(Delayed(kMindlin, kReach, 14, 200), options).FindFinding("search_limit"),
-            nullptr);
-}
-
 TEST(Contradictions, EnergyOfUnequalSlipForcesIsThatOfEveryCycle) {
   for (const double lambda : {0.3, 0.6, 0.9}) {
     for (const double asymmetry : {-0.6, 0.6}) {
@@ -133,21 +114,6 @@ TEST(Contradictions, EnergyOfUnequalSlipForcesIsThatOfEveryCycle) {
         // ∮ T dδ of n samples of noise s over a way of 4X errs by 4Xs/√n, and A by its error.
         EXPECT_NEAR(record.law_energy[k] / record.facts.cycles[k].energy, 1.0, 0.03) << k;
       }
-    }
-  }
-}
-
-TEST(Contradictions, EnergyOfEqualSlipForcesIsThatOfTheSteadyLoop) {
-  const double amplitude = 0.8 * GrossSlipDisplacement(kMindlin);
-  for (const int direction : {-1, 1}) {
-    const std::vector<double> energies =
-        EnergyOfCycles(Model("mindlin-dahl"), kMindlin, {},
-                       {.amplitude = amplitude, .first_direction = direction, .cycles = 5});
-    ASSERT_EQ(energies.size(), 5U);
-    for (const double energy : energies) {
-      constexpr double kOfThousandSteps = 1e-5;
-      EXPECT_NEAR(energy / SteadyLoopEnergy(Model("mindlin-dahl"), kMindlin, amplitude), 1.0,
-                  kOfThousandSteps);
     }
   }
 }

@@ -640,22 +640,6 @@ std::size_t PlaceOf(const DepartureColumns& columns, std::string_view code) {
 
 constexpr double kRounding = 1e-9;  // of differences of differences
 
-TEST(Departures, CountsSamplesWithoutTime) {
-  Record record = Complete();  // a sample a second
-  Stages with(record);
-  record.time.clear();
-  Stages without(record);
-  const DepartureColumns timed = ColumnsOf(with);
-  const DepartureColumns by_sample = ColumnsOf(without);
-  EXPECT_TRUE(timed.timed);
-  EXPECT_FALSE(by_sample.timed);
-  EXPECT_LT((timed.columns - by_sample.columns).cwiseAbs().maxCoeff(),
-            kRounding * timed.columns.cwiseAbs().maxCoeff());
-  for (std::size_t c = 0; c < timed.of.size(); ++c) {
-    EXPECT_NEAR(by_sample.unit_of_size[c] / timed.unit_of_size[c], 1.0, kRounding);
-  }
-}
-
 TEST(Departures, InsertedTurningPointsTakeNoTime) {
   // Where they do not overshoot, nothing else changes but next to a turn, which no difference is
   // then taken across.
@@ -685,30 +669,6 @@ TEST(Departures, InsertedTurningPointsTakeNoTime) {
                   .maxCoeff(),
               kRounding * plain.columns.cwiseAbs().maxCoeff())
         << sample;
-  }
-}
-
-TEST(Departures, ScalesTermsWithLoadOfRecord) {
-  // σ in proportion to the load: σ/Tc, and with it every branch over Tc, is the same in both.
-  FitOptions options;
-  options.normal_loads = {120.0, 80.0};
-  Stages alone(Complete());
-  Stages series(std::vector<Record>{Complete(), Complete()}, options);
-  const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
-  std::vector<double> theta = TrueTheta(series, contact);
-  theta[kLoadExponent] = 1.0;
-  const DepartureColumns plain = ColumnsOf(alone);
-  const DepartureColumns loaded =
-      ColumnsOfDepartures(series.problem, theta, series.buffers.response, 100);
-  for (const std::string_view code :
-       {"shape_of_law", "rig_in_series", "backlash", "displacement_sensor"}) {
-    const auto c = static_cast<Eigen::Index>(PlaceOf(plain, code));
-    const auto d = static_cast<Eigen::Index>(PlaceOf(loaded, code));
-    const Eigen::Index rows = plain.columns.rows();
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      EXPECT_NEAR(loaded.columns(i, d), 1.2 * plain.columns(i, c), kRounding) << code;
-      EXPECT_NEAR(loaded.columns(rows + i, d), 0.8 * plain.columns(i, c), kRounding) << code;
-    }
   }
 }
 

@@ -156,46 +156,5 @@ TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
   EXPECT_EQ(RefusalOf({record}, options), "accepted");
 }
 
-TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWhateverTheSignOfTheForce) {
-  const Record record = Loop();
-  Record opposite = record;
-  for (double& force : opposite.force) force = -force;
-  FitOptions options;
-  options.fixed = {{"rig_stiffness", 0.5 * kLaw.slip_force / testing::kReach}};
-  EXPECT_EQ(RefusalOf({opposite}, options), RefusalOf({record}, options));
-  EXPECT_THAT(RefusalOf({opposite}, options), HasSubstr("the stiffness that the loop itself has"));
-}
-
-TEST(EdgeRecords, StrokesOfHalfTheWidthSayNothingAboutTheRig) {
-  // Strokes of 2 µm that begin with 10 N/µm, and within the last one strokes of 1 µm with 40 N/µm.
-  static constexpr double kPlateau = 3.0;  // [N]
-  Record record;
-  record.displacement = {1e-6};
-  record.force = {kPlateau};
-  const auto stroke = [&record](double end, double stiffness) {
-    const double from = record.displacement.back();
-    const double at = record.force.back();
-    const double sense = end > from ? 1.0 : -1.0;
-    constexpr int kSteps = 40;
-    for (int i = 1; i <= kSteps; ++i) {
-      const double way = std::abs(end - from) * i / kSteps;
-      record.displacement.push_back(from + sense * way);
-      record.force.push_back(sense * std::min(sense * at + stiffness * way, kPlateau));
-    }
-  };
-  for (int cycle = 0; cycle < 2; ++cycle) {
-    stroke(-1e-6, 1e7);
-    stroke(1e-6, 1e7);
-  }
-  for (int cycle = 0; cycle < 3; ++cycle) {
-    stroke(0, 4e7);
-    stroke(1e-6, 4e7);
-  }
-  stroke(-1e-6, 1e7);
-  FitOptions options;
-  options.fixed = {{"rig_stiffness", 0.9e7}};
-  EXPECT_THAT(RefusalOf({record}, options), HasSubstr("must be > 1e+07, the stiffness"));
-}
-
 }  // namespace
 }  // namespace mindahl::identification::edge_records_test

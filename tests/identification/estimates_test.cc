@@ -104,53 +104,6 @@ TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
   }
 }
 
-TEST(Estimates, HaveWiderErrorsUnderCorrelatedNoiseCorrectedForAbsorbedFraction) {
-  constexpr double kRho = 0.9;
-  constexpr double kVariance = 4e-4;
-  Stages stages(NoisyLoop(), Virgin());
-  const Solution solution = stages.Solve();
-  Noise noise = KnownNoise(kVariance, stages.data.counted);
-  noise.autocorrelation = testing::FirstOrder(kRho);
-  const Sandwich sandwich = SandwichOf(stages.DifferencesAt(solution.theta), kRho);
-  const auto count = static_cast<double>(stages.data.counted);
-  const auto parameters = static_cast<double>(stages.problem.parameters.free().size());
-  for (const bool is_known : {true, false}) {
-    noise.is_known = is_known;
-    const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
-    // (n − p) residuals' worth were divided by, but only n − tr were left.
-    const double variance =
-        is_known ? kVariance : kVariance * (count - parameters) / (count - sandwich.absorbed);
-    EXPECT_GT(sandwich.absorbed, 2 * parameters) << "the case needs it";
-    EXPECT_NEAR(estimates.variance() / variance, 1.0, kDifferences);
-    EXPECT_NEAR(estimates.local().absorbed / sandwich.absorbed, 1.0, kDifferences);
-    const auto& free = stages.problem.parameters.free();
-    for (std::size_t j = 0; j < free.size(); ++j) {
-      const auto place = static_cast<Eigen::Index>(j);
-      const double error = std::sqrt(variance * sandwich.covariance(place, place));
-      EXPECT_NEAR(estimates.ErrorOfTheta(free[j]) / error, 1.0, kDifferences);
-      const double white =
-          kVariance / variance *
-          SandwichOf(stages.DifferencesAt(solution.theta), 0.0).covariance(place, place) /
-          sandwich.covariance(place, place);
-      EXPECT_NEAR(estimates.WhiteShare(free[j]) / white, 1.0, kDifferences);
-    }
-    const auto covariances = estimates.CovariancesOf({free[2], free[0]});
-    ASSERT_TRUE(covariances);
-    const std::array<Eigen::Index, 2> places = {2, 0};
-    const Eigen::Matrix2d all = variance * sandwich.covariance(places, places);
-    const Eigen::Matrix2d white =
-        kVariance *
-        SandwichOf(stages.DifferencesAt(solution.theta), 0.0).covariance(places, places);
-    EXPECT_LT(((*covariances)[0] - all).norm(), kDifferences * all.norm());
-    EXPECT_LT(((*covariances)[1] - white).norm(), kDifferences * white.norm());
-    EXPECT_NEAR(
-        estimates.quantile(),
-        StudentQuantile(
-            is_known ? 1e6 : count / ((1 + kRho * kRho) / (1 - kRho * kRho)) - parameters, 0.95),
-        1e-6);
-  }
-}
-
 TEST(Estimates, AtABoundReachOneSidedFromIt) {
   FitOptions options = Virgin();
   for (const Interval& bounds : {Interval{0.45, 2.0}, Interval{0.0, 0.35}}) {

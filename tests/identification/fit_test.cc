@@ -80,36 +80,6 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
   }
 }
 
-TEST(Fit, OneStrokeFromRestIsDrawnFromItsFirstSampleWhereverTheFileHasItsZeros) {
-  // As long as the first slip is away from zero in both channels, and with an offset alone.
-  History displacement;
-  for (int i = 0; i <= 80; ++i) displacement.push_back(kReach * i / 80);
-  const Record at_zero =
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  for (const auto& [x, force] : {std::pair{5 * kReach, -3 * kLaw.slip_force},
-                                 std::pair{-0.2 * kReach, 0.0}, std::pair{0.0, kLaw.slip_force}}) {
-    SCOPED_TRACE(x);
-    const Record record = testing::Shifted(at_zero, x, force);
-    const FitResult fit = FitOne(record);
-    EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-    EXPECT_NEAR(fit.Find("force_offset")->value, force, kNoiseFree * kLaw.slip_force);
-    EXPECT_EQ(fit.Find("displacement_offset")->status, ParameterStatus::kFixed);
-    EXPECT_NEAR(fit.Find("displacement_offset")->value, x, kNoiseFree * kReach);
-    // Nothing in the record says that it was at rest there.
-    const Finding* finding = fit.FindFinding("unknown_past");
-    ASSERT_NE(finding, nullptr);
-    EXPECT_EQ(finding->kind, "one_stroke");
-    for (const char* name : {"sigma", "alpha", "slip_force"}) {
-      EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
-    }
-    FitOptions at_rest;
-    at_rest.initial_state = InitialState::kVirgin;
-    const FitResult known = FitOne(record, at_rest);
-    EXPECT_EQ(known.FindFinding("unknown_past"), nullptr);
-    EXPECT_EQ(known.Find("slip_force")->identifiability, Identifiability::kIdentifiable);
-  }
-}
-
 TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   constexpr double kDriftPerSecond = -3.0;
   Record record = Loop();
@@ -171,22 +141,6 @@ TEST(Fit, CorrelationIsSymmetricWithUnitDiagonalAndEmptyForTheFixed) {
   }
 }
 
-TEST(Fit, CorrelationOfSigmaAndAlphaHasTheSignOfTheScatter) {
-  // A larger α bends the branch earlier; a larger σ makes up for it.
-  Generator generator(4);
-  double covariance = 0.0;
-  double stated = 0.0;
-  for (int loop = 0; loop < 40; ++loop) {
-    const FitResult fit =
-        FitOne(testing::WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator));
-    covariance += (fit.law.tangential_stiffness / kLaw.tangential_stiffness - 1) *
-                  (fit.law.shape_exponent - kLaw.shape_exponent);
-    stated += fit.correlation[1];
-  }
-  EXPECT_GT(covariance, 0.0);
-  EXPECT_GT(stated, 0.0);
-}
-
 TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   const FitResult fit = FitOne(Loop(2.0));
   EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
@@ -241,28 +195,6 @@ TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
   }
 }
 
-TEST(Fit, KnowsItsPastFromTheSecondTurningPointOn) {
-  // Parts of a steady loop that begin in the middle of a stroke, of as many turning points.
-  const History displacement = Cycling(Wave::kSine, kReach, 4.0, 200);
-  const Record loop = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  const auto part = [&](std::size_t begin, std::size_t end) {
-    Record cut;
-    for (std::size_t i = begin; i < end; ++i) {
-      cut.displacement.push_back(loop.displacement[i]);
-      cut.force.push_back(loop.force[i]);
-    }
-    return FitOne(cut);
-  };
-  // A sine turns at a quarter and three quarters of 200 samples.
-  const FitResult one = part(310, 430);
-  ASSERT_EQ(one.records[0].reversals.size(), 1U);
-  ASSERT_NE(one.FindFinding("unknown_past"), nullptr);
-  EXPECT_EQ(one.FindFinding("unknown_past")->kind, "cut");
-  const FitResult two = part(310, 520);
-  ASSERT_EQ(two.records[0].reversals.size(), 2U);
-  EXPECT_EQ(two.FindFinding("unknown_past"), nullptr);
-}
-
 /// Compares what does not depend on the order of the records of a fit.
 void ExpectSameFit(const FitResult& one, const FitResult& other) {
   constexpr double kSolved = 1e-5;  // of a minimum that is reached from another place
@@ -298,32 +230,6 @@ TEST(Fit, DoesNotDependOnTheOrderOfItsRecords) {
   const FitResult one = Fit(records, {}, Depth::kFull);
   std::ranges::reverse(records);
   ExpectSameFit(one, Fit(records, {}, Depth::kFull));
-}
-
-TEST(Fit, HasOneRippleInSpaceForRecordsWithOtherCentres) {
-  // The ripple has a period of a quarter of the reach; the second record is centred a third of that
-  // period away, and the crests stay where they are.
-  const double period = kReach / 4;
-  constexpr double kHeight = 0.03;  // of Tc
-  std::vector<Record> records;
-  for (const double off : {0.0, 1.0 / 3}) {
-    History displacement = Cycling(Wave::kSine, kReach, 2.0, 400);
-    for (double& x : displacement) x += off * period;
-    Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      record.force[i] +=
-          kHeight * kLaw.slip_force * std::cos(2 * M_PI * record.displacement[i] / period);
-    }
-    records.push_back(record);
-  }
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.terms = {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
-                   "ripple_sine_down"};
-  options.start["ripple_period"] = period;
-  const FitResult fit = Fit(records, options, Depth::kEstimate);
-  EXPECT_LT(fit.residuals.rms, 1e-3 * kHeight * kLaw.slip_force);
-  EXPECT_NEAR(fit.Find("ripple_period")->value / period, 1.0, 1e-3);
 }
 
 }  // namespace

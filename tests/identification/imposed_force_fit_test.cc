@@ -109,32 +109,6 @@ TEST(ImposedForceFit, FittedLoopRunsUnderTheMeasuredForceAndResidualsAreInMetres
   EXPECT_EQ(fit.force_noise, 0.0);
 }
 
-TEST(ImposedForceFit, JacobianIsThatOfDifferences) {
-  // The curvature jumps where a branch meets the virgin curve, by less than 10 here: h times that,
-  // and rounding over h.
-  constexpr double kStep = 1e-7;
-  constexpr double kTolerance = 1e-6;
-  for (const std::string_view model : {"mindlin-dahl", "dahl"}) {
-    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-      Record loop = ForcedLoop(LawOf(0.4), 0.8, model);
-      if (state == InitialState::kSteady) loop = From(loop, kSamplesPerCycle);
-      FitOptions options = OfDisplacement(model);
-      options.terms = {"displacement_drift"};
-      options.initial_state = state;
-      testing::Stages stages(loop, options, state);
-      const std::vector<double> theta = stages.ThetaOf(FitOne(loop, options));
-      Response response;
-      const auto& free = stages.problem.parameters.free();
-      const Linearization at = LinearizeAt(stages.problem, theta, response, free);
-      const Eigen::MatrixXd expected = stages.DifferencesAt(theta, kStep);
-      EXPECT_EQ(free.size(), state == InitialState::kVirgin ? 6 : 5);
-      EXPECT_LT((at.jacobian - expected).cwiseAbs().maxCoeff(),
-                kTolerance * expected.cwiseAbs().maxCoeff())
-          << model;
-    }
-  }
-}
-
 TEST(ImposedForceFit, SlipForceFarFromWhatWasReachedIsALowerLimit) {
   Generator generator(7);
   const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3), 0.25), 0.005, generator);
@@ -156,14 +130,6 @@ TEST(ImposedForceFit, HeldParametersStayAndTheOthersFollow) {
     EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree)) << name;
     EXPECT_EQ(fit.Find(name)->status, ParameterStatus::kFixed);
   }
-}
-
-TEST(ImposedForceFit, BoundOnSigmaHoldsItThere) {
-  FitOptions options = OfDisplacement();
-  options.bounds["sigma"] = {5.5e7, 9e7};
-  const FitResult fit = FitOne(ForcedLoop(LawOf(0.4)), options);
-  EXPECT_NEAR(fit.law.tangential_stiffness, 5.5e7, 1e-6 * 5.5e7);
-  EXPECT_EQ(fit.Find("sigma")->status, ParameterStatus::kAtLowerBound);
 }
 
 TEST(ImposedForceFit, DriftOfTheDisplacementIsATermAndElseACause) {
@@ -189,36 +155,6 @@ TEST(ImposedForceFit, DriftOfTheDisplacementIsATermAndElseACause) {
   EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
-TEST(ImposedForceFit, LateForceIsNamedAsACause) {
-  Record loop = ForcedLoop(LawOf(0.4));
-  constexpr std::size_t kLate = 2;
-  for (std::size_t i = loop.size() - 1; i >= kLate; --i) loop.force[i] = loop.force[i - kLate];
-  Generator generator(4);
-  const FitResult fit =
-      FitOne(WithDisplacementNoise(From(loop, kLate), 0.002, generator), OfDisplacement());
-  EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  const auto& causes = fit.adequacy.causes;
-  EXPECT_TRUE(std::ranges::any_of(causes, [](const Cause& cause) {
-    return cause.code == "channel_lag" && cause.size > 0 && cause.option.empty();
-  }));
-}
-
-TEST(ImposedForceFit, GapIsACauseOfItsWidth) {
-  // From the first turn on half of the gap is passed in either direction.
-  Record loop = ForcedLoop(LawOf(0.4));
-  const double gap = 0.03 * AmplitudeOf(loop);
-  for (std::size_t i = kSamplesPerCycle / 4 + 1; i < loop.size(); ++i) {
-    loop.displacement[i] += (loop.force[i] > loop.force[i - 1] ? 0.5 : -0.5) * gap;
-  }
-  Generator generator(5);
-  const FitResult fit = FitOne(WithDisplacementNoise(loop, 0.002, generator), OfDisplacement());
-  const auto& causes = fit.adequacy.causes;
-  const auto backlash = std::ranges::find(causes, "backlash", &Cause::code);
-  ASSERT_NE(backlash, causes.end());
-  // The estimate is of first order in the gap, which is 3 % of the travel.
-  EXPECT_NEAR(backlash->size / gap, 1.0, 0.1);
-}
-
 TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   Generator generator(8);
   const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3)), 0.003, generator);
@@ -226,35 +162,6 @@ TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   ASSERT_TRUE(fit.law_choice.has_value());
   EXPECT_TRUE(fit.law_choice->decided);
   EXPECT_EQ(fit.law_choice->preferred, fit.model);
-}
-
-TEST(ImposedForceFit, IsSuggestedWhereTheDisplacementIsTheNoisierChannel) {
-  Generator generator(11);
-  const Record clean = ForcedLoop(LawOf(1.0 / 3), 0.9);
-  const Record noisy = WithDisplacementNoise(clean, 0.01, generator);
-  const Finding* finding = nullptr;
-  const FitResult of_force = FitOne(noisy);
-  finding = of_force.FindFinding("noise_in_displacement");
-  ASSERT_NE(finding, nullptr);
-  EXPECT_EQ(finding->severity, Severity::kNote);
-  // Third differences tell the deviation of 360 samples to some 8 %; five of those.
-  EXPECT_NEAR(*finding->Number("of_displacement") / 0.01, 1, 0.4);
-  EXPECT_EQ(FitOne(noisy, OfDisplacement()).FindFinding("noise_in_displacement"), nullptr);
-  EXPECT_EQ(FitOne(clean).FindFinding("noise_in_displacement"), nullptr);
-}
-
-TEST(ImposedForceFit, IsNotSuggestedOfADrivenLoopWhoseForceIsAsNoisyOrThatSlips) {
-  Generator generator(12);
-  const Record loop = testing::Loop();
-  const Record of_force = testing::WithForceNoise(loop, 0.3, generator);
-  EXPECT_EQ(FitOne(of_force).FindFinding("noise_in_displacement"), nullptr);
-  // 1.25 of gross slip: no displacement belongs to a force at slip.
-  const Record slips = WithDisplacementNoise(loop, 0.01, generator);
-  EXPECT_EQ(FitOne(slips).FindFinding("noise_in_displacement"), nullptr);
-  const Record both =
-      testing::WithForceNoise(WithDisplacementNoise(ForcedLoop(LawOf(0.4), 0.9), 0.01, generator),
-                              0.01 * kSlipForce, generator);
-  EXPECT_EQ(FitOne(both).FindFinding("noise_in_displacement"), nullptr);
 }
 
 TEST(ImposedForceFit, RefusesOptionsOfForceFits) {

@@ -116,39 +116,5 @@ TEST(JointFriction, ReadsTheTorqueWithTheForceWhereTheMotionIsEarlier) {
   EXPECT_NEAR(fit.Find("asymmetry")->value, drive.asymmetry, testing::kNoiseFree);
 }
 
-TEST(JointFriction, HasTheGradientOfItsResiduals) {
-  for (const bool is_late : {false, true}) {
-    const Record record = RecordOf({.law = {3e5, 0.8, 12.0}, .knees = 0.7});
-    FitOptions options = Options({"asymmetry", "slip_slope", "plateau_slope"});
-    if (is_late) options.terms = {"asymmetry", "lag"};
-    options.initial_state = InitialState::kVirgin;
-    const RecordView view(record);
-    const FitResult fit = Fit({&record, 1}, options);
-    CeresProblem problem({&view, 1}, options, fit, 12.0);
-    for (CeresParameter& parameter : problem.parameters()) {
-      if (!parameter.fixed) parameter.theta += 0.003;
-    }
-    const auto cost = problem.MakeCostFunction(0);
-    std::vector<const double*> blocks;
-    for (const std::size_t place : problem.BlocksOf(0)) {
-      blocks.push_back(&problem.parameters()[place].theta);
-    }
-    const std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
-    ceres::NumericDiffOptions differences;
-    differences.ridders_relative_initial_step_size = 1e-5;
-    const ceres::GradientChecker checker(cost.get(), &manifolds, differences);
-    ceres::GradientChecker::ProbeResults results;
-    checker.Probe(blocks.data(), 1.0, &results);
-    // As of every law and term: nine digits of the differences, two where samples pass a reading.
-    const double tolerance = is_late ? 2e-2 : 1e-6;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      const double norm = results.jacobians[b].norm();
-      EXPECT_LE((results.jacobians[b] - results.numeric_jacobians[b]).norm(),
-                tolerance * std::max(norm, 1e-3))
-          << problem.parameters()[problem.BlocksOf(0)[b]].name << ' ' << is_late;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::identification::joint_friction_test

@@ -176,34 +176,6 @@ TEST(Lag, ThatIsKnownIsTakenOff) {
   EXPECT_EQ(fit.records[0].left_out, 3U);
 }
 
-TEST(Lag, IsRecoveredWhereSamplesAreUnevenAndStampsRepeat) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  std::vector<double> time = TimesOf(2.25);
-  Generator generator(9);
-  for (std::size_t i = 1; i + 1 < time.size(); ++i) {
-    time[i] += testing::Uniform(generator, -0.4, 0.4) * kStep;
-  }
-  EXPECT_TRUE(Recovers(FitOne(LateRecord(law, time, 1.3 * kStep), WithLag()), law, kWithLag));
-
-  // A clock that ticks every fourth sample only, and each sample at its even share of a tick.
-  Record record = LateRecord(law, TimesOf(2.25), 1.3 * kStep);
-  for (std::size_t i = 0; i < record.size(); ++i) record.time[i] = record.time[i - i % 4];
-  EXPECT_TRUE(Recovers(FitOne(record, WithLag()), law, kWithLag));
-
-  // A clock that jumps back is one that stands still.
-  record.time[101] = record.time[3];
-  EXPECT_TRUE(Recovers(FitOne(record, WithLag()), law, kWithLag));
-}
-
-TEST(Lag, IsOneOfAllRecordsHoweverDenselyTheyAreRead) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  const std::vector<Record> records = {LateRecord(law, TimesOf(2.25), 2.2 * kStep),
-                                       LateRecord(law, TimesOf(1.75, 0.4 * kStep), 2.2 * kStep)};
-  const FitResult fit = Fit(records, WithLag());
-  EXPECT_TRUE(Recovers(fit, law, kWithLag));
-  EXPECT_NEAR(fit.Find("lag")->value, 2.2 * kStep, kWithLag * kSamplesPerCycle * kStep);
-}
-
 TEST(Lag, OfOneToThreeSamplesOf200IsTheFirstCauseOfADoubt) {
   Generator generator(17);
   for (const double shape_exponent : {1.0 / 3, 0.7}) {
@@ -250,45 +222,6 @@ TEST(Lag, IsRefusedWhereItCannotBeCounted) {
   FitOptions longer;
   longer.fixed["lag"] = 10.0;
   EXPECT_THAT(RefusalOf({timed}, longer), HasSubstr("nothing is left of record 1"));
-}
-
-TEST(Lag, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
-  const BranchLaw law = LawOf(0.7);
-  for (const bool has_rig : {false, true}) {
-    FitOptions options = WithLag();
-    if (has_rig) options.terms.emplace_back("rig_stiffness");
-    Stages stages(LateRecord(law, TimesOf(2.25), 1.4 * kStep), options);
-    const Parameters& parameters = stages.problem.parameters;
-    std::vector<double> theta;
-    for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
-    theta[kStiffness] = parameters[kStiffness].ToTheta(law.tangential_stiffness);
-    theta[kShape] = law.shape_exponent;
-    theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
-    if (has_rig) theta[kRig] = theta[kStiffness] + 1;
-    theta[parameters.PositionOf("displacement_offset", 0)] = 0.03;
-    const std::size_t lag = parameters.PositionOf("lag", 0);
-    // Between samples, so that no step of the differences carries one over another.
-    theta[lag] = parameters[lag].ToTheta(1.4 * kStep);
-    const auto& free = parameters.free();
-    Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),
-                             static_cast<Eigen::Index>(free.size()));
-    std::vector<double> residual(stages.problem.size());
-    Response response;
-    response.Bind(stages.problem);
-    Differentiate(stages.problem, theta, response, free, residual,
-                  {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-    // Central differences err by the square of the step times the third derivative: by θ of the
-    // lag, in cycles, the force's rate is some 20 times that by others. Next to slip, the second
-    // derivative of u^{1/(1−α)} is bounded for α = 0.7.
-    constexpr double kDifferenceStep = 1e-6;
-    constexpr double kDifferences = 1e-5;
-    const Eigen::MatrixXd differences = stages.DifferencesAt(theta, kDifferenceStep);
-    for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
-      EXPECT_LT((jacobian.col(j) - differences.col(j)).lpNorm<Eigen::Infinity>(),
-                kDifferences * std::max(1.0, jacobian.col(j).lpNorm<Eigen::Infinity>()))
-          << parameters.NameOf(free[static_cast<std::size_t>(j)]) << has_rig;
-    }
-  }
 }
 
 }  // namespace

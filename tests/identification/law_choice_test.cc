@@ -127,45 +127,11 @@ TEST(LawChoice, IsMadeByASecondAmplitude) {
   }
 }
 
-TEST(LawChoice, IsNotMadeByASecondAmplitudeOfGrossSlip) {
-  // Slipping branches all start from Tc: the laws are one curve again.
-  FitOptions options;
-  options.initial_state = InitialState::kSteady;
-  const FitResult fit =
-      FitOne(Noisy(TwoAmplitudes("mindlin-dahl", 3 * kGrossSlip, 2 * kGrossSlip)), options);
-  ASSERT_TRUE(fit.law_choice);
-  EXPECT_FALSE(fit.law_choice->decided);
-  ASSERT_TRUE(fit.law_choice->delta_aicc);
-  EXPECT_LT(std::abs(*fit.law_choice->delta_aicc), 1.0);
-  EXPECT_NE(fit.FindFinding("law_undecided"), nullptr);
-  // 2^{−1/3} of the stiffness.
-  EXPECT_NEAR(fit.law_choice->law.tangential_stiffness / fit.law.tangential_stiffness,
-              std::cbrt(0.5), 0.02);
-}
-
 TEST(LawChoice, IsNotMadeWhereNoiseHidesTheDifference) {
   Generator generator(11);
   const FitResult fit = FitOne(WithForceNoise(Virgin("mindlin-dahl"), 200 * kNoise, generator));
   ASSERT_TRUE(fit.law_choice);
   EXPECT_FALSE(fit.law_choice->decided);
-}
-
-TEST(LawChoice, TakesTheRigOutOfTheAmplitude) {
-  const double stiffness = 8e7;
-  const double amplitude = 1.2 * kGrossSlip;
-  const History displacement = Cycling(Wave::kSine, amplitude, 2.5, kPerCycle);
-  std::vector<double> force(displacement.size());
-  EvaluateForce(Model("mindlin-dahl"), kMindlin,
-                testing::PathOf(Model("mindlin-dahl"), displacement), displacement, force,
-                {stiffness});
-  FitOptions options;
-  options.fixed = {{"rig_stiffness", stiffness}};
-  const FitResult fit = FitOne(From(MakeRecord(displacement, force), kPerCycle / 4), options);
-  ASSERT_TRUE(fit.law_choice);
-  EXPECT_FALSE(fit.law_choice->decided);
-  const double contact = ContactAmplitude(Model("mindlin-dahl"), kMindlin, {stiffness}, amplitude);
-  ASSERT_LT(contact, 0.8 * amplitude) << "the case needs it";
-  ExpectLaw(fit.law_choice->law, DahlEquivalent(kMindlin, contact), 1e-6);
 }
 
 TEST(LawChoice, KeepsAlphaWhereItIsHeld) {
@@ -187,33 +153,6 @@ TEST(LawChoice, IsNoneWhereTheLawsAreOneOrAParameterIsHeld) {
   EXPECT_FALSE(FitOne(Noisy(Steady()), held).law_choice);
   const Record record = Noisy(Steady());
   EXPECT_FALSE(Fit({&record, 1}, {}, Depth::kIntervals).law_choice) << "not asked for";
-}
-
-TEST(LawChoice, IsAmongLoopsOfOneAmplitudeWhereNoSwingIsShorter) {
-  const auto has_one = [](const Record& record) {
-    const testing::Stages stages(record, {}, InitialState::kSteady);
-    return HasOneAmplitude(stages.problem, {});
-  };
-  EXPECT_TRUE(has_one(Steady()));
-  EXPECT_TRUE(has_one(Virgin("mindlin-dahl"))) << "its ends are parts of the same loop";
-  EXPECT_FALSE(has_one(TwoAmplitudes("mindlin-dahl", 1.2 * kGrossSlip, 1e-6)));
-  // Swings at the ends, which need not be whole, are no wider either.
-  History late = Steady().displacement;
-  late.push_back(-0.8 * kGrossSlip);
-  late.push_back(2.4 * kGrossSlip);
-  History early(late.rbegin(), late.rend());
-  for (const History& ends_wide : {late, early}) {
-    EXPECT_FALSE(
-        has_one(MakeRecord(ends_wide, Respond(Model("mindlin-dahl"), kMindlin, ends_wide))));
-  }
-  Record inner = Steady();
-  History displacement = inner.displacement;
-  for (const double share : {0.3, 0.1, -0.1, 0.1, 0.5, 0.9, 1.0, 0.5}) {
-    displacement.push_back(share * 0.8 * kGrossSlip);
-  }
-  EXPECT_FALSE(
-      has_one(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement,
-                                               {.state = InitialState::kSteady}))));
 }
 
 }  // namespace

@@ -85,13 +85,6 @@ TEST(LoadSeriesFit, SeparatesRigFromContact) {
   EXPECT_NEAR(fit.rig.stiffness / kRigStiffness, 1, kTolerance);
 }
 
-TEST(LoadSeriesFit, EachFileAloneIsWithoutThePriorsOfTheSeries) {
-  FitOptions options = UnderLoads();
-  options.priors["alpha"] = {1.0 / 3, 0.01};
-  const FitResult fit = Fit(Series(1.0 / 3), options);
-  for (const RecordFit& record : fit.records) EXPECT_TRUE(record.alone);
-}
-
 TEST(LoadSeriesFit, CoversTheTruthUnderNoise) {
   // 5 standard errors: for normal errors once in 10⁶.
   constexpr double kErrors = 5.0;
@@ -144,47 +137,6 @@ TEST(LoadSeriesFit, HoldsAnExponentThatIsGiven) {
   EXPECT_EQ(fit.Find("load_exponent")->status, ParameterStatus::kFixed);
 }
 
-TEST(LoadSeriesFit, SearchesTheExponentWhereStiffnessIsHeld) {
-  FitOptions options = UnderLoads();
-  options.fixed["sigma"] = kAtMean.tangential_stiffness;
-  const FitResult fit = Fit(Series(0.5), options);
-  EXPECT_TRUE(testing::Recovers(fit, kAtMean, testing::kNoiseFree));
-  EXPECT_NEAR(fit.load_exponent, 0.5, testing::kNoiseFree);
-}
-
-TEST(LoadSeriesFit, HasTheDerivativesOfItsDifferences) {
-  // (step)² = 1e-10 of third derivatives of order 10, on a Jacobian of order 1; rounding 1e-11.
-  constexpr double kTolerance = 1e-7;
-  FitOptions options = UnderLoads();
-  options.terms = {"rig_stiffness"};
-  testing::Stages stages(SeriesInRig(1.0 / 3, 6e7), options);
-  FitResult fit = Fit(stages.records, options);
-  std::vector<double> theta = stages.ThetaOf(fit);
-  // Away from the solution, where a wrong derivative is no accident's.
-  theta[kStiffness] += 0.05;
-  theta[kLoadExponent] += 0.1;
-  theta[kShape] = 0.6;  // smooth at slip
-  for (std::size_t r = 0; r < kLoads.size(); ++r) {
-    // On a sample the virgin curve's curvature jumps.
-    theta[stages.problem.parameters.PositionOf("displacement_offset", r)] += 0.007;
-  }
-  const auto& free = stages.problem.parameters.free();
-  const std::vector<std::size_t> columns(free.begin(), free.end());
-  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),
-                           static_cast<Eigen::Index>(columns.size()));
-  std::vector<double> residual(stages.problem.size());
-  Response response;
-  response.Bind(stages.problem);
-  Differentiate(stages.problem, theta, response, columns, residual,
-                {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-  const Eigen::MatrixXd expected = stages.DifferencesAt(theta);
-  for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
-    EXPECT_LT((jacobian.col(c) - expected.col(c)).norm(),
-              kTolerance * std::max(expected.col(c).norm(), 1.0))
-        << stages.problem.parameters.NameOf(columns[static_cast<std::size_t>(c)]);
-  }
-}
-
 TEST(LoadSeriesFit, IsNoneOfRecordsUnderOneLoad) {
   const std::vector<Record> records = Series(1.0 / 3);
   const std::vector<Record> same = {records[1], records[1]};
@@ -220,16 +172,6 @@ TEST(LoadSeriesFit, RefusesWhatHasNoMeaning) {
   options = {};
   options.fixed["load_exponent"] = 0.5;
   EXPECT_NE(MessageOfFit(records, options).find("load_exponent has no effect"), std::string::npos);
-}
-
-TEST(LoadSeriesFit, NamesTheRecordThatComesNearestToSlip) {
-  // All are driven as far: under the least load that is farthest beyond slip, as p < 1.
-  const FitResult fit = Fit(Series(1.0 / 3), UnderLoads());
-  EXPECT_EQ(&fit.WidestRecord(), &fit.records.front());
-  const BranchLaw law = fit.LawOf(fit.records.front());
-  EXPECT_NEAR(law.slip_force / LawUnder(25, 1.0 / 3).slip_force, 1, testing::kNoiseFree);
-  EXPECT_NEAR(law.tangential_stiffness / LawUnder(25, 1.0 / 3).tangential_stiffness, 1,
-              testing::kNoiseFree);
 }
 
 }  // namespace

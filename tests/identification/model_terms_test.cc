@@ -94,29 +94,6 @@ TEST(ModelTerms, StatedRigIsBetweenOneThatIsHeldAndOneThatIsFitted) {
               kHardlyStated);
 }
 
-TEST(ModelTerms, StiffnessOfContactAndRigTogetherIsKnownBetterThanEither) {
-  // 1/σ_app = 1/σ + 1/k_r is the slope after each reversal.
-  constexpr double kTogether = 1 / (1 / kMindlin.tangential_stiffness + 1 / kRig);
-  FitOptions options;
-  options.terms.emplace_back("rig_stiffness");
-  options.fixed["alpha"] = 1.0 / 3;
-  Generator generator(21);
-  constexpr int kLoops = 20;
-  double together = 0.0;
-  double rig = 0.0;
-  for (int loop = 0; loop < kLoops; ++loop) {
-    const FitResult fit =
-        FitOne(WithForceNoise(SprungLoop(kMindlin, kRig), 0.003 * kMindlin.slip_force, generator),
-               options);
-    ASSERT_TRUE(fit.converged);
-    const double apparent = 1 / (1 / fit.law.tangential_stiffness + 1 / fit.rig.stiffness);
-    together += std::pow(apparent / kTogether - 1, 2) / kLoops;
-    rig += std::pow(std::log(fit.rig.stiffness / kRig), 2) / kLoops;
-  }
-  EXPECT_LT(std::sqrt(together), 0.02);
-  EXPECT_GT(std::sqrt(rig), 2 * std::sqrt(together));
-}
-
 TEST(ModelTerms, JenkinsElementInARigIsAJenkinsElementOfBothInSeries) {
   constexpr BranchLaw kJenkins{4e7, 0.0, 40.0};
   constexpr BranchLaw kTogether{1 / (1 / 4e7 + 1 / kRig), 0.0, 40.0};
@@ -193,63 +170,6 @@ TEST(ModelTerms, ViscousForceIsRecovered) {
   EXPECT_EQ(RefusalOf(record, options), "viscous needs the time of every sample in every record");
 }
 
-TEST(ModelTerms, SamplesOutsideTheLoadWindowStillMakeHistory) {
-  // A wide swing under another load, whose force was spoilt, and then inner loops that start from
-  // where it ended.
-  History displacement = Cycling(Wave::kSine, kReach, 1.25, 120);
-  const std::size_t wide = displacement.size();
-  for (int i = 1; i <= 240; ++i) {
-    displacement.push_back(kReach * (0.4 + 0.6 * std::cos(2 * std::acos(-1.0) * i / 120)));
-  }
-  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const bool is_wide = i < wide;
-    record.normal_load.push_back(is_wide ? 80.0 : 100.0);
-    if (is_wide) record.force[i] *= 0.8;
-  }
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.fixed["displacement_offset"] = 0.0;  // the samples that showed it are left out
-  options.preparation.load_window = {99.0, 101.0};
-  const FitResult fit = FitOne(record, options);
-  EXPECT_EQ(fit.records[0].left_out, wide);
-  EXPECT_EQ(fit.residuals.samples, record.size() - wide);
-  EXPECT_TRUE(Recovers(fit, kLaw, 1e-6));  // the inner loops do not slip: a worse condition
-  options.preparation.load_window.reset();
-  EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
-}
-
-TEST(ModelTerms, SamplesHeldOutAtTheEndsOfTheLoadWindowTellTheLoad) {
-  Record record = Loop();
-  FitOptions options;
-  options.preparation.load_window = {99.9, 100.0};
-  std::vector<bool>& held_out = options.preparation.held_out.emplace_back();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    held_out.push_back(i >= record.size() / 2);
-    record.normal_load.push_back(!held_out[i] ? 99.95 : i % 3 == 0 ? 99.9 : 100.0);
-    sum += record.normal_load[i];
-  }
-  const FitResult fit = FitOne(record, options);
-  ASSERT_TRUE(fit.normal_load);
-  EXPECT_NEAR(*fit.normal_load, sum / static_cast<double>(record.size()), 1e-10);
-}
-
-TEST(ModelTerms, CyclesThatAreSkippedMayBeCorrupted) {
-  Record record = Loop(3.0);
-  const std::size_t first_cycle = 90;  // to its second reversal, 120 samples a cycle
-  for (std::size_t i = 0; i < first_cycle; ++i)
-    record.force[i] = 50 * std::cos(0.9 * static_cast<double>(i));
-  FitOptions options;
-  options.preparation.skip_cycles = 1;
-  options.preparation.force_sense = 1;
-  const FitResult fit = FitOne(record, options);
-  EXPECT_EQ(fit.records[0].left_out, first_cycle);
-  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-  options.preparation.skip_cycles = 0;
-  EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
-}
-
 TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   FitOptions options;
   options.preparation.displacement_noise = -1e-9;
@@ -290,33 +210,6 @@ TEST(ModelTerms, LoopsFarFromSlipNeverHaveAnIdentifiableSlipForce) {
     EXPECT_NE(slip_force.identifiability, Identifiability::kIdentifiable)
         << "seed " << seed << ", lambda " << lambda << ", cycles " << cycles << ", steady "
         << steady << ": " << slip_force.value << " of " << kMindlin.slip_force;
-  }
-}
-
-TEST(ModelTerms, StartsBeyondTheGridAreDrawnAndReachTheSameResult) {
-  FitOptions options;
-  options.starts = 8;
-  options.seed = 42;
-  const FitResult fit = FitOne(Loop(), options);
-  ASSERT_EQ(fit.starts.size(), 8U);
-  for (std::size_t i = 0; i < fit.starts.size(); ++i) {
-    EXPECT_EQ(fit.starts[i].drawn, i >= 4) << "the grid has four";
-  }
-  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-  // The seed and nothing else decides on them.
-  const FitResult again = FitOne(Loop(), options);
-  options.seed = 43;
-  const FitResult other = FitOne(Loop(), options);
-  for (std::size_t i = 0; i < fit.starts.size(); ++i) {
-    const BranchLaw& start = fit.starts[i].start;
-    EXPECT_EQ(start.slip_force, again.starts[i].start.slip_force);
-    EXPECT_EQ(start.slip_force == other.starts[i].start.slip_force, !fit.starts[i].drawn) << i;
-    EXPECT_LE(start.shape_exponent, 3.0);
-  }
-  EXPECT_TRUE(Recovers(other, kLaw, kNoiseFree));
-  options.fixed["alpha"] = kLaw.shape_exponent;
-  for (const StartReport& start : FitOne(Loop(), options).starts) {
-    EXPECT_EQ(start.start.shape_exponent, kLaw.shape_exponent);
   }
 }
 

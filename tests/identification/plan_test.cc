@@ -159,31 +159,6 @@ TEST(Plan, ExpectedErrorsOfALoadSeriesAreTheScatterOfItsFits) {
   EXPECT_NEAR(fit.Find("load_exponent")->value, 0.5, 1e-12);
 }
 
-TEST(Plan, LoadSeriesSeparatesRigFromContact) {
-  Expectation expected = Quiet();
-  expected.rig.stiffness = 8e7;
-  FitOptions with_rig;
-  with_rig.terms = {"rig_stiffness"};
-  Protocol once = Loop(2.0, InitialState::kSteady);
-  once.cycles *= 3;  // as many samples as the series has
-  Protocol series = Loop(2.0, InitialState::kSteady);
-  series.loads = {0.5, 1.0, 2.0};
-  EXPECT_LT(2 * ErrorOf(ExpectFit(expected, series, with_rig), "rig_stiffness"),
-            ErrorOf(ExpectFit(expected, once, with_rig), "rig_stiffness"));
-}
-
-TEST(Plan, OneLoadOfItsOwnIsNoSeries) {
-  Protocol one = Loop(1.2);
-  one.loads = {1.0};
-  const ExpectedFit with = ExpectFit(Quiet(), one);
-  const ExpectedFit without = ExpectFit(Quiet(), Loop(1.2));
-  EXPECT_EQ(with.Find("load_exponent"), nullptr);
-  EXPECT_EQ(ErrorOf(with, "sigma"), ErrorOf(without, "sigma"));
-  // At twice the load it is the contact with twice the slip force.
-  one.loads = {2.0};
-  EXPECT_NEAR(ExpectFit(Quiet(), one).Find("slip_force")->value, 2 * kLaw.slip_force, 1e-12);
-}
-
 TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
   constexpr double kRounding = 1e-9;
   const ExpectedFit once = ExpectFit(Quiet(), Loop(1.2, InitialState::kSteady));
@@ -225,41 +200,6 @@ TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
   EXPECT_NEAR(ExpectFit(noisy, Loop(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
 }
 
-TEST(Plan, CorrelatedNoiseDistinguishesTheLawsByFewerSamples) {
-  // Noise correlated by 0.5 has, over all lags, Σρ² = (1 + 0.5²)/(1 − 0.5²) = 5/3.
-  Expectation correlated = Quiet();
-  correlated.autocorrelation = 0.5;
-  constexpr double kLeftOut = 1e-8;  // of lags beyond which a correlation is below 1e-9
-  EXPECT_NEAR(
-      ExpectFit(correlated, Loop(0.8)).law_evidence / ExpectFit(Quiet(), Loop(0.8)).law_evidence,
-      0.6, kLeftOut);
-}
-
-TEST(Plan, NoiseOfTheDisplacementActsByTheSlopeOfTheLoop) {
-  // Σ(dT/dδ)² over the samples of the virgin loop, by the public interface.
-  const Protocol protocol = Loop(0.8);
-  const std::vector<double> x =
-      models::MakeExcitation({.amplitude = protocol.amplitude, .cycles = protocol.cycles})
-          .displacement;
-  std::vector<double> force(x.size());
-  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
-  models::EvaluateForce(model, kLaw,
-                        models::MakeLoadingPath(x, loop::FindReversals(x, 0.0), model.memory,
-                                                {.state = InitialState::kVirgin}),
-                        x, force);
-  double slopes = 0.0;
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    slopes += std::pow((force[i] - force[i - 1]) / (x[i] - x[i - 1]), 2);
-  }
-  Expectation noisy = Quiet();
-  noisy.displacement_noise = 1e-8;
-  const double acts = slopes / static_cast<double>(x.size()) * 1e-16;
-  constexpr double kSampling = 1e-3;  // both sums are of the same samples but for rounding
-  EXPECT_NEAR(ExpectFit(noisy, protocol).law_evidence / ExpectFit(Quiet(), protocol).law_evidence /
-                  (kForceNoise * kForceNoise / (kForceNoise * kForceNoise + acts)),
-              1.0, kSampling);
-}
-
 TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};
@@ -271,16 +211,6 @@ TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   Protocol smaller = reached->protocol;
   smaller.amplitude /= 1.02;  // the amplitude is found to 1 %
   EXPECT_GT(CyclesFactor(ExpectFit(Quiet(), smaller), wanted), 1.0);
-}
-
-TEST(Plan, WhatNoAmplitudeReachesIsReachedWithTheCyclesThatItNames) {
-  const WantedPrecision wanted = {{"alpha", {.value = 1e-3}}};
-  Protocol fewest;
-  EXPECT_FALSE(LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip, {}, &fewest));
-  EXPECT_GT(fewest.cycles, Protocol().cycles);
-  // Offsets and the virgin branch are there once, however many cycles: 1 % on the cycles.
-  constexpr double kOnce = 1.01;
-  EXPECT_LE(CyclesFactor(ExpectFit(Quiet(), fewest), wanted), kOnce);
 }
 
 TEST(Plan, RefusesWhatMeansNothing) {

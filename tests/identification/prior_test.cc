@@ -102,47 +102,6 @@ TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
   }
 }
 
-/// The offset of another record, and of a robust loss whose weights are all nearly one.
-TEST(Prior, OfOneRecordsOffsetAndWithARobustLossIsTheSame) {
-  constexpr double kOfWeights = 0.1;  // Huber's weights of a normal law are 5 % below one
-  const std::vector<Record> records = {TimedLoop(), TimedLoop(1.2)};
-  FitOptions options = Options();
-  options.loss = Loss::kHuber;
-  const FitResult without = Fit(records, options);
-  const ParameterEstimate& alone = *without.Find("force_offset_2");
-  const Prior prior{alone.value + 2 * *alone.standard_error, *alone.standard_error};
-  options.priors["force_offset_2"] = prior;
-  const FitResult fit = Fit(records, options);
-  const Combined expected = Combine(alone.value, *alone.standard_error, prior);
-  EXPECT_NEAR(fit.Find("force_offset_2")->value, expected.value,
-              kOfWeights * *alone.standard_error);
-  EXPECT_FALSE(fit.Find("force_offset_1")->prior);
-}
-
-TEST(Prior, OfAnImposedForceIsOfTheDisplacementsNoise) {
-  constexpr double kThirdOrder = 0.03;
-  Record record = TimedLoop(0.6, 0.0);
-  Generator generator(11);
-  const double noise = 1e-3 * testing::kReach;
-  for (double& value : record.displacement) value += noise * testing::Normal(generator);
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.preparation.force_sense = 1;
-  options.preparation.excitation = Channel::kForce;
-  options.preparation.displacement_noise = noise;
-  const FitResult without = FitOne(record, options);
-  for (const char* name : {"sigma", "slip_force"}) {
-    const ParameterEstimate& alone = *without.Find(name);
-    ASSERT_TRUE(alone.standard_error) << name;
-    FitOptions with = options;
-    with.priors[name] = {alone.value, *alone.standard_error};
-    const FitResult fit = FitOne(record, with);
-    EXPECT_NEAR(*fit.Find(name)->standard_error, *alone.standard_error / std::sqrt(2.0),
-                kThirdOrder * *alone.standard_error)
-        << name;
-  }
-}
-
 TEST(Prior, FarFromWhatTheRecordSaysIsReported) {
   const Record record = TimedLoop();
   FitOptions options = Options();
@@ -203,20 +162,6 @@ TEST(ConfidenceRegion, HasTheCriticalLikelihoodAllAroundIt) {
       EXPECT_NEAR(ratio / kCritical, 1.0, kOfRoot) << region.parameters[0] << ' ' << k;
     }
   }
-}
-
-TEST(ConfidenceRegion, IsOpenFarFromSlipAndAbsentOfAHeldExponent) {
-  const Record record = TimedLoop(0.15, 0.01);
-  FitOptions options = Options();
-  options.force_noise = 0.01 * kLaw.slip_force;
-  options.regions = true;
-  const FitResult far = FitOne(record, options);
-  ASSERT_TRUE(far.regions);
-  for (const ConfidenceRegion& region : *far.regions) EXPECT_FALSE(region.closed);
-  options.fixed["alpha"] = kLaw.shape_exponent;
-  const FitResult held = FitOne(record, options);
-  ASSERT_TRUE(held.regions);
-  EXPECT_TRUE(held.regions->empty());
 }
 
 TEST(ConfidenceRegion, ContainsWhatIsWithinItsBoundaryOnly) {

@@ -138,25 +138,5 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   }
 }
 
-TEST(Profile, OfAlphaStaysInItsIntervalIfFewSamplesIdentifyIt) {
-  // Twenty samples a cycle at twenty times gross slip: one a stroke lies on the bend of its branch,
-  // and any α below 0.8 goes through it with a σ of its own.
-  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    Generator generator(seed);
-    const auto displacement = Cycling(Wave::kSine, 20 * kGrossSlip, 3.0, 20);
-    const Record record = WithForceNoise(
-        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement)),
-        0.0025 * kMindlin.slip_force, generator);
-    const FitResult fit = FitOne(record);
-    for (const auto& [name, truth] : {std::pair("sigma", kMindlin.tangential_stiffness),
-                                      {"alpha", kMindlin.shape_exponent},
-                                      {"slip_force", kMindlin.slip_force}}) {
-      const ParameterEstimate& estimate = *fit.Find(name);
-      EXPECT_TRUE(!estimate.lower95 || *estimate.lower95 <= truth) << name << ", seed " << seed;
-      EXPECT_TRUE(!estimate.upper95 || truth <= *estimate.upper95) << name << ", seed " << seed;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::identification::profile_test

@@ -36,42 +36,6 @@ loop::Record WithoutFirstCycle(loop::Record record) {
   return record;
 }
 
-TEST(ChanceOfOneNoise, IsBartlettsOfRecordsOfUnequalLength) {
-  // Of 241 and 361 samples; each has an offset of force and of displacement of its own, and its
-  // part of σ, α and Tc.
-  Generator generator(3);
-  std::vector<loop::Record> records = {Loop(2.0), Loop(3.0)};
-  Stages stages(std::move(records), Virgin());
-  std::vector<double> residual;
-  std::vector<double> squares(2, 0.0);
-  std::vector<double> degrees;
-  std::vector<double> variances;
-  const double samples = static_cast<double>(stages.problem.size());
-  for (const std::size_t r : {0U, 1U}) {
-    const std::size_t size = stages.data.records[r].size();
-    for (std::size_t i = 0; i < size; ++i) {
-      residual.push_back((r == 0 ? 0.01 : 0.0115) * Normal(generator));
-      squares[r] += residual.back() * residual.back();
-    }
-    const double taken = 2 + 3 * static_cast<double>(size) / samples;
-    EXPECT_NEAR(ParametersOfRecord(stages.problem, r), taken, 1e-12);
-    degrees.push_back(static_cast<double>(size) - taken);
-    variances.push_back(squares[r] / degrees.back());
-  }
-  const double all = degrees[0] + degrees[1];
-  const double pooled = (degrees[0] * variances[0] + degrees[1] * variances[1]) / all;
-  const double statistic =
-      degrees[0] * std::log(pooled / variances[0]) + degrees[1] * std::log(pooled / variances[1]);
-  const double correction = 1 + (1 / degrees[0] + 1 / degrees[1] - 1 / all) / 3;
-  const boost::math::chi_squared one_degree(1.0);
-  const double expected =
-      boost::math::cdf(boost::math::complement(one_degree, statistic / correction));
-  EXPECT_GT(expected, 1e-6);
-  EXPECT_LT(expected, 0.5) << "it says something";
-  // The residuals are white to Schwarz's criterion, so that all samples are effective.
-  EXPECT_NEAR(ChanceOfOneNoise(stages.problem, residual), expected, 1e-9);
-}
-
 TEST(ChanceOfOneNoise, IsOneOfOneRecordAndOfRoundingErrors) {
   Stages one(Loop(), Virgin());
   const std::vector<double> residual(one.problem.size(), 0.01);
@@ -140,20 +104,6 @@ TEST(JointFit, FindsThatTheFirstRecordIsVirginAndTheOthersAreSteady) {
     const ParameterEstimate& estimate = *fit.Find(name);
     EXPECT_NEAR(estimate.value, truth, 4 * *estimate.standard_error) << name;
   }
-}
-
-TEST(JointFit, TakesTheStateOfEachRecordThatIsGiven) {
-  const std::vector<loop::Record> records = {Loop(), WithoutFirstCycle(Loop(3.0))};
-  FitOptions options;
-  options.initial_states = {InitialState::kVirgin, InitialState::kSteady};
-  const FitResult fit = Fit(records, options);
-  constexpr double kRounding = 1e-10;
-  EXPECT_NEAR(fit.law.shape_exponent, kLaw.shape_exponent, kRounding);
-  EXPECT_LT(fit.rms, kRounding * kLaw.slip_force);
-  options.initial_states = {InitialState::kSteady, InitialState::kSteady};
-  EXPECT_GT(Fit(records, options).rms, 1e-3 * kLaw.slip_force) << "the first has a virgin branch";
-  options.initial_states.pop_back();
-  EXPECT_THROW(Fit(records, options), InvalidArgument);
 }
 
 }  // namespace

@@ -127,22 +127,5 @@ TEST(ResidualStructure, StandardErrorOfABinIsThatOfItsMean) {
   EXPECT_NEAR(std::sqrt(squares * 505), 1.0, 0.08);
 }
 
-TEST(ResidualStructure, SingleStrokeOrNoneGivesNoResult) {
-  const auto residual = [](const History& displacement) {
-    return ResidualsOf(displacement, [](double x, int) { return x * x + 0.1; });
-  };
-  History ramp;
-  for (int i = 0; i <= 100; ++i) ramp.push_back(i);
-  const ResidualStructure single = StructureOf(ramp, residual(ramp));
-  EXPECT_EQ(single.repeatable_share, 0.0);
-  EXPECT_EQ(single.strokes, 1U);
-  EXPECT_EQ(single.directions[1].strokes, 0U);
-  // The way in and out are short: one full stroke each way.
-  const History cycle = Cycling(Wave::kSine, 1.0, 1.25, 100);
-  EXPECT_EQ(StructureOf(cycle, residual(cycle)).repeatable_share, 0.0);
-  EXPECT_EQ(StructureOf({}, {}).strokes, 0U);
-  EXPECT_THROW(StructureOf(cycle, {1.0}), InvalidArgument);
-}
-
 }  // namespace
 }  // namespace mindahl::identification::residual_structure_test

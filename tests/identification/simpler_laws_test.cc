@@ -69,51 +69,6 @@ TEST(SimplerLaws, AreNotWhereTheNoiseHidesThem) {
   EXPECT_LE(told_apart, 11);  // beyond it P < 1e-3 of Binomial(20, 1/4)
 }
 
-TEST(SimplerLaws, MisfitAndLikelihoodRatioFollowFromTheResiduals) {
-  const SimplerLaws laws = CompareSimplerLaws(Loop("mindlin", kMindlin, 1.2, 1.0));
-  const LawScore& best = laws.scores[laws.best];
-  constexpr double kRounding = 1e-9;  // relative, of logarithms of ratios near one
-  for (const LawScore& score : laws.scores) {
-    if (!score.converged) continue;
-    EXPECT_NEAR(score.misfit * score.misfit,
-                std::max(score.rms * score.rms - best.rms * best.rms, 0.0),
-                kRounding * score.rms * score.rms);
-    const double ratio = 2 * laws.effective_samples * std::log(score.rms / best.rms);
-    EXPECT_NEAR(score.likelihood_ratio, std::max(ratio, 0.0), kRounding * laws.effective_samples);
-    if (score.free_parameters < best.free_parameters) {
-      ASSERT_TRUE(score.p_value);
-      // P(χ²(1) > x) = erfc(√(x/2)), P(χ²(2) > x) = e^{−x/2}
-      const std::size_t more = best.free_parameters - score.free_parameters;
-      const double x = score.likelihood_ratio;
-      if (more == 1) {
-        EXPECT_NEAR(*score.p_value, std::erfc(std::sqrt(x / 2)), kRounding);
-      }
-      if (more == 2) {
-        EXPECT_NEAR(*score.p_value, std::exp(-x / 2), kRounding);
-      }
-    } else {
-      EXPECT_FALSE(score.p_value);
-    }
-  }
-}
-
-TEST(SimplerLaws, AreComparedByTheIndependentSamples) {
-  // Noise with a correlation of 0.8 from one sample to the next: a ninth of them are independent.
-  loop::Record record = Loop("mindlin", kMindlin, 1.2, 0.0);
-  Generator generator(5);
-  double state = testing::Normal(generator);
-  for (double& force : record.force) {
-    force += state;
-    state = 0.8 * state + 0.6 * testing::Normal(generator);
-  }
-  const SimplerLaws laws = CompareSimplerLaws(record);
-  ASSERT_LT(laws.effective_samples, 0.4 * static_cast<double>(laws.samples));
-  const LawScore& best = laws.scores[laws.best];
-  const LawScore& jenkins = Find(laws, "jenkins");
-  const double ratio = 2 * laws.effective_samples * std::log(jenkins.rms / best.rms);
-  EXPECT_NEAR(jenkins.likelihood_ratio / ratio, 1, 1e-9);
-}
-
 TEST(SimplerLaws, RarelyRejectTheLawThatIsTrue) {
   // Mindlin's against the Masing law with free α, which nests it: ΔAICc of 4 is 2 ln Λ of 6 or so,
   // which chance exceeds once in 70.

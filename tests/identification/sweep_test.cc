@@ -60,21 +60,6 @@ TEST(SweepStiffness, IsTheForceOverTheIntegralOfTheLaw) {
   }
 }
 
-TEST(SweepStiffness, FallsWithTheAmplitudeByHalfOfTheTangentAtFirst) {
-  constexpr double kTau = 1e-5;
-  constexpr double kAlpha = 0.4;
-  const double force = kTau * kSlipForce;
-  const double secant =
-      SweepStiffnessAt({.over_force = true}, kSigma, kAlpha, kSlipForce, force) / kSigma;
-  const double tangent =
-      SweepStiffnessAt({.stiffness = SweepStiffness::kTangent, .over_force = true}, kSigma, kAlpha,
-                       kSlipForce, force) /
-      kSigma;
-  const double kSecondOrder = kTau * kTau;  // what the linear terms leave out is below that
-  EXPECT_NEAR(1 - secant, kAlpha * kTau / 2, kSecondOrder);
-  EXPECT_NEAR(1 - tangent, kAlpha * kTau, kSecondOrder);
-}
-
 TEST(SweepStiffness, IsThatOfCoulombSlipBeyondTheBackbone) {
   const double far = 10 * kSlipForce / kSigma;
   for (const double alpha : {0.0, 1.0 / 3.0}) {
@@ -185,41 +170,6 @@ TEST(FitSweep, RefusesWhatIsNoSweep) {
   EXPECT_THROW(FitSweep(std::vector{1.0, 2.0, 3.0, 4.0}, std::vector{1.0, 1.0, 1.0, 1.0},
                         {.fixed = {{"rig_stiffness", 1.0}}}),
                InvalidArgument);
-}
-
-TEST(FitSweep, ErrorsOfAKnownNoiseAreThoseOfAMean) {
-  // Far from slip every stiffness is σ, so σ is a mean of n readings with the noise s.
-  constexpr int kPoints = 20;
-  constexpr double kStiffnessNoise = 3e5;
-  const double error = kStiffnessNoise / std::sqrt(kPoints);
-  SweepOptions options{.over_force = true, .response_noise = kStiffnessNoise};
-  options.fixed = {{"alpha", 1.0 / 3}, {"slip_force", kSlipForce}};
-  const std::vector<double> forces = Forces(1e-6, 2e-6, kPoints);
-  const SweepFit fit = FitSweep(forces, Responses(options, 1.0 / 3, forces), options);
-  const ParameterEstimate& sigma = fit.parameter("sigma");
-  ASSERT_TRUE(sigma.standard_error && sigma.lower95 && sigma.upper95);
-  constexpr double kSearch = 1e-3;  // of an error, to which ends of intervals are found
-  EXPECT_NEAR(*sigma.standard_error, error, kSearch * error);
-  EXPECT_NEAR(*sigma.lower95, kSigma - 1.959964 * error, kSearch * error);
-  EXPECT_NEAR(*sigma.upper95, kSigma + 1.959964 * error, kSearch * error);
-}
-
-TEST(FitSweep, LeastTcOfForcesThatWereReachedIsALimitOfTheLaw) {
-  // Up to 59.9 N of 60: a smaller alpha wants a Tc below what was carried, which holds it.
-  const SweepOptions options{.over_force = true};
-  const std::vector<double> forces = Forces(4.0, 59.9, 30);
-  const SweepFit fit =
-      FitSweep(forces, Noisy(Responses(options, 1.0 / 3.0, forces), 0.01 * kSigma, 9), options);
-  const SweepFit held =
-      FitSweep(forces, Noisy(Responses(options, 1.0 / 3.0, forces), 0.01 * kSigma, 9),
-               {.over_force = true, .fixed = {{"slip_force", 59.9}}});
-  const ParameterEstimate& alpha = fit.parameter("alpha");
-  ASSERT_TRUE(alpha.lower95);
-  // With Tc held there one parameter less is free, of 27 or 28 degrees of freedom.
-  constexpr double kOneDegree = 0.05;
-  const ParameterEstimate& there = held.parameter("alpha");
-  EXPECT_NEAR(*alpha.lower95, *there.lower95, kOneDegree * (there.value - *there.lower95) + 0.01);
-  EXPECT_GT(*alpha.lower95, 0.2);
 }
 
 }  // namespace

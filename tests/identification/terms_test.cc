@@ -175,14 +175,5 @@ TEST(Parameters, EndsOfTheTheorysOwnAreNoSearchLimits) {
   }
 }
 
-TEST(Parameters, LieAtABoundWithinABillionthOfItsRange) {
-  EXPECT_EQ(SideOf(0.0, 0.0, 2.0), BoundSide::kLower);
-  EXPECT_EQ(SideOf(1e-9, 0.0, 2.0), BoundSide::kLower);
-  EXPECT_EQ(SideOf(3e-9, 0.0, 2.0), BoundSide::kInside);
-  EXPECT_EQ(SideOf(2.0 - 1e-9, 0.0, 2.0), BoundSide::kUpper);
-  EXPECT_EQ(SideOf(2.0 - 3e-9, 0.0, 2.0), BoundSide::kInside);
-  EXPECT_EQ(SideOf(0.5e-9, 0.0, 1e-3), BoundSide::kLower) << "at least 1e-9";
-}
-
 }  // namespace
 }  // namespace mindahl::identification::terms_test

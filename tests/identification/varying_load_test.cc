@@ -88,56 +88,6 @@ TEST(VaryingLoad, OfASettledContactIsFollowedFromTheRecordsFirstCycle) {
   }
 }
 
-TEST(VaryingLoad, KeepsMindlinsContactMindlins) {
-  // ±5 % at twice the frequency: taken for constant, Tc comes out 3 % off, a hundred of its errors.
-  constexpr double kErrors = 5.0;  // for normal errors once in 10⁶
-  Generator generator(5);
-  const Motion motion{};
-  const Record record =
-      testing::WithForceNoise(RecordOf(motion), 0.005 * kFriction * kLoad, generator);
-  const FitResult fit = testing::FitOne(record);
-  const ParameterEstimate& alpha = *fit.Find("alpha");
-  ASSERT_TRUE(alpha.standard_error);
-  EXPECT_LT(std::abs(alpha.value - 1.0 / 3), kErrors * *alpha.standard_error);
-  EXPECT_LT(*alpha.standard_error, 0.02);
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  EXPECT_LT(std::abs(slip_force.value - kFriction * kLoad), kErrors * *slip_force.standard_error);
-  ASSERT_TRUE(fit.mindlin_test);
-  EXPECT_GT(fit.mindlin_test->p_value, 1e-3);
-  EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  // Without the column it is what it was.
-  Record blind = record;
-  blind.normal_load.clear();
-  const FitResult fooled = testing::FitOne(blind);
-  EXPECT_GT(std::abs(fooled.law.slip_force / (kFriction * kLoad) - 1), 0.015);
-  EXPECT_NE(fooled.adequacy.verdict, AdequacyVerdict::kAdequate);
-}
-
-TEST(VaryingLoad, MayBeLiftedOffAtTheRecordsEnds) {
-  // Ramps of the load from 0 and back to it: nothing is remembered from before.
-  Motion motion{.swing = 0.0, .cycles = 5.0};
-  Record record = RecordOf(motion);
-  const std::size_t ramp = kSamples / 2;
-  const std::size_t size = record.size();
-  for (std::size_t i = 0; i < ramp; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(ramp);
-    record.normal_load[i] = kLoad * share;
-    record.normal_load[size - 1 - i] = kLoad * share;
-  }
-  models::EvaluateForceUnderLoad({.friction_coefficient = kFriction,
-                                  .reference_load = kLoad,
-                                  .reference_stiffness = kStiffness,
-                                  .shape_exponent = 1.0 / 3},
-                                 record.displacement, record.normal_load, record.force);
-  const FitResult fit = testing::FitOne(record);
-  // σ and Tc are those under the mean, the ramps' readings included.
-  double mean = 0.0;
-  for (const double load : record.normal_load) mean += load / static_cast<double>(size);
-  EXPECT_NEAR(*fit.normal_load / mean, 1, 1e-12);
-  const BranchLaw at_mean{kStiffness * std::cbrt(mean / kLoad), 1.0 / 3, kFriction * mean};
-  EXPECT_TRUE(testing::Recovers(fit, at_mean, testing::kNoiseFree));
-}
-
 TEST(VaryingLoad, BelowAHundredthIsConstant) {
   const Motion motion{.swing = 0.009};
   const FitResult fit = testing::FitOne(RecordOf(motion));
@@ -202,34 +152,6 @@ TEST(VaryingLoad, KeepsAlphaBelowOneWithNote) {
     } catch (const InvalidArgument& error) {
       EXPECT_NE(std::string(error.what()).find("where the normal load varies"), std::string::npos);
     }
-  }
-}
-
-TEST(VaryingLoad, HasTheDerivativesOfItsDifferences) {
-  // (step)² = 1e-10 of third derivatives of order 10; rounding 1e-11. α = 0.6: smooth at slip.
-  constexpr double kTolerance = 1e-6;
-  const Motion motion{.swing = 0.3, .shape_exponent = 0.6};
-  testing::Stages stages(RecordOf(motion));
-  const FitResult fit = testing::FitOne(stages.records.front());
-  std::vector<double> theta = stages.ThetaOf(fit);
-  theta[identification::kStiffness] += 0.013;
-  theta[kShape] += 0.017;
-  // On a sample the virgin curve's curvature jumps.
-  theta[stages.problem.parameters.PositionOf("displacement_offset", 0)] += 0.007;
-  const auto& free = stages.problem.parameters.free();
-  const std::vector<std::size_t> columns(free.begin(), free.end());
-  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),
-                           static_cast<Eigen::Index>(columns.size()));
-  std::vector<double> residual(stages.problem.size());
-  Response response;
-  response.Bind(stages.problem);
-  Differentiate(stages.problem, theta, response, columns, residual,
-                {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-  const Eigen::MatrixXd expected = stages.DifferencesAt(theta);
-  for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
-    EXPECT_LT((jacobian.col(c) - expected.col(c)).norm(),
-              kTolerance * std::max(expected.col(c).norm(), 1.0))
-        << stages.problem.parameters.NameOf(columns[static_cast<std::size_t>(c)]);
   }
 }
 
