@@ -167,9 +167,9 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
 
 std::string_view NameOf(Operation operation) {
   constexpr std::array<std::string_view, kOperations> kNames = {
-      "sample",    "place",      "reversal",   "linear",      "root",     "power",
-      "narrowing", "element",    "sum",        "look_up",     "step",     "stage",
-      "trial",     "cubic_root", "rate_power", "exponential", "iteration"};
+      "sample",     "place",      "reversal",    "linear",   "root",  "power",
+      "element",    "sum",        "look_up",     "step",     "stage", "trial",
+      "cubic_root", "rate_power", "exponential", "iteration"};
   return kNames[static_cast<std::size_t>(operation)];
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mindahl/identification/terms.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/report.h"
 #include "mindahl/report/units.h"

@@ -46,7 +46,8 @@ class Stages {
     identification::AddCovariates(options.covariates, /*with_others=*/true, prepared,
                                   options.offsets, data);
     identification::AddColumnsOfTerms(options, data);
-    if (identification::HasTerm(options, TermId::kLag)) identification::SetClocks(data);
+    if (identification::HasTerm(options, identification::TermId::kLag))
+      identification::SetClocks(data);
     return data;
   }
 

@@ -250,16 +250,6 @@ const std::map<std::string_view, Case>& Cases() {
          };
          return !looks_for_a_rig(kBelow * 0.05) && looks_for_a_rig(kAbove * 0.05);
        }},
-      {"indistinguishable",
-       [](const Thresholds& t) {
-         const Record record = testing::SprungLoop({4e7, 0.2, 40.0}, HUGE_VAL);
-         FitOptions rig;
-         rig.terms = {"rig_stiffness"};
-         rig.fixed["alpha"] = 1.0 / 3;
-         const double cost = SumOfSquaresWith(record, rig) - SumOfSquaresWith(record, {});
-         return RigIsFound(t, record, 0.0, cost / (kBelow * 4.0)) &&
-                !RigIsFound(t, record, 0.0, cost / (kAbove * 4.0));
-       }},
       {"rigid_beside_rig",
        [](const Thresholds& t) {
          const auto names_alpha = [&](double ratio) {

@@ -62,7 +62,7 @@ constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, R
           .column = column};
 }
 
-constexpr std::array kRows = {
+constexpr std::array kTermRows = {
     Term{.name = "sigma",
          .unit = "N/m",
          .meaning = "σ, tangential stiffness at the start of every branch",
@@ -367,7 +367,7 @@ constexpr std::array kRows = {
 };
 
 constexpr auto kTerms = [] {
-  auto terms = kRows;
+  auto terms = kTermRows;
   for (std::size_t i = 0; i < terms.size(); ++i) terms[i].id = static_cast<TermId>(i);
   return terms;
 }();
