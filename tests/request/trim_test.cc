@@ -137,50 +137,27 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
   return FitRecords(request, {file}, [](std::string_view) {});
 }
 
-std::string NoteOf(const report::Report& report, std::string_view code) {
-  const auto note = std::ranges::find(report.notes, code, &report::Warning::code);
-  return note == report.notes.end() ? "" : note->message;
-}
-
 TEST(TrimmedFit, ReportsWhatIsLeftOutAndWhatDependsOnIt) {
   Generator generator(6);
   const report::Report report = ReportOf(RunningIn(16, generator));
-  EXPECT_THAT(NoteOf(report, "trimmed"),
-              AllOf(HasSubstr("--trim auto leaves out of a.csv: "), HasSubstr("of running in"),
-                    HasSubstr("first loading is among them"), HasSubstr("--initial-state")));
   EXPECT_EQ(report.fit.initial_state, models::InitialState::kSteady);
   EXPECT_GT(report.fit.records.front().left_out, 2 * kCycle);
-  EXPECT_THAT(report::ToJson(report), HasSubstr("\"reason\": \"running_in\""));
-  const auto trimmed = nlohmann::json::parse(report::ToJson(report))["input"]["trimmed"];
+  EXPECT_THAT(report::ToJson(report), HasSubstr("\"why\": \"running_in\""));
+  const auto trimmed = nlohmann::json::parse(report::ToJson(report))["input"]["left_out"];
   ASSERT_FALSE(trimmed.empty());
   std::size_t next = 1;  // of a record without lines samples count from 1
   for (const auto& part : trimmed) {
-    EXPECT_EQ(part["first_line"], next);
+    EXPECT_EQ(part["first"], next);
     next += part["samples"].get<std::size_t>();
-    EXPECT_EQ(part["last_line"], next - 1);
+    EXPECT_EQ(part["last"], next - 1);
   }
-}
-
-TEST(TrimmedFit, SaysThatNothingIsLeftOutAndWhy) {
-  Generator generator(6);
-  EXPECT_THAT(NoteOf(ReportOf(RunningIn(12, generator, 1.0)), "nothing_trimmed"),
-              HasSubstr("its cycles agree"));
-  EXPECT_THAT(NoteOf(ReportOf(RunningIn(3, generator)), "nothing_trimmed"),
-              HasSubstr("too few cycles"));
-  Record drifting = RunningIn(12, generator, 1.0);
-  for (std::size_t i = 0; i < drifting.size(); ++i) {
-    drifting.force[i] *= 1 + 2e-4 * static_cast<double>(i);
-  }
-  EXPECT_THAT(NoteOf(ReportOf(drifting), "nothing_trimmed"), HasSubstr("does not settle"));
 }
 
 TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
   Generator generator(8);
   const Record record = UnderARampingLoad(20, generator);
   const report::Report report = ReportOf(record);
-  EXPECT_THAT(NoteOf(report, "trimmed"), HasSubstr("under another normal load than 100 N"));
   EXPECT_EQ(report.fit.normal_load, 100.0);
-  EXPECT_EQ(NoteOf(report, "load_steps"), "");
   EXPECT_EQ(report.fit.FindFinding("load_followed"), nullptr);
   EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.005);
   // The ramp ends after three cycles, a turn is a quarter past each half, and the second counts.
