@@ -24,7 +24,7 @@ trap 'rm -rf "$results"' EXIT
 
 echo "Identified from $loop, beside the contact from which it was simulated:"
 echo
-printf '%-24s %-4s %14s %14s %14s %12s\n' "" "" identified "std. error" truth difference
+printf '%-24s %-4s %14s %14s %14s %14s %12s\n' "" "" identified from to truth difference
 jq --raw-output --slurp '
   .[0] as $fit | .[1] as $truth
   | (("sigma", "alpha", "slip_force") | ["parameters", .]),
@@ -33,12 +33,12 @@ jq --raw-output --slurp '
   | . as $path
   | ($fit | getpath($path)) as $found
   | ($truth | getpath($path).value) as $true
-  | [$path[1], $found.unit, $found.value, $found.standard_error, $true,
+  | [$path[1], $found.unit, $found.value, $found.ci95[0], $found.ci95[1], $true,
      100 * ($found.value / $true - 1)]
   | @tsv' "$results/fit.json" "$results/truth.json" |
-  while IFS=$'\t' read -r name unit value error truth difference; do
-    printf '%-24s %-4s %14.6g %14.2g %14.6g %10.3f %%\n' \
-      "$name" "$unit" "$value" "$error" "$truth" "$difference"
+  while IFS=$'\t' read -r name unit value from to truth difference; do
+    printf '%-24s %-4s %14.6g %14.6g %14.6g %14.6g %10.3f %%\n' \
+      "$name" "$unit" "$value" "$from" "$to" "$truth" "$difference"
   done
 echo
 echo "The loop and the fit: build/demo/loop.png"

@@ -29,7 +29,7 @@ install() { apt-get install -y -q --no-install-recommends "$@" >/dev/null; }
 install ./mindahl_*.deb
 mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 --noise-force 0.1 -o loop.csv
 mindahl fit loop.csv --json fit.json | head -20
-grep -q '"schema": "mindahl.fit/1"' fit.json
+grep -q '"schema": "mindahl.fit/2"' fit.json
 install man-db
 man mindahl | grep -q 'mindahl fit'
 bash -c '. /usr/share/bash-completion/completions/mindahl; COMP_WORDS=(mindahl fi); COMP_CWORD=1
@@ -48,7 +48,7 @@ done
 ./own_term
 ./cycles_of_stream
 ./fit_to_json loop.csv >library.json
-grep -q '"schema": "mindahl.fit/1"' library.json
+grep -q '"schema": "mindahl.fit/2"' library.json
 test -s /usr/share/mindahl/schema/fit.json
 install cmake make
 cmake -S examples -B examples_of_cmake >/dev/null

@@ -1,6 +1,6 @@
 """Samples the posterior of sigma, alpha and Tc by emcee, and compares it with the profile intervals.
 
-    posterior.py loop.csv [posterior.png]    one record: its posterior, drawn over the joint regions
+    posterior.py loop.csv [posterior.png]    one record: its posterior, with the intervals of the fit
     posterior.py --loops 20 [posterior.png]  so many simulated loops in partial slip: a table
 
 Needs emcee, and matplotlib for the picture (Debian: python3-emcee, python3-matplotlib).
@@ -52,16 +52,19 @@ def draw(result, chain, names, path):
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4.5), layout="constrained")
-    for ax, region in zip(axes, result.regions):
-        first, second = (chain[::20, names.index(name)] for name in region.parameters)
+    for ax, name in zip(axes, ("sigma", "slip_force")):
+        first, second = (chain[::20, names.index(key)] for key in (name, "alpha"))
         ax.plot(first, second, ".", markersize=2, alpha=0.3, color="#4878a8", label="posterior")
-        region.plot(ax, color="#d1495b", label="95 % region of the fit")
+        ax.axvspan(*result.parameters[name].interval, color="#d1495b", alpha=0.2,
+                   label="interval of the fit")
+        ax.set_xlabel(f"{name} [{result.parameters[name].unit}]")
+        ax.set_ylabel("alpha [-]")
         ax.legend()
     figure.savefig(path, dpi=120)
 
 
 def one_record(path, picture):
-    result = mindahl.fit(path, regions=True, terms="none")
+    result = mindahl.fit(path, terms="none")
     likelihood = result.log_likelihood()
     chain = sample(likelihood, seed=1)
     for name, interval, drawn in compare(result, chain, likelihood.names):
@@ -82,7 +85,7 @@ def many_loops(count, picture):
         force = mindahl.simulate(displacement, **LAW)
         force = force + 0.01 * np.max(np.abs(force)) * rng.standard_normal(force.size)
         result = mindahl.fit(displacement, force, initial_state="virgin", displacement_noise=0.0,
-                             terms="none", regions=True)
+                             terms="none")
         likelihood = result.log_likelihood()
         chain = sample(likelihood, seed)
         for name, interval, drawn in compare(result, chain, likelihood.names):

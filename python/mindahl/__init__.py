@@ -21,7 +21,7 @@ from ._mindahl import ContactState, InputError, JointState, Record, __version__
 from ._readers import read_excel, read_hdf5, read_mat
 from ._records import read_csv
 from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Message, Parameter,
-                      Region, Report, Section)
+                      Report, Section)
 from ._track import CycleTable, track
 
 for _public in (ContactState, InputError, JointState, Record):
@@ -30,7 +30,7 @@ for _public in (ContactState, InputError, JointState, Record):
 __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
     "FittedRecord", "InputError", "JointState", "LogLikelihood", "Message", "Parameter", "Record",
-    "Region", "Report", "Section", "__version__", "batch", "contact", "convert", "excitation", "fit",
+    "Report", "Section", "__version__", "batch", "contact", "convert", "excitation", "fit",
     "plan", "read_csv", "read_excel", "read_hdf5", "read_mat", "recommend", "simulate", "sweep",
     "tradeoff", "track", "validate",
 ]

@@ -37,7 +37,6 @@ def request_of(given: Mapping[str, Any]) -> _mindahl.FitRequest:
     request.fix = assignments("fix", given["fix"])
     request.start = assignments("start", given["start"])
     request.prior = priors_of(given["prior"])
-    request.regions = given.get("regions", False)
     for parameter, value in mapping("bound", given["bound"], "(low, high)").items():
         low, high = pair(f"bound[{parameter!r}]", value)
         request.set_bound(parameter, number(f"bound[{parameter!r}]", low),
@@ -90,7 +89,7 @@ def fit(
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, prior: Optional[Mapping[str, Range]] = None,
-    regions: bool = False, cycles: Optional[tuple[int, int]] = None,
+    cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
     trim: str = "off", time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
     starts: int = 1, seed: int = 1, confidence: float = 0.95,
@@ -154,7 +153,7 @@ def fit(
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
-        confidence: of every interval. regions: joint confidence regions, result.regions.
+        confidence: of every interval.
         starts: number of starting points that are refined. seed: of those drawn at random.
 
     What is known of the contact, each a number or (number, standard uncertainty)

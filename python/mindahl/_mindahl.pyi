@@ -85,7 +85,6 @@ class FitRequest:
     fix: dict[str, float]
     start: dict[str, float]
     prior: dict[str, UncertainValue]
-    regions: bool
     confidence: float
     force_noise: Optional[float]
     displacement_noise: Optional[float]

@@ -32,19 +32,6 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
     return ax if ax is not None else axes
 
 
-def draw_region(region: Any, ax: Any, style: dict[str, Any]) -> Any:
-    if ax is None:
-        from matplotlib import pyplot
-
-        _, ax = pyplot.subplots(layout="constrained")
-    first, second = region.boundary.T
-    ax.plot([*first, first[0]], [*second, second[0]], **style)
-    units = {"sigma": "N/m", "slip_force": "N"}
-    ax.set_xlabel(f"{region.parameters[0]} [{units[region.parameters[0]]}]")
-    ax.set_ylabel(f"{region.parameters[1]} [-]")
-    return ax
-
-
 def _axes(ax: Any) -> Any:
     if ax is None:
         from matplotlib import pyplot

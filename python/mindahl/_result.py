@@ -142,9 +142,6 @@ class Parameter:
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
     identifiability: "identifiable", "extrapolated", "bounded_below" or "not_identifiable".
-    prior: (value, standard uncertainty) that the fit was given; None without one.
-    moved_by_priors: value minus that of a fit without priors, in its standard errors; None without
-        priors and if the record alone does not determine it.
     """
 
     name: str
@@ -154,8 +151,6 @@ class Parameter:
     interval: tuple[Optional[float], Optional[float]]
     status: str
     identifiability: str
-    prior: Optional[tuple[float, float]] = None
-    moved_by_priors: Optional[float] = None
 
     @property
     def is_known(self) -> bool:
@@ -184,25 +179,6 @@ class Message:
 
     code: str
     message: str
-
-
-@dataclass(frozen=True)
-class Region:
-    """A joint confidence region of two parameters, for the noise alone.
-
-    parameters: their names. boundary: points of shape (n, 2) [their units], once around the estimate.
-    closed: True if the boundary was reached in every direction, or alpha = 0 before it.
-    """
-
-    parameters: tuple[str, str]
-    boundary: Floats
-    closed: bool
-
-    def plot(self, ax: Any = None, **style: Any) -> Any:
-        """Draws the boundary on one of matplotlib's Axes, by default new ones, which it returns."""
-        from ._plot import draw_region
-
-        return draw_region(self, ax, style)
 
 
 @dataclass(frozen=True)
@@ -274,7 +250,7 @@ class FitResult:
     """A fit: sigma, alpha, slip_force and every section of the report as attributes.
 
     parameters: all, by name. records: the arrays of each record. warnings, notes: in words.
-    adequacy, measured, contact, mapping, loop, residuals, solver, ...: sections of the report, as
+    adequacy, measured, contact, mapping, law, residuals, solver, ...: sections of the report, as
         docs/contract.md lists them; result.to_dict() is the same as the program's JSON.
     """
 
@@ -292,8 +268,8 @@ class FitResult:
         with open(path, encoding="utf-8") as file:
             text = file.read()
         document = json.loads(text)
-        if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/1":
-            raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/1")
+        if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/2":
+            raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
         return cls(_StoredFit(text))
 
     def __getattr__(self, name: str) -> Any:
@@ -317,10 +293,7 @@ class FitResult:
         """All parameters by name, as the program reports them; empty where the fit failed."""
         return {name: Parameter(name, values["value"], values["unit"], values["standard_error"],
                                 (values["ci95"][0], values["ci95"][1]), values["status"],
-                                values["identifiability"],
-                                (values["prior"]["value"], values["prior"]["standard_uncertainty"])
-                                if "prior" in values else None,
-                                values.get("without_priors", {}).get("moved"))
+                                values["identifiability"])
                 for name, values in (self._report.get("parameters") or {}).items()}
 
     @property
@@ -359,13 +332,6 @@ class FitResult:
         return tuple(self._fitted.notes)
 
     @property
-    def regions(self) -> tuple[Region, ...]:
-        """Joint confidence regions of a fit with regions=True; empty where there is none."""
-        return tuple(Region((item["parameters"][0], item["parameters"][1]),
-                            np.array(item["boundary"], dtype=np.float64), item["closed"])
-                     for item in self._report.get("regions") or ())
-
-    @property
     def records(self) -> tuple[FittedRecord, ...]:
         """Each record with its fit; a record whose load goes in steps is one for each load."""
         return tuple(FittedRecord(**arrays) for arrays in self._fitted.records)
@@ -391,7 +357,7 @@ class FitResult:
         return arrays[0] if len(arrays) == 1 else arrays
 
     def to_dict(self) -> dict[str, Any]:
-        """What `mindahl fit --json` writes (schema mindahl.fit/1), as a dict of one's own."""
+        """What `mindahl fit --json` writes (schema mindahl.fit/2), as a dict of one's own."""
         return copy.deepcopy(self._report)
 
     def to_json(self) -> str:

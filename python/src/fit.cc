@@ -153,7 +153,6 @@ void AddFit(py::module_& module) {
       .def_readwrite("fix", &FitRequest::fix)
       .def_readwrite("start", &FitRequest::start)
       .def_readwrite("prior", &FitRequest::prior)
-      .def_readwrite("regions", &FitRequest::regions)
       .def("set_bound", &SetBound, py::arg("name"), py::arg("lower"), py::arg("upper"))
       .def_readwrite("confidence", &FitRequest::confidence)
       .def_readwrite("force_noise", &FitRequest::force_noise)

@@ -106,7 +106,7 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, DescribedTest> TrackedC
     const std::string name(column.name);
     columns[py::str(name)] = values;
     if (!column.unit.empty()) {
-      units[py::str(name)] = std::string(report::UnitIn(names, column.unit));
+      units[py::str(name)] = report::UnitIn(names, column.unit);
     }
   }
   py::list regimes;

@@ -20,7 +20,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
-#include "mindahl/report/loop_description.h"
+#include "mindahl/report/contact.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {

@@ -33,6 +33,7 @@ struct FitCommandOptions {
   std::string residuals_path;
   std::string plot_path;
   std::string report_path;
+  bool has_details = false;
   std::string sweep;  // "" for a record
   io::ColumnChoice response;
   std::optional<double> response_noise;
@@ -40,9 +41,7 @@ struct FitCommandOptions {
 
 /// @param provenance  asked for where a page is written: it reads the files once more
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
-                     const std::function<report::Provenance()>& provenance,
-                     const Messages& messages, Console& console) {
-  for (const std::string& warning : request::WarningsBesideText(report)) messages.Warn(warning);
+                     const std::function<report::Provenance()>& provenance, Console& console) {
   if (report.failed()) {  // no curve to draw, no residual to list
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
     if (!options.report_path.empty()) {
@@ -61,7 +60,8 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   }
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
   if (options.json_path != "-") {
-    console.out << report::ToText(report, {.has_colours = console.has_colours});
+    console.out << report::ToText(
+        report, {.has_colours = console.has_colours, .has_details = options.has_details});
   }
 }
 
@@ -95,8 +95,7 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
       options.response_noise) {
     throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
   }
-  FitRequest request = options.request;
-  request.regions = request.regions || !options.report_path.empty();  // which the page draws
+  const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
@@ -105,10 +104,10 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
                       {"--report", options.report_path}},
                      console, request.files);
   const Messages messages{console.err, "fit"};
-  report::Report report = FitRecords(request, messages);
+  const report::Report report = FitRecords(request, messages);
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
-  WriteFitOutputs(options, report, provenance, messages, console);
+  WriteFitOutputs(options, report, provenance, console);
 }
 
 }  // namespace
@@ -147,15 +146,13 @@ void AddFitCommand(CLI::App& app, Console& console) {
   sweeps.Add("--response-noise", options->response_noise,
              "known standard deviation of a response [N/m] or [m/N]", "S");
   const OptionGroup group(command, "Results");
+  group.AddFlag("--details", options->has_details, "print what the answer leaves out");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
   group.Add("--residuals", options->residuals_path,
             "measured and fitted force of every sample as CSV", "PATH");
   group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
-  group.AddFlag("--regions", options->request.regions,
-                "compute joint confidence regions of sigma and alpha and of slip_force\nand alpha, "
-                "for the JSON; --report implies it");
   AddStrict(group, options->strict, "exit status 3");
   WhenCalled(command, [options, &command, &console] { RunFit(*options, command, console); });
 }

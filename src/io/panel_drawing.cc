@@ -504,7 +504,8 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
               .right = width - kRightMargin,
               .top = kAboveAxes,
               .bottom = kAboveAxes + axes_height};
-  frame.left = 14 + kTicCharacter * static_cast<double>(frame.y.LongestLabel());
+  frame.left =
+      std::max(14 + kTicCharacter * static_cast<double>(frame.y.LongestLabel()), panel.label_room);
   frame.x.Place(frame.left, frame.right);
   frame.y.Place(frame.bottom, frame.top);
   return Drawing(panel, frame, width, most_points).Text();

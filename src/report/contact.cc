@@ -1,79 +1,419 @@
 #include "mindahl/report/contact.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
+#include <utility>
 
 #include "core/probability.h"
-#include "mindahl/report/load_series.h"
+#include "mindahl/contact/shape_under_load.h"
+#include "mindahl/models/steady_loop.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
+using contact::KnownContact;
+using contact::PropagatedValue;
+using contact::UncertainValue;
 using identification::FitResult;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
 
 namespace {
-
-/// Returns a parameter for the contact module: its error is infinite if the fit leaves it open.
-contact::UncertainValue Uncertain(const FitResult& fit, std::string_view name) {
-  const identification::ParameterEstimate& estimate = *fit.Find(name);
-  return {estimate.value, fit.ErrorOf(estimate)};
-}
-
-/// Removes the quantities that rest on Hertz's law where a load series denies it.
-void WithholdSphere(const FitResult& fit, contact::IdentifiedContact& contact) {
-  if (!DeniesHertz(fit)) return;
-  contact.equivalent_radius.reset();
-  contact.maximum_pressure.reset();
-}
-
-}  // namespace
 
 double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
   const std::size_t count = fit.parameters.size();
   const auto place = [&](std::string_view name) {
     return static_cast<std::size_t>(fit.Find(name) - fit.parameters.data());
   };
-  const double correlation = fit.correlation[place(first) * count + place(second)];
+  const std::size_t at = place(first) * count + place(second);
+  const double correlation = at < fit.correlation.size() ? fit.correlation[at] : 0.0;
   return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
 }
 
-std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
-                                                 const contact::KnownContact& known) {
-  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  if (!known.normal_load || slip_force == nullptr || slip_force->is_known()) {
-    return std::nullopt;
-  }
-  return fmt::format("needs an identifiable slip force; from this loop it is at least {:.3g}",
-                     slip_force->lower95.value_or(0.0) / known.normal_load->value);
+using End = std::optional<double> ParameterEstimate::*;
+constexpr std::array<End, 2> kEnds = {&ParameterEstimate::lower95, &ParameterEstimate::upper95};
+
+/// Returns an end of the interval, the value of what is held; empty where it is open.
+std::optional<double> EndOf(const ParameterEstimate& estimate, End end) {
+  if (estimate.status == ParameterStatus::kFixed) return estimate.value;
+  return estimate.*end && *(estimate.*end) > 0 ? estimate.*end : std::nullopt;
 }
 
-contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
-                                                 const contact::KnownContact& known) {
-  contact::IdentifiedContact contact =
-      contact::IdentifyContact(Uncertain(fit, "sigma"), Uncertain(fit, "slip_force"), known,
-                               Correlation(fit, "sigma", "slip_force"));
-  if (const std::optional<std::string> why = WhyFrictionIsWithheld(fit, known)) {
-    contact.friction_coefficient.reset();
-    contact.unidentified.push_back("friction coefficient " + *why);
-  }
-  WithholdSphere(fit, contact);
-  return contact;
+/// Distances of the logarithm of a quantity from its value to where the ends of a parameter take
+/// it, of either sign; empty towards an end that is open.
+struct LogWays {
+  std::optional<double> lower = 0.0;
+  std::optional<double> upper = 0.0;
+};
+
+/// Adds in quadrature, with a correlation that is of ways in the same direction.
+std::optional<double> Together(const std::optional<double>& one, const std::optional<double>& other,
+                               double correlation = 0.0) {
+  if (!one || !other) return std::nullopt;
+  if (*one == 0 || *other == 0) return std::abs(*one) + std::abs(*other);
+  const double squares = *one * *one + *other * *other + 2 * correlation * *one * *other;
+  return std::sqrt(std::max(squares, 0.0));
 }
 
-contact::IdentifiedContact IdentifyContactOf(const FitResult& fit, const models::BranchLaw& law,
-                                             const contact::KnownContact& known) {
-  const auto moved = [&](std::string_view name, double value) {
-    const contact::UncertainValue fitted = Uncertain(fit, name);
-    return contact::UncertainValue{value, fitted.standard_error * (value / fitted.value)};
+/// Makes a quantity of σ and Tc, exact, and of what is known; empty where it does not follow.
+using Make = std::optional<PropagatedValue> (*)(double sigma, double slip_force,
+                                                const KnownContact& known);
+
+template <auto kMember>
+std::optional<PropagatedValue> OfContact(double sigma, double slip_force,
+                                         const KnownContact& known) {
+  return contact::IdentifyContact(UncertainValue{sigma}, UncertainValue{slip_force}, known).*
+         kMember;
+}
+
+/// Likewise of a smooth sphere whose load is known.
+template <auto kMember>
+std::optional<PropagatedValue> OfSphere(double sigma, double /*slip_force*/,
+                                        const KnownContact& known) {
+  return contact::IdentifyShape(contact::ContactShape::kSphere, UncertainValue{sigma}, known).*
+         kMember;
+}
+
+std::optional<PropagatedValue> OverMindlin(double sigma, double slip_force,
+                                           const KnownContact& known) {
+  const contact::IdentifiedContact contact =
+      contact::IdentifyContact(UncertainValue{sigma}, UncertainValue{slip_force}, known);
+  return contact.hertz ? std::optional(contact.hertz->sigma_over_hertz_mindlin)
+                       : contact.sigma_over_mindlin;
+}
+
+/// Maps the ends of the parameters' intervals to quantities of the contact.
+class Mapping {
+ public:
+  Mapping(const FitResult& fit, const KnownContact& known)
+      : fit_(fit),
+        known_(known),
+        sigma_(*fit.Find("sigma")),
+        slip_force_(*fit.Find("slip_force")) {}
+
+  [[nodiscard]] std::optional<PropagatedValue> AtEstimate(Make make) const {
+    return make(sigma_.value, slip_force_.value, known_);
+  }
+
+  /// Sets value and ends of a quantity that follows.
+  void Fill(ContactQuantity& quantity, Make make) const {
+    const PropagatedValue found = *AtEstimate(make);
+    const bool is_of_sigma = quantity.parameter == "sigma";
+    const ParameterEstimate& parameter = is_of_sigma ? sigma_ : slip_force_;
+    const auto way_to = [&](double value) -> std::optional<double> {
+      const auto moved =
+          make(is_of_sigma ? value : sigma_.value, is_of_sigma ? slip_force_.value : value, known_);
+      return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
+    };
+    // Of a given contact radius, p₀ does not follow from the fit; a little further E would not end.
+    constexpr double kFurther = 1 + 1e-6;
+    const double trend = way_to(kFurther * parameter.value).value_or(0.0);
+    LogWays ways;
+    if (trend != 0) {
+      const auto way = [&](End end) {
+        const std::optional<double> value = EndOf(parameter, end);
+        return value ? way_to(*value) : std::nullopt;
+      };
+      ways = {.lower = way(kEnds[trend > 0 ? 0 : 1]), .upper = way(kEnds[trend > 0 ? 1 : 0])};
+    }
+    Set(quantity, found, ways);
+  }
+
+  /// Sets those of δc = 3Tc/(2σ), which follows from both.
+  void FillGrossSlip(ContactQuantity& quantity) const {
+    const auto way = [](const ParameterEstimate& estimate, End end) {
+      const std::optional<double> at = EndOf(estimate, end);
+      return at ? std::optional(std::abs(std::log(*at / estimate.value))) : std::nullopt;
+    };
+    const bool are_free =
+        sigma_.status == ParameterStatus::kFree && slip_force_.status == ParameterStatus::kFree;
+    // Tc and 1/σ: their ways in one direction are correlated the other way round.
+    const double correlation = are_free ? -Correlation(fit_, "sigma", "slip_force") : 0.0;
+    LogWays ways;
+    ways.lower = Together(way(slip_force_, kEnds[0]), way(sigma_, kEnds[1]), correlation);
+    ways.upper = Together(way(slip_force_, kEnds[1]), way(sigma_, kEnds[0]), correlation);
+    PropagatedValue found;
+    found.value = 1.5 * slip_force_.value / sigma_.value;
+    Set(quantity, found, ways);
+  }
+
+ private:
+  /// Adds the inputs' uncertainty to the ways.
+  void Set(ContactQuantity& quantity, const PropagatedValue& found, const LogWays& ways) const {
+    quantity.value = found.value;
+    const double of_inputs =
+        NormalQuantile(fit_.confidence) * found.input_error / std::abs(found.value);
+    if (ways.lower) quantity.lower = found.value * std::exp(-std::hypot(*ways.lower, of_inputs));
+    if (ways.upper) quantity.upper = found.value * std::exp(std::hypot(*ways.upper, of_inputs));
+    quantity.why = "the interval of what it follows from is open";
+  }
+
+  const FitResult& fit_;
+  const KnownContact& known_;
+  const ParameterEstimate& sigma_;
+  const ParameterEstimate& slip_force_;
+};
+
+ContactQuantity Made(std::string_view name, std::string_view symbol, std::string_view unit,
+                     std::string_view parameter) {
+  return {.name = name,
+          .symbol = symbol,
+          .unit = unit,
+          .parameter = parameter,
+          .value = {},
+          .lower = {},
+          .upper = {},
+          .why = {}};
+}
+
+struct QuantityRow {
+  std::string_view name;
+  std::string_view symbol;
+  std::string_view unit;
+  std::string_view parameter;
+  Make make;
+  std::optional<contact::ContactQuantity> inputs;  ///< which it needs; empty: those of `why`
+  const char* why = "";
+  bool is_of_sphere = false;  ///< follows only where Hertz's law of the load is not denied
+};
+
+using Kind = contact::ContactQuantity;
+using contact::IdentifiedContact;
+using contact::ShapeUnderLoad;
+
+constexpr std::array kQuantities = {
+    QuantityRow{"friction_coefficient", "μ", "-", "slip_force",
+                OfContact<&IdentifiedContact::friction_coefficient>, Kind::kFrictionCoefficient},
+    QuantityRow{"contact_radius", "a", "m", "sigma", OfContact<&IdentifiedContact::contact_radius>,
+                Kind::kContactRadius},
+    QuantityRow{"compliance", "G*", "1/Pa", "sigma",
+                OfContact<&IdentifiedContact::tangential_compliance>, Kind::kTangentialCompliance},
+    QuantityRow{"sigma_over_hertz_mindlin",
+                "σ/(8a/G*)",
+                "-",
+                "sigma",
+                OverMindlin,
+                {},
+                "needs materials, radii and load, or contact radius and compliance"},
+    QuantityRow{"equivalent_radius", "ρ", "m", "sigma",
+                OfContact<&IdentifiedContact::equivalent_radius>, Kind::kEquivalentRadius, "",
+                true},
+    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma",
+                OfContact<&IdentifiedContact::maximum_pressure>, Kind::kMaximumPressure, "", true},
+};
+
+/// Of several loads: what a smooth sphere of known radii makes known of the materials.
+constexpr std::array kOfSeries = {
+    QuantityRow{"compliance",
+                "G*",
+                "1/Pa",
+                "sigma",
+                OfSphere<&ShapeUnderLoad::tangential_compliance>,
+                {},
+                "",
+                true},
+    QuantityRow{"effective_modulus",
+                "E*",
+                "Pa",
+                "sigma",
+                OfSphere<&ShapeUnderLoad::effective_modulus>,
+                {},
+                "",
+                true},
+    QuantityRow{"youngs_modulus",
+                "E",
+                "Pa",
+                "sigma",
+                OfSphere<&ShapeUnderLoad::youngs_modulus>,
+                {},
+                "",
+                true},
+};
+
+constexpr std::string_view kWhyNoSphere =
+    "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
+
+/// False where a loop that slides measures another force in that direction: then the asymmetry and
+/// the offset of the force stand for each other.
+bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
+  constexpr double kTolerance = 0.25;
+  const loop::LoopFacts& facts = fit.WidestRecord().facts;
+  if (!loop::Slides(facts) || !facts.half_gap || facts.cycles.empty()) return true;
+  double centre = 0.0;
+  for (const loop::CycleFacts& cycle : facts.cycles) centre += cycle.centre_force;
+  centre /= static_cast<double>(facts.cycles.size());
+  const double plateau = std::abs(*facts.half_gap) + sense * centre;
+  return std::abs(slip_force - plateau) < kTolerance * std::abs(*facts.half_gap);
+}
+
+/// Returns the force at which the contact slips in one direction, Tc(1 ± A).
+/// @param sense  +1 towards positive displacement, −1 the other way
+void FillSlipForce(const FitResult& fit, double sense, ContactQuantity& quantity) {
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
+  const double share = 1 + sense * asymmetry.value;
+  if (!slip_force.is_known() || !asymmetry.is_known() || !(share > 0)) {
+    quantity.why = "slip_force or asymmetry is not identifiable";
+    return;
+  }
+  if (!IsThatOfThePlateau(fit, sense, slip_force.value * share)) {
+    quantity.why = "the measured strokes do not show it: it stands for an offset of the force";
+    return;
+  }
+  quantity.value = slip_force.value * share;
+  quantity.why = "the interval of slip_force or asymmetry is open";
+  const bool are_free =
+      slip_force.status == ParameterStatus::kFree && asymmetry.status == ParameterStatus::kFree;
+  const double correlation = are_free ? sense * Correlation(fit, "slip_force", "asymmetry") : 0.0;
+  const auto way = [&](End of_force, End of_asymmetry) {
+    const std::optional<double> force = EndOf(slip_force, of_force);
+    std::optional<double> other = asymmetry.*of_asymmetry;
+    if (asymmetry.status == ParameterStatus::kFixed) other = asymmetry.value;
+    if (!force || !other) return std::optional<double>();
+    return Together(std::abs(std::log(*force / slip_force.value)),
+                    std::abs(*other - asymmetry.value) / share, correlation);
   };
-  contact::IdentifiedContact contact = contact::IdentifyContact(
-      moved("sigma", law.tangential_stiffness), moved("slip_force", law.slip_force), known,
-      Correlation(fit, "sigma", "slip_force"));
-  WithholdSphere(fit, contact);
-  return contact;
+  const bool is_up = sense > 0;
+  if (const auto found = way(kEnds[0], kEnds[is_up ? 0 : 1])) {
+    quantity.lower = *quantity.value * std::exp(-*found);
+  }
+  if (const auto found = way(kEnds[1], kEnds[is_up ? 1 : 0])) {
+    quantity.upper = *quantity.value * std::exp(*found);
+  }
+}
+
+ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
+  ContactQuantity load = Made("normal_load", "N", "N", "");
+  load.why = known.normal_load ? "exact" : "not given, and no column has it";
+  if (!known.normal_load) return load;
+  load.value = known.normal_load->value;
+  const double half_width = NormalQuantile(fit.confidence) * known.normal_load->standard_error;
+  if (half_width > 0) {
+    load.lower = *load.value - half_width;
+    load.upper = *load.value + half_width;
+  }
+  return load;
+}
+
+}  // namespace
+
+std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownContact& known) {
+  const Mapping mapping(fit, known);
+  const bool denies_hertz = DeniesHertz(fit);
+  const auto describe = [&](const QuantityRow& row) {
+    ContactQuantity quantity = Made(row.name, row.symbol, row.unit, row.parameter);
+    const ParameterEstimate& parameter = *fit.Find(row.parameter);
+    const bool needs_fit = !(row.name == "maximum_pressure" && known.contact_radius);
+    const std::optional<PropagatedValue> at_estimate = mapping.AtEstimate(row.make);
+    if (row.is_of_sphere && denies_hertz) {
+      quantity.why = kWhyNoSphere;
+    } else if (!at_estimate) {
+      quantity.why =
+          row.inputs
+              ? fmt::format("needs {}", fmt::join(contact::MissingInputs(known, *row.inputs), ", "))
+              : std::string(row.why);
+    } else if (needs_fit && !parameter.is_known()) {
+      quantity.why = fmt::format("needs an identifiable {}", row.parameter);
+      if (row.name == "friction_coefficient" && WhatIsShown(parameter) == Shown::kLowerLimit) {
+        quantity.lower = at_estimate->value * *parameter.lower95 / parameter.value;
+      }
+    } else {
+      mapping.Fill(quantity, row.make);
+    }
+    return quantity;
+  };
+  std::vector<ContactQuantity> quantities;
+  for (const QuantityRow& row : kQuantities) {
+    quantities.push_back(describe(row));
+    if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
+    quantities.push_back(Made("slip_force_positive", "Tc up", "N", "slip_force"));
+    FillSlipForce(fit, 1.0, quantities.back());
+    quantities.push_back(Made("slip_force_negative", "down", "N", "slip_force"));
+    FillSlipForce(fit, -1.0, quantities.back());
+  }
+  for (const QuantityRow& row : kOfSeries) {
+    if (!fit.is_load_series() || !known.normal_load || !mapping.AtEstimate(row.make)) continue;
+    const auto old = std::ranges::find(quantities, row.name, &ContactQuantity::name);
+    if (old == quantities.end()) {
+      quantities.push_back(describe(row));
+    } else if (!old->value) {
+      *old = describe(row);
+    }
+  }
+  ContactQuantity gross_slip = Made("gross_slip_displacement", "δc", "m", "alpha");
+  const std::optional<bool> is_rejected = TestAlpha(fit).is_rejected;
+  if (!fit.Find("sigma")->is_known() || !fit.Find("slip_force")->is_known()) {
+    gross_slip.why = "needs an identifiable sigma and slip_force";
+  } else if (is_rejected && *is_rejected) {
+    gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
+  } else {
+    mapping.FillGrossSlip(gross_slip);
+  }
+  quantities.push_back(std::move(gross_slip));
+  quantities.push_back(NormalLoad(fit, known));
+  return quantities;
+}
+
+AlphaTest TestAlpha(const FitResult& fit) {
+  AlphaTest test;
+  const ParameterEstimate& alpha = *fit.Find("alpha");
+  if (alpha.status == ParameterStatus::kFixed) return test;
+  constexpr double kThird = contact::kMindlinShapeExponent;
+  test.minus_third = alpha.value - kThird;
+  if (!alpha.is_known()) return test;
+  test.is_rejected = alpha.lower95 > kThird || alpha.upper95 < kThird;
+  const double error = fit.ErrorTowards(alpha, kThird);
+  if (error > 0 && std::isfinite(error)) {
+    test.p_value = PValueOfT(*test.minus_third / error, fit.ErrorDegreesOfFreedom());
+  }
+  return test;
+}
+
+namespace {
+
+/// True if a value that was given is an exponent, as written with three digits.
+bool IsHeldAt(double given, double exponent) {
+  constexpr double kWritten = 1e-3;
+  return std::abs(given - exponent) < kWritten;
+}
+
+/// @param error_of_other  of the hypothesis' exponent, where it is fitted too
+LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit,
+                    double error_of_other = 0.0) {
+  LoadHypothesis test{.name = name, .exponent = exponent};
+  const ParameterEstimate& fitted = *fit.Find("load_exponent");
+  if (fitted.status == ParameterStatus::kFixed || !fitted.is_known()) return test;
+  const double correlation = error_of_other > 0 ? Correlation(fit, "load_exponent", "alpha") : 0.0;
+  const double error = *Together(fit.ErrorTowards(fitted, exponent), error_of_other, -correlation);
+  if (!(error > 0) || !std::isfinite(error)) return test;
+  test.p_value = PValueOfT((fitted.value - exponent) / error, fit.ErrorDegreesOfFreedom());
+  return test;
+}
+
+}  // namespace
+
+std::vector<LoadHypothesis> TestLoadExponent(const FitResult& fit) {
+  if (!fit.is_load_series()) return {};
+  const ParameterEstimate& alpha = *fit.Find("alpha");
+  return {
+      Test("smooth sphere, Hertz", contact::kMindlinShapeExponent, fit),
+      Test("elements in parallel, α", alpha.value, fit, fit.ErrorTowards(alpha, fit.load_exponent)),
+      Test("cone", 0.5, fit), Test("flat punch", 0.0, fit), Test("rough surfaces", 1.0, fit)};
+}
+
+bool DeniesHertz(const FitResult& fit) {
+  if (!fit.is_load_series()) return false;
+  const ParameterEstimate& exponent = *fit.Find("load_exponent");
+  if (exponent.status == ParameterStatus::kFixed) {
+    return !IsHeldAt(exponent.value, contact::kMindlinShapeExponent);
+  }
+  const LoadHypothesis sphere = Test("", contact::kMindlinShapeExponent, fit);
+  return sphere.p_value && *sphere.p_value < kSignificance;
 }
 
 std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
@@ -92,138 +432,12 @@ std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
   return sum / count;
 }
 
-AlphaTest TestAlpha(const identification::FitResult& fit) {
-  AlphaTest test;
-  const identification::ParameterEstimate& alpha = *fit.Find("alpha");
-  if (alpha.status == identification::ParameterStatus::kFixed) return test;
-  constexpr double kThird = contact::kMindlinShapeExponent;
-  test.minus_third = alpha.value - kThird;
-  if (!alpha.is_known()) return test;
-  const double error = fit.ErrorTowards(alpha, kThird);
-  if (error > 0 && std::isfinite(error)) {
-    test.z = *test.minus_third / error;
-    test.p_value = PValueOfT(*test.z, fit.ErrorDegreesOfFreedom());
-  }
-  test.is_rejected = alpha.lower95 > kThird || alpha.upper95 < kThird;
-  const auto& likelihood = fit.mindlin_test;
-  if (likelihood && (likelihood->p_value < kSignificance) == *test.is_rejected) {
-    test.likelihood = likelihood;
-  }
-  return test;
-}
-
-StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
-                            double degrees_of_freedom, double confidence) {
-  StiffnessTest test;
-  test.confidence = confidence;
-  test.radius = radius;
-  test.ratio = ratio;
-  if (!(ratio.standard_error > 0) || std::isinf(ratio.standard_error)) return test;
-  const double share = ratio.FitShare();
-  const double degrees =
-      share > 0 ? degrees_of_freedom / (share * share) : std::numeric_limits<double>::infinity();
-  const double half_width = StudentQuantile(degrees, confidence) * ratio.standard_error;
-  test.interval95 = {ratio.value - half_width, ratio.value + half_width};
-  test.z = (ratio.value - 1) / ratio.standard_error;
-  test.p_value = PValueOfT(*test.z, degrees);
-  return test;
-}
-
-std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
-                                         const contact::IdentifiedContact& contact) {
-  std::vector<StiffnessTest> tests;
-  const bool is_known = fit.Find("sigma")->is_known();
-  const auto add = [&](std::string_view radius, const contact::PropagatedValue& ratio) {
-    tests.push_back(is_known
-                        ? TestStiffness(radius, ratio, fit.ErrorDegreesOfFreedom(), fit.confidence)
-                        : StiffnessTest{.radius = radius, .ratio = ratio});
-  };
-  if (contact.hertz) add("hertz", contact.hertz->sigma_over_hertz_mindlin);
-  if (contact.sigma_over_mindlin) add("given", *contact.sigma_over_mindlin);
-  return tests;
-}
-
-using identification::ParameterEstimate;
-using identification::ParameterStatus;
-
-namespace {
-
-/// Ways of ln Tc and of a, the latter in proportion to the slip force, as one of their sum.
-std::optional<double> Together(const std::optional<double>& of_slip_force,
-                               const std::optional<double>& of_asymmetry, double correlation) {
-  if (!of_slip_force || !of_asymmetry) return std::nullopt;
-  return std::sqrt(std::max(*of_slip_force * *of_slip_force + *of_asymmetry * *of_asymmetry +
-                                2 * correlation * *of_slip_force * *of_asymmetry,
-                            0.0));
-}
-
-/// 0 of what is held.
-std::optional<double> WayTo(const ParameterEstimate& estimate, const std::optional<double>& end) {
-  if (estimate.status == ParameterStatus::kFixed) return 0.0;
-  if (!end) return std::nullopt;
-  return std::abs(*end - estimate.value);
-}
-
-std::optional<double> LogWayTo(const ParameterEstimate& estimate,
-                               const std::optional<double>& end) {
-  if (estimate.status == ParameterStatus::kFixed) return 0.0;
-  if (!end || !(*end > 0)) return std::nullopt;
-  return std::abs(std::log(*end / estimate.value));
-}
-
-std::optional<double> ErrorOf(const ParameterEstimate& estimate) {
-  return estimate.status == ParameterStatus::kFixed ? std::optional<double>(0.0)
-                                                    : estimate.standard_error;
-}
-
-/// @param sense  +1 where the motion is towards positive displacement, −1 where it is not
-SlipForce InSense(double sense, const ParameterEstimate& slip_force,
-                  const ParameterEstimate& asymmetry, double correlation) {
-  const double share = 1 + sense * asymmetry.value;
-  const auto over_share = [&](std::optional<double> way) {
-    if (way) *way /= share;
-    return way;
-  };
-  const double correlation_in_sense = sense * correlation;
-  SlipForce force{.value = slip_force.value * share};
-  if (slip_force.status == ParameterStatus::kFixed && asymmetry.status == ParameterStatus::kFixed) {
-    return force;
-  }
-  std::optional<double> error_of_slip_force = ErrorOf(slip_force);
-  if (error_of_slip_force) *error_of_slip_force /= slip_force.value;
-  if (const auto error =
-          Together(error_of_slip_force, over_share(ErrorOf(asymmetry)), correlation_in_sense)) {
-    force.standard_error = force.value * *error;
-  }
-  const auto& towards_lower = sense > 0 ? asymmetry.lower95 : asymmetry.upper95;
-  const auto& towards_upper = sense > 0 ? asymmetry.upper95 : asymmetry.lower95;
-  if (const auto way =
-          Together(LogWayTo(slip_force, slip_force.lower95),
-                   over_share(WayTo(asymmetry, towards_lower)), correlation_in_sense)) {
-    force.lower95 = force.value * std::exp(-*way);
-  }
-  if (const auto way =
-          Together(LogWayTo(slip_force, slip_force.upper95),
-                   over_share(WayTo(asymmetry, towards_upper)), correlation_in_sense)) {
-    force.upper95 = force.value * std::exp(*way);
-  }
-  return force;
-}
-
-}  // namespace
-
-std::optional<SlipForces> DescribeSlipForces(const FitResult& fit) {
-  const ParameterEstimate* const slip_force = fit.Find("slip_force");
-  const ParameterEstimate* const asymmetry = fit.Find("asymmetry");
-  if (slip_force == nullptr || asymmetry == nullptr || !slip_force->is_known() ||
-      !asymmetry->is_known()) {
-    return std::nullopt;
-  }
-  const bool both_are_free =
-      slip_force->status != ParameterStatus::kFixed && asymmetry->status != ParameterStatus::kFixed;
-  const double correlation = both_are_free ? Correlation(fit, "slip_force", "asymmetry") : 0.0;
-  return SlipForces{.positive = InSense(1.0, *slip_force, *asymmetry, correlation),
-                    .negative = InSense(-1.0, *slip_force, *asymmetry, correlation)};
+bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
+                  double contact_amplitude) {
+  constexpr double kAsGoodAsSlip = 0.99;
+  const double gross_slip = models::SteadyGrossSlipAmplitude(model, law);
+  if (std::isfinite(gross_slip)) return contact_amplitude >= gross_slip;
+  return models::SteadyPeakForce(model, law, contact_amplitude) >= kAsGoodAsSlip * law.slip_force;
 }
 
 }  // namespace mindahl::report

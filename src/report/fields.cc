@@ -3,253 +3,574 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <utility>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
 
 #include "mindahl/core/version.h"
-#include "report/field_table.h"
+#include "mindahl/identification/terms.h"
 #include "report/names.h"
-#include "report/trims.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
 using identification::RecordFit;
-using loop::ReversalGate;
 
 namespace {
 
-/// Returns the sum over the records of what one of them has.
+Json NumberOrNull(const std::optional<double>& number) {
+  return number && std::isfinite(*number) ? Json(*number) : Json();
+}
+
+/// Returns what a record has that is widest; null of a fit that failed.
 template <typename Get>
-std::function<std::size_t(const Report&)> Sum(Get get) {
-  return [get](const Report& report) {
-    std::size_t sum = 0;
-    for (const RecordFit& record : report.fit.records) sum += get(record);
-    return sum;
-  };
+Json OfWidest(const Report& report, Get get) {
+  if (report.failed()) return nullptr;
+  return NumberOrNull(get(report.fit.WidestRecord()));
+}
+
+std::string WhyNotClosed(const Report&) { return "no cycle is closed"; }
+
+std::string WhyNotJudged(const Report&) {
+  return "there are too few samples to identify anything in addition to the model";
+}
+
+// --- input
+
+Json ColumnJson(const io::ChosenColumn* column) {
+  if (column == nullptr || column->number == 0) return nullptr;
+  return {{"name", column->name}, {"index", column->number}, {"unit", column->unit}};
+}
+
+Json Columns(const Report& report) {
+  const io::RecordFile& first = report.records.front();
+  return {{"displacement", ColumnJson(&first.displacement)},
+          {"force", ColumnJson(&first.force)},
+          {"time", ColumnJson(first.time ? &*first.time : nullptr)},
+          {"normal_load", ColumnJson(first.normal_load ? &*first.normal_load : nullptr)}};
 }
 
 template <typename Get>
-auto OneARecord(Get get) {
-  return [get](const Report& report) {
-    std::vector<std::optional<typename Result<Get, RecordFit>::Type>> list;
-    list.reserve(report.fit.records.size());
-    for (const RecordFit& record : report.fit.records) list.push_back(std::invoke(get, record));
-    return list;
-  };
+std::size_t SumOver(const Report& report, Get get) {
+  std::size_t sum = 0;
+  for (std::size_t r = 0; r < report.records.size(); ++r) sum += get(r);
+  return sum;
 }
 
-const ReversalGate& GateOf(const Report& report) { return report.fit.WidestRecord().gate; }
-
-/// Makes a getter of the gate that competes, absent where the gate is certain.
-template <typename Member>
-auto OfOtherGate(Member member) {
-  return IfAny([](const Report& report) { return If(!GateOf(report).certain, GateOf(report)); },
-               member);
-}
-
-struct LoadPieceItem {
-  std::string file;
-  io::LoadPiece piece;
-  std::size_t samples;
-};
-
-/// Returns the pieces; empty where no record is one.
-std::optional<std::vector<LoadPieceItem>> LoadPieces(const Report& report) {
-  std::vector<LoadPieceItem> pieces;
-  for (std::size_t r = 0; r < report.records.size(); ++r) {
-    const io::RecordFile& record = report.records[r];
-    if (!record.piece) continue;
-    pieces.push_back(
-        {.file = report.files[r], .piece = *record.piece, .samples = record.record.size()});
+Json LeftOutJson(const Report& report) {
+  Json list = Json::array();
+  for (const LeftOut& part : DescribeLeftOut(report)) {
+    const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
+    list.push_back({{"file", part.file},
+                    {"samples", part.samples},
+                    {"first", line(part.first)},
+                    {"last", line(part.last)},
+                    {"why", part.why}});
   }
-  return pieces.empty() ? std::nullopt : std::optional(std::move(pieces));
+  return list;
 }
 
-const std::vector<Field<LoadPieceItem>>& LoadPieceFields() {
-  using Item = LoadPieceItem;
-  static const std::vector<Field<Item>> fields = {
-      {"file", "", "name of the record: that of the file with the lines of the piece", &Item::file},
-      {"normal_load", "N", "median of the load", At(&Item::piece, &io::LoadPiece::normal_load)},
-      {"first_line", "", "first line of the piece in the file, counted from 1",
-       At(&Item::piece, &io::LoadPiece::first_line)},
-      {"last_line", "", "likewise", At(&Item::piece, &io::LoadPiece::last_line)},
-      {"samples", "", "samples of the piece, including those that do not count", &Item::samples},
-  };
-  return fields;
+// --- parameters
+
+/// True where a value is only where the search ended: at a limit of the program's own.
+bool IsAtOwnLimit(const ParameterEstimate& estimate) {
+  return (estimate.status == ParameterStatus::kAtLowerBound ||
+          estimate.status == ParameterStatus::kAtUpperBound) &&
+         estimate.identifiability == identification::Identifiability::kNotIdentifiable;
 }
 
-std::size_t BetweenLoads(const Report& report) {
-  std::size_t samples = 0;
-  for (const io::RecordFile& record : report.records) {
-    if (record.piece) samples += record.piece->left_out;
+Json Parameters(const Report& report) {
+  Json parameters = Json::object();
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const bool is_at_limit = IsAtOwnLimit(estimate);
+    const auto unless_at_limit = [&](std::optional<double> value) {
+      return is_at_limit ? Json() : NumberOrNull(value);
+    };
+    parameters[estimate.name] = {
+        {"value", unless_at_limit(estimate.value)},
+        {"unit", estimate.unit},
+        {"ci95", {unless_at_limit(estimate.lower95), unless_at_limit(estimate.upper95)}},
+        {"standard_error", unless_at_limit(estimate.standard_error)},
+        {"status", Name(estimate.status)},
+        {"identifiability", Name(estimate.identifiability)}};
   }
-  return samples;
+  return parameters;
 }
 
-const io::RecordFile& FirstRecord(const Report& report) { return report.records.front(); }
-constexpr auto kFirst = &FirstRecord;
+Json Correlations(const Report& report) {
+  const auto& parameters = report.fit.parameters;
+  const std::vector<double>& correlation = report.fit.correlation;
+  Json matrix = Json::object();
+  if (correlation.size() != parameters.size() * parameters.size()) return matrix;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    Json row = Json::object();
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      row[parameters[j].name] = NumberOrNull(correlation[i * parameters.size() + j]);
+    }
+    matrix[parameters[i].name] = std::move(row);
+  }
+  return matrix;
+}
 
-void AddInputFields(FieldTable& table) {
-  table.Add({
-      {"schema", "", "name and version of the schema",
-       [](const Report&) { return "mindahl.fit/1"; }},
-      {"version", "", "version of mindahl", [](const Report&) { return Version(); }},
-      {"input.files", "",
-       "names of the files, as given; with line numbers where a record is a piece of a file",
-       &Report::files},
-      {"input.samples", "", "samples read, including those that do not count",
-       [](const Report& report) {
-         std::size_t samples = BetweenLoads(report);
-         for (const io::RecordFile& input : report.records) samples += input.record.size();
-         return samples;
-       }},
-      {"input.load_pieces", "",
-       "pieces that were fitted as records of their own, of files whose load changes in steps, or "
-       "ramps with --trim auto; absent where there are none",
-       IfAny(&LoadPieces, [](const auto& pieces) { return List(LoadPieceFields(), pieces); })},
-      {"input.between_loads", "",
-       "samples in none of the pieces, which do not count: the load changes, or fewer than two "
-       "turning points have passed since; absent likewise",
-       IfAny([](const Report& report) { return If(LoadPieces(report).has_value(), report); },
-             &BetweenLoads)},
-      {"input.trimmed", "",
-       "samples that --trim auto leaves out under the fitted load; may be empty, absent without "
-       "--trim auto",
-       IfAny([](const Report& report) { return If(!report.trims.empty(), report); },
-             [](const Report& report) { return List(TrimmedFields(), TrimmedItems(report)); })},
-      {"input.cycles", "", "complete cycles, of all files",
-       Sum([](const RecordFit& record) { return record.measures.cycles; })},
-      {"input.reversals", "", "turning points of the motion, of all files",
-       Sum([](const RecordFit& record) { return record.reversals.size(); })},
-      {"input.units.displacement", "", "unit of the column in the first file",
-       At(kFirst, &io::RecordFile::displacement, &io::ChosenColumn::unit)},
-      {"input.units.force", "", "unit of the column in the first file",
-       At(kFirst, &io::RecordFile::force, &io::ChosenColumn::unit)},
-      {"input.units.time", "", "likewise; absent where there is no such column",
-       IfAny(kFirst, &io::RecordFile::time, &io::ChosenColumn::unit)},
-      {"input.units.normal_load", "", "likewise; absent where there is no such column",
-       IfAny(kFirst, &io::RecordFile::normal_load, &io::ChosenColumn::unit)},
-      {"input.left_out", "", "samples that do not count",
-       [](const Report& report) {
-         std::size_t left_out = BetweenLoads(report);
-         for (const RecordFit& record : report.fit.records) left_out += record.left_out;
-         return left_out;
-       }},
-      {"input.reversal_gate", kOfExcitation, "one per file: excursions up to it are noise",
-       OneARecord([](const RecordFit& record) { return record.gate.gate; })},
-      {"input.displacement_noise", "m", "one per file: standard deviation, given or estimated",
-       OneARecord(&RecordFit::displacement_noise)},
-      {"input.initial_state", "", "one per file: virgin or steady",
-       OneARecord(&RecordFit::initial_state)},
-      {"input.response_noise", kOfResponse,
-       "one per file: standard deviation of the noise of the fitted channel, given or estimated",
-       OneARecord(&RecordFit::response_noise)},
-      {"input.force_sign", "", "same or opposite: sign of the force relative to the displacement",
-       [](const Report& report) { return report.fit.force_sense > 0 ? "same" : "opposite"; }},
-      {"input.glitches.spikes", "", "samples left out that are far off their neighbours",
-       Sum([](const RecordFit& record) { return record.glitches.spikes; })},
-      {"input.glitches.dropouts", "", "samples left out that read 0 in both channels",
-       Sum([](const RecordFit& record) { return record.glitches.dropouts; })},
-      {"input.glitches.held", "", "samples left out that repeat a value before it jumps",
-       Sum([](const RecordFit& record) { return record.glitches.held; })},
-      {"reversals.count", "", "turning points of the motion in the widest record",
-       [](const Report& report) { return report.fit.WidestRecord().reversals.size(); }},
-      {"reversals.gate", kOfExcitation, "excursions up to it are noise",
-       At(&GateOf, &ReversalGate::gate)},
-      {"reversals.certain", "", "true if no other gate is as plausible",
-       At(&GateOf, &ReversalGate::certain)},
-      {"reversals.other_count", "", "turning points under the other gate; absent where certain",
-       OfOtherGate(&ReversalGate::other_count)},
-      {"reversals.other_gate", kOfExcitation, "the other gate; absent where certain",
-       OfOtherGate(&ReversalGate::other_gate)},
+// --- adequacy and what is measured
+
+template <typename Get>
+Json IfJudged(const Report& report, Get get) {
+  if (!IsJudged(report)) return nullptr;
+  return get(report.fit.adequacy);
+}
+
+Json Causes(const Report& report) {
+  Json causes = Json::array();
+  for (const identification::Cause& cause : report.fit.adequacy.causes) {
+    causes.push_back({{"code", cause.code},
+                      {"try", cause.option.empty() ? Json() : Json(cause.option)},
+                      {"delta_aicc", NumberOrNull(cause.delta_aicc)},
+                      {"explains", NumberOrNull(cause.explains)}});
+  }
+  return causes;
+}
+
+/// Returns a fact of the widest record where it closes a cycle, else what is measured without one.
+template <typename Fact, typename Measure>
+Json Measured(const Report& report, Fact fact, Measure measure) {
+  return OfWidest(report, [&](const RecordFit& record) {
+    return record.facts.closed ? std::optional<double>(record.facts.*fact)
+                               : std::optional<double>(record.measures.*measure);
   });
 }
 
-FieldTable MakeTable() {
-  FieldTable table;
-  AddInputFields(table);
-  table.Describe("input.load_pieces[].", LoadPieceFields());
-  table.Describe("input.trimmed[].", TrimmedFields());
-  AddAdequacyFields(table);
-  AddMeasuredFields(table);
-  AddParameterFields(table);
-  AddSlipForceFields(table);
-  AddLawFields(table);
-  AddResidualFields(table);
-  AddSelectionFields(table);
-  AddSolverFields(table);
-  AddLoopFields(table);
-  AddContactFields(table);
-  AddMappingFields(table);
-  AddLoadSeriesFields(table);
-  // In a fit that failed, every missing value is null for that reason.
-  for (Field<Report>& row : table.rows) {
-    const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");
-    row.why_null = [why = std::move(row.why_null), is_of_contact](const Report& report) {
-      if (report.failed()) return WhyFailed(report);
-      return is_of_contact && report.is_torsional() ? std::string(kWhyNoContact) : why(report);
-    };
-  }
-  return table;
+Json IfClosed(const Report& report, std::optional<double> (*get)(const loop::LoopFacts&)) {
+  return OfWidest(report, [&](const RecordFit& record) {
+    return record.facts.closed ? get(record.facts) : std::nullopt;
+  });
 }
 
-const FieldTable& AllFields() {
-  static const FieldTable table = MakeTable();
-  return table;
+Json MeasuredCycles(const Report& report) {
+  Json cycles = Json::array();
+  if (report.failed()) return cycles;
+  for (const loop::CycleFacts& cycle : report.fit.WidestRecord().facts.cycles) {
+    cycles.push_back({{"start", cycle.start},
+                      {"amplitude", NumberOrNull(cycle.amplitude)},
+                      {"peak_force", NumberOrNull(cycle.peak_force)},
+                      {"half_gap", NumberOrNull(cycle.half_gap)},
+                      {"energy", NumberOrNull(cycle.energy)},
+                      {"energy_ratio", NumberOrNull(cycle.energy_ratio)}});
+  }
+  return cycles;
+}
+
+// --- law, contact, terms
+
+Json Alternatives(const Report& report) {
+  Json list = Json::array();
+  if (const auto& choice = report.fit.law_choice) {
+    list.push_back({{"law", choice->alternative->name},
+                    {"sigma", NumberOrNull(choice->law.tangential_stiffness)},
+                    {"alpha", NumberOrNull(choice->law.shape_exponent)},
+                    {"slip_force", NumberOrNull(choice->law.slip_force)}});
+  }
+  return list;
+}
+
+std::string WhyNoPreferredLaw(const Report& report) {
+  return report.fit.law_choice ? "the record does not distinguish the laws"
+                               : "Masing's law and Dahl's own are not compared";
+}
+
+Json Contact(const Report& report) {
+  Json contact = Json::object();
+  for (const ContactQuantity& quantity : report.contact) {
+    contact[std::string(quantity.name)] = {
+        {"value", NumberOrNull(quantity.value)},
+        {"ci95", {NumberOrNull(quantity.lower), NumberOrNull(quantity.upper)}},
+        {"unit", quantity.unit}};
+  }
+  return contact;
+}
+
+std::string WhyAlphaNotTested(const Report& report) {
+  const ParameterEstimate* alpha = report.fit.Find("alpha");
+  if (report.is_torsional()) return "of a torque against an angle";
+  if (alpha == nullptr || alpha->status == ParameterStatus::kFixed) return "alpha is held";
+  return alpha->is_known() ? "alpha is at a bound" : "alpha is not identifiable";
+}
+
+Json ConsideredTerms(const Report& report) {
+  Json list = Json::array();
+  if (!report.terms) return list;
+  for (const identification::ConsideredTerm& term : report.terms->considered) {
+    list.push_back({{"name", term.name},
+                    {"gain", NumberOrNull(term.gain)},
+                    {"added", term.added},
+                    {"refused", term.obstacle}});
+  }
+  return list;
+}
+
+Json Next(const Report& report) {
+  if (!report.next) return nullptr;
+  return {{"text", report.next->text},
+          {"options", report.next->options},
+          {"misfit_before", report.next->misfit_before},
+          {"misfit_after", report.next->misfit_after}};
+}
+
+/// Reasons of nulls by the path of a value or of an object that has it.
+std::vector<std::pair<std::string, std::string>> ReasonsOf(const Report& report) {
+  std::vector<std::pair<std::string, std::string>> reasons;
+  if (report.failed()) {
+    reasons.emplace_back("", "the fit failed: " + report.fit.solver.message);
+    return reasons;
+  }
+  reasons.emplace_back("", "not a finite number");
+  for (const Field& field : Fields()) {
+    if (field.why_null != nullptr) reasons.emplace_back(field.path, field.why_null(report));
+  }
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const std::string path = "parameters." + estimate.name;
+    reasons.emplace_back(path, IsAtOwnLimit(estimate) ? "the search stopped at its own limit"
+                               : estimate.status == ParameterStatus::kFixed
+                                   ? "it is held"
+                                   : "the record does not determine it");
+  }
+  for (const ContactQuantity& quantity : report.contact) {
+    reasons.emplace_back(fmt::format("contact.{}", quantity.name), quantity.why);
+  }
+  return reasons;
+}
+
+/// Adds a place for every null of a value, each with the reason of the longest path to it.
+void FindNulls(const Json& value, const std::string& path,
+               const std::vector<std::pair<std::string, std::string>>& reasons, Json& nulls) {
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      FindNulls(member, path.empty() ? key : path + "." + key, reasons, nulls);
+    }
+  } else if (value.is_array()) {
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      FindNulls(value[k], fmt::format("{}[{}]", path, k), reasons, nulls);
+    }
+  } else if (value.is_null()) {
+    const std::pair<std::string, std::string>* best = &reasons.front();
+    for (const auto& reason : reasons) {
+      const bool leads = path.starts_with(reason.first) &&
+                         (reason.first.size() == path.size() || path[reason.first.size()] == '.' ||
+                          path[reason.first.size()] == '[');
+      if (leads && reason.first.size() > best->first.size()) best = &reason;
+    }
+    nulls.push_back({{"path", path}, {"why", best->second}});
+  }
 }
 
 }  // namespace
 
-std::string WhyFailed(const Report& report) {
-  return "the fit failed: " + report.fit.solver.message;
-}
-
-std::vector<FieldDescription> DescribeFields() {
-  std::vector<FieldDescription> descriptions;
-  for (const FieldDescription& row : AllFields().rows) descriptions.push_back(row);
-  descriptions.insert(descriptions.end(), AllFields().items.begin(), AllFields().items.end());
-  descriptions.push_back({"nulls[].path", "", "where the null is"});
-  descriptions.push_back({"nulls[].why", "", "why it is one"});
-  for (const char* list : {"warnings", "notes"}) {
-    descriptions.push_back({std::string(list) + "[].code", "", "stable name, for scripts"});
-    descriptions.push_back({std::string(list) + "[].message", "", "sentence, for people"});
-  }
-  return descriptions;
-}
-
-std::vector<DescribedValue> ValuesUnder(const Report& report, const Json& document,
-                                        std::string_view prefix) {
-  static const std::vector<FieldDescription> descriptions = DescribeFields();
-  std::vector<DescribedValue> described;
-  for (const FieldDescription& field : descriptions) {
-    const bool is_in_list = field.path.find("[]") != std::string::npos;
-    if (is_in_list || !field.path.starts_with(prefix)) continue;
-    const Json::json_pointer place = PointerTo(field.path);
-    if (!document.contains(place)) continue;
-    const Json& value = document.at(place);
-    if (value.is_structured() || value.is_null()) continue;
-    described.push_back({.field = field, .value = value});
-    described.back().field.unit = UnitIn(report.units, field.unit);
-  }
-  return described;
+const std::vector<Field>& Fields() {
+  using R = const Report&;
+  static const std::vector<Field> fields = {
+      {"schema", "", "mindahl.fit/2", [](R) { return Json("mindahl.fit/2"); }},
+      {"version", "", "of the program", [](R) { return Json(Version()); }},
+      {"input.files", "", "names of the records", [](R report) { return Json(report.files); }},
+      {"input.columns", "",
+       "`name`, `index` from 1 and `unit` of displacement, force, time and normal_load in the "
+       "first "
+       "file",
+       Columns, [](R) { return std::string("the file has none, or it is not used"); }},
+      {"input.samples", "", "samples of all records",
+       [](R report) {
+         return Json(SumOver(report, [&](auto r) { return report.records[r].record.size(); }));
+       }},
+      {"input.cycles", "", "complete cycles of all records",
+       [](R report) {
+         return Json(
+             SumOver(report, [&](auto r) { return report.fit.records[r].measures.cycles; }));
+       }},
+      {"input.reversals", "", "turning points of all records",
+       [](R report) {
+         return Json(
+             SumOver(report, [&](auto r) { return report.fit.records[r].reversals.size(); }));
+       }},
+      {"input.left_out", "",
+       "samples that do not count: `file`, `samples`, `first` and `last` line, `why`", LeftOutJson,
+       [](R) { return std::string("they are not in a row"); }},
+      {"model", "", "the law that was fitted",
+       [](R report) { return Json(report.fit.model->name); }},
+      {"initial_state", "", "`virgin`, `steady` or `mixed`",
+       [](R report) {
+         return Json(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
+       }},
+      {"parameters", "",
+       "by name: `value`, `unit`, `ci95`, `standard_error`, `status`, `identifiability`",
+       Parameters},
+      {"correlation", "-", "of the errors of two parameters, by their names", Correlations,
+       [](R) { return std::string("one of the two is not fitted, or has no error"); }},
+      {"residuals.rms", "response", "rms of fitted less measured",
+       [](R report) { return NumberOrNull(report.fit.residuals.rms); }},
+      {"residuals.max_abs", "response", "the largest",
+       [](R report) { return NumberOrNull(report.fit.residuals.max_abs); }},
+      {"residuals.r_squared", "-", "fraction of the variance that the fit explains",
+       [](R report) { return NumberOrNull(report.fit.residuals.r_squared); }},
+      {"residuals.durbin_watson", "-", "2 of white residuals, towards 0 of autocorrelated ones",
+       [](R report) { return NumberOrNull(report.fit.residuals.durbin_watson); }},
+      {"residuals.effective_samples", "-", "independent samples of equal information",
+       [](R report) { return NumberOrNull(report.fit.residuals.effective_samples); }},
+      {"solver.solver", "", "`tiny_solver` or `solve` of Ceres, `none`",
+       [](R report) { return Json(report.fit.solver.solver); }},
+      {"solver.termination", "", "as Ceres reports it",
+       [](R report) { return Json(report.fit.solver.termination); }},
+      {"solver.converged", "", "true if the search converged",
+       [](R report) { return Json(report.fit.converged); }},
+      {"solver.iterations", "", "of all searches from the best start",
+       [](R report) { return Json(report.fit.solver.iterations); }},
+      {"solver.final_cost", "response²", "half the weighted sum of squares",
+       [](R report) { return NumberOrNull(report.fit.solver.final_cost); }},
+      {"adequacy.verdict", "", "`adequate`, `doubtful` or `inadequate`",
+       [](R report) {
+         return IfJudged(report, [](const auto& adequacy) { return Json(Name(adequacy.verdict)); });
+       },
+       WhyNotJudged},
+      {"adequacy.use", "",
+       "`quantitative` up to 5 % of misfit over half gap, `indicative` up to 15 %, `none`",
+       [](R report) {
+         return IfJudged(report, [](const auto& adequacy) { return Json(Name(adequacy.use)); });
+       },
+       WhyNotJudged},
+      {"adequacy.p_value", "-", "probability of such residuals from noise alone",
+       [](R report) {
+         return IfJudged(report, [](const auto& a) { return NumberOrNull(a.p_value); });
+       },
+       WhyNotJudged},
+      {"adequacy.misfit_over_noise", "-", "rms of what the model misses over that of the noise",
+       [](R report) {
+         return IfJudged(report, [](const auto& a) { return NumberOrNull(a.misfit_over_noise); });
+       },
+       WhyNotJudged},
+      {"adequacy.misfit_over_half_gap", "-", "the same over the measured half gap",
+       [](R report) {
+         return IfJudged(report,
+                         [](const auto& a) { return NumberOrNull(a.misfit_over_half_gap); });
+       },
+       [](R report) {
+         return IsJudged(report) ? std::string("no half gap is measured") : WhyNotJudged(report);
+       }},
+      {"adequacy.causes", "",
+       "terms that the residuals look like: `code`, `try`, `delta_aicc`, `explains`", Causes,
+       [](R) { return std::string("no option takes it into account"); }},
+      {"measured.half_gap.value", "N", "half the force between the strokes, at their middle",
+       [](R report) { return IfClosed(report, [](const auto& facts) { return facts.half_gap; }); },
+       WhyNotClosed},
+      {"measured.half_gap.standard_deviation", "N", "between cycles",
+       [](R report) {
+         return IfClosed(report, [](const auto& f) { return f.half_gap_standard_deviation; });
+       },
+       [](R) { return std::string("there are fewer than two cycles of the widest amplitude"); }},
+      {"measured.amplitude", "m", "half the travel of the widest cycles",
+       [](R report) {
+         return Measured(report, &loop::LoopFacts::amplitude, &loop::LoopMeasures::amplitude);
+       }},
+      {"measured.peak_force", "N", "half the range of the force",
+       [](R report) {
+         return Measured(report, &loop::LoopFacts::peak_force, &loop::LoopMeasures::peak_force);
+       }},
+      {"measured.energy_per_cycle", "J", "enclosed by a cycle",
+       [](R report) {
+         return IfClosed(report, [](const auto& f) { return std::optional(f.energy_per_cycle); });
+       },
+       WhyNotClosed},
+      {"measured.energy_ratio", "-", "energy over 4·amplitude·peak force",
+       [](R report) {
+         return IfClosed(report, [](const auto& f) { return std::optional(f.energy_ratio); });
+       },
+       WhyNotClosed},
+      {"measured.asymmetry", "-", "distance of one stroke from the other turned about the centre",
+       [](R report) { return IfClosed(report, [](const auto& facts) { return facts.asymmetry; }); },
+       WhyNotClosed},
+      {"measured.slides", "", "true if the loop slides",
+       [](R report) {
+         return report.failed() ? Json() : Json(loop::Slides(report.fit.WidestRecord().facts));
+       }},
+      {"measured.cycles", "",
+       "each cycle of the widest record: `start`, `amplitude`, `peak_force`, `half_gap`, `energy`, "
+       "`energy_ratio`",
+       MeasuredCycles, [](R) { return std::string("the cycle does not show it"); }},
+      {"law.decided", "", "true if the record distinguishes Masing's law and Dahl's own",
+       [](R report) { return Json(report.fit.law_choice && report.fit.law_choice->decided); }},
+      {"law.preferred", "", "`mindlin-dahl` or `dahl`",
+       [](R report) {
+         const auto& choice = report.fit.law_choice;
+         return choice && choice->preferred != nullptr ? Json(choice->preferred->name) : Json();
+       },
+       WhyNoPreferredLaw},
+      {"law.alternatives", "", "the other law: `law`, `sigma`, `alpha`, `slip_force`",
+       Alternatives},
+      {"law.delta_aicc", "-", "AICc of the other law less that of the fitted one",
+       [](R report) {
+         const auto& choice = report.fit.law_choice;
+         return choice ? NumberOrNull(choice->delta_aicc) : Json();
+       },
+       [](R report) {
+         return report.fit.law_choice
+                    ? std::string("both give the same steady loop of one amplitude")
+                    : WhyNoPreferredLaw(report);
+       }},
+      {"contact", "", "by name: `value`, `ci95`, `unit`; empty of a torque", Contact},
+      {"mapping.alpha_minus_third", "-", "α − 1/3",
+       [](R report) { return NumberOrNull(report.alpha.minus_third); }, WhyAlphaNotTested},
+      {"mapping.p_value", "-", "two-sided p-value of α = 1/3",
+       [](R report) { return NumberOrNull(report.alpha.p_value); }, WhyAlphaNotTested},
+      {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)",
+       [](R report) {
+         const ContactQuantity* ratio = report.Find("sigma_over_hertz_mindlin");
+         return ratio != nullptr ? NumberOrNull(ratio->value) : Json();
+       },
+       [](R report) {
+         const ContactQuantity* ratio = report.Find("sigma_over_hertz_mindlin");
+         return ratio != nullptr ? ratio->why : std::string("of a torque against an angle");
+       }},
+      {"terms.mode", "", "`none`, `auto` or `named`",
+       [](R report) {
+         if (report.terms && !report.terms->considered.empty()) return Json("auto");
+         return Json(AddedTerms(report).empty() ? "none" : "named");
+       }},
+      {"terms.considered", "", "`name`, `gain`, `added`, `refused` for what reason, or empty",
+       ConsideredTerms},
+      {"terms.added", "", "names of the parameters in addition to the law's",
+       [](R report) {
+         Json names = Json::array();
+         for (const ParameterEstimate* term : AddedTerms(report)) names.push_back(term->name);
+         return names;
+       }},
+      {"next", "",
+       "`text`, `options`, `misfit_before`, `misfit_after` over the half gap, of what was tried",
+       Next, [](R) { return std::string("nothing that was tried helps by a tenth"); }},
+      {"confidence", "-", "of every interval",
+       [](R report) { return Json(report.fit.confidence); }},
+      {"warnings", "", "`code` and `message` of what a person should act on",
+       [](R report) {
+         Json list = Json::array();
+         for (const auto& [code, message] : report.warnings) {
+           list.push_back({{"code", code}, {"message", message}});
+         }
+         return list;
+       }},
+  };
+  return fields;
 }
 
 Json JsonDocument(const Report& report) {
-  Value document = Render(AllFields().rows, report);
-  Json json = std::move(document.json);
-  json["nulls"] = Json::array();
-  for (const NullPlace& null : document.nulls) {
-    json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
-  }
-  const auto append = [](Json& list, const std::vector<Warning>& warnings) {
-    for (const Warning& warning : warnings) {
-      list.push_back({{"code", warning.code}, {"message", warning.message}});
+  Json document;
+  for (const Field& field : Fields()) {
+    Json* place = &document;
+    std::string_view path = field.path;
+    for (std::size_t dot = 0; dot != std::string_view::npos;) {
+      dot = path.find('.');
+      place = &(*place)[std::string(path.substr(0, dot))];
+      if (dot != std::string_view::npos) path.remove_prefix(dot + 1);
     }
-  };
-  append(json["warnings"] = Json::array(), report.fit_warnings);
-  append(json["warnings"], report.contact_warnings);
-  append(json["notes"] = Json::array(), report.notes);
-  return json;
+    const bool is_of_residuals = field.path.starts_with("residuals.");
+    *place = report.failed() && is_of_residuals ? Json() : field.get(report);
+  }
+  Json nulls = Json::array();
+  FindNulls(document, "", ReasonsOf(report), nulls);
+  document["nulls"] = std::move(nulls);
+  return document;
+}
+
+std::string ToJson(const Report& report) {
+  return JsonDocument(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
+                                                             std::string_view prefix) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const Field& field : Fields()) {
+    if (!field.path.starts_with(prefix)) continue;
+    const Json value = field.get(report);
+    if (value.is_null() || value.is_structured()) continue;
+    std::string name(field.path.substr(prefix.size()));
+    std::ranges::replace(name, '_', ' ');
+    std::ranges::replace(name, '.', ' ');
+    const bool is_of_response = field.unit.starts_with("response");
+    const std::string unit =
+        is_of_response ? std::string(report.units.response) +
+                             std::string(field.unit.substr(std::string_view("response").size()))
+                       : UnitIn(report.units, field.unit);
+    std::string text = field.path.ends_with("p_value") ? ChanceText(value.get<double>()).substr(2)
+                       : value.is_boolean()            ? (value.get<bool>() ? "yes" : "no")
+                       : value.is_string()             ? value.get<std::string>()
+                       : value.is_number_float()       ? Quantity(value.get<double>(), unit, 4)
+                                                       : value.dump();
+    values.emplace_back(std::move(name), std::move(text));
+  }
+  return values;
+}
+
+std::vector<LeftOut> DescribeLeftOut(const Report& report) {
+  std::vector<LeftOut> parts;
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const io::RecordFile& file = report.records[r];
+    const RecordFit& fit = report.fit.records[r];
+    const auto line = [&](std::size_t sample) {
+      return sample < file.lines.size() ? file.lines[sample] : sample + 1;
+    };
+    std::size_t rest = fit.left_out;
+    const auto take = [&](std::size_t samples) { rest -= std::min(rest, samples); };
+    if (r < report.trims.size()) {
+      for (const loop::TrimmedPart& part : report.trims[r].parts) {
+        parts.push_back({.file = report.files[r],
+                         .samples = part.samples(),
+                         .first = line(part.first),
+                         .last = line(part.last - 1),
+                         .why = "rest"});
+        take(part.samples());
+      }
+    }
+    if (const std::size_t faults = fit.glitches.total(); faults > 0) {
+      const std::size_t first = fit.glitches.examples[0];
+      parts.push_back({.file = report.files[r],
+                       .samples = faults,
+                       .first = faults == 1 ? line(first) : 0,
+                       .last = faults == 1 ? line(first) : 0,
+                       .why = "faults"});
+      take(faults);
+    }
+    if (rest > 0) {
+      const auto& counts = fit.counts;
+      const auto first = std::ranges::find(counts, 0);
+      const auto counted = std::find_if(first, counts.end(), [](auto c) { return c != 0; });
+      const bool is_one = parts.empty() && static_cast<std::size_t>(counted - first) == rest;
+      const auto at = static_cast<std::size_t>(first - counts.begin());
+      parts.push_back({.file = report.files[r],
+                       .samples = rest,
+                       .first = is_one ? line(at) : 0,
+                       .last = is_one ? line(at + rest - 1) : 0,
+                       .why = "selection"});
+    }
+    if (file.piece && file.piece->left_out > 0) {
+      parts.push_back(
+          {.file = report.files[r], .samples = file.piece->left_out, .why = "another load"});
+    }
+  }
+  return parts;
+}
+
+std::vector<const ParameterEstimate*> AddedTerms(const Report& report) {
+  std::vector<const ParameterEstimate*> terms;
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const std::string_view name = identification::TermNameOf(estimate.name);
+    constexpr auto kOfEveryFit = std::to_array<std::string_view>(
+        {"sigma", "alpha", "slip_force", "load_exponent", "force_offset", "displacement_offset"});
+    if (std::ranges::find(kOfEveryFit, name) != kOfEveryFit.end()) continue;
+    // Reported of every fit, as 0 where it is not fitted.
+    const bool is_none = estimate.status == ParameterStatus::kFixed &&
+                         (estimate.value == 0.0 || std::isinf(estimate.value)) &&
+                         !report.options.fixed.contains(std::string(name));
+    if (!is_none) terms.push_back(&estimate);
+  }
+  return terms;
 }
 
 }  // namespace mindahl::report

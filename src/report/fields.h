@@ -1,83 +1,53 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mindahl/report/report.h"
 
+// The fields of the JSON, one row each, from which details of the text and of the page and the
+// table of docs/contract.md are made too.
 namespace mindahl::report {
 
 using Json = nlohmann::ordered_json;
 
-struct NullPlace {
-  std::string path;
-  std::string why;
+/// One row of the report.
+struct Field {
+  std::string_view path;     ///< "residuals.rms"
+  std::string_view unit;     ///< unit of a force; "" of a text, "-" of a ratio
+  std::string_view meaning;  ///< in words
+  /// Makes the value, null where there is none; it may be a list or an object of any depth.
+  Json (*get)(const Report&);
+  /// Says why it, or a member of it, is null.
+  std::string (*why_null)(const Report&) = nullptr;
 };
 
-/// A value of a report, which may be a list or have members.
-struct Value {
-  Json json = nullptr;
-  std::vector<NullPlace> nulls = {};  ///< in `json`, in their order; path "" is the value itself
-  bool is_absent = true;              ///< has no key
-
-  /// Puts a value where a path leads, making the members and lists on the way: "alpha.ci95[1]".
-  void Place(std::string_view path, Value value);
-  /// Adds or replaces a member whose name is any text.
-  void Set(const std::string& key, Value value);
-  /// Adds the members of another value.
-  void Add(const Value& members);
-  void Append(Value value);
-};
-
-/// Returns the place in a document that a path leads to: "/alpha/ci95/1" of "alpha.ci95[1]".
-[[nodiscard]] Json::json_pointer PointerTo(std::string_view path);
-
-/// Returns a number; of one that is missing or not finite a null, whose reason the row has.
-[[nodiscard]] Value Number(std::optional<double> number);
-[[nodiscard]] Value Missing(std::string why = {});
-
-/// A quantity of the contact that the fit and what is known besides it identify together.
-struct ContactField {
-  std::string_view key;
-  std::string_view unit;
-  std::string_view label;
-  std::string_view formula;
-  std::optional<contact::PropagatedValue> (*get)(const Report&);
-  std::string (*why_null)(const Report&);
-};
-
-/// Returns them in the order of the reports.
-const std::vector<ContactField>& ContactFields();
-
-/// Describes a field for the documentation and for the schema.
-struct FieldDescription {
-  std::string path;   ///< NAME and QUANTITY stand for what they are, [] for every place of a list
-  std::string unit;   ///< "" for a text, "-" for a ratio
-  std::string label;  ///< description in words
-  Json type = {{"type", "string"}};  ///< JSON schema; empty where its members are fields
-  bool may_be_null = false;
-  bool may_be_absent = false;
-};
-
-/// Returns every field that a report may have.
-std::vector<FieldDescription> DescribeFields();
-
-/// A number, word or flag of a report, with what the documentation says of it.
-struct DescribedValue {
-  FieldDescription field;
-  Json value;
-};
+const std::vector<Field>& Fields();
 
 /// Returns the document that ToJson() writes.
 Json JsonDocument(const Report& report);
 
-/// Returns the fields of one subject, without its lists: those whose path begins with `prefix`,
-/// such as "measured.", with their units in the report.
-/// @param document  JsonDocument() of the report
-std::vector<DescribedValue> ValuesUnder(const Report& report, const Json& document,
-                                        std::string_view prefix);
+/// Returns the numbers and words of fields whose path begins with `prefix`, "residuals.", as names
+/// without it and values with their units; none of what is null or has members.
+std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
+                                                             std::string_view prefix);
+
+/// Holds successive lines of a file that do not count.
+struct LeftOut {
+  std::string file;
+  std::size_t samples = 0;
+  std::size_t first = 0;  ///< first line in the file, 1-based; 0 where they are not in a row
+  std::size_t last = 0;
+  std::string why;  ///< "rest", "faults", "selection" …
+};
+
+/// Returns the samples of each record that do not count.
+std::vector<LeftOut> DescribeLeftOut(const Report& report);
+
+/// Returns the parameters in addition to the law's, offsets apart, that are fitted or held.
+std::vector<const identification::ParameterEstimate*> AddedTerms(const Report& report);
 
 }  // namespace mindahl::report

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "mindahl/identification/fit.h"
-#include "mindahl/report/loop_description.h"
 
 namespace mindahl::report {
 
@@ -20,17 +19,8 @@ template <>
 inline constexpr auto kNamesOf<identification::Identifiability> = std::to_array<std::string_view>(
     {"identifiable", "effective", "extrapolated", "bounded_below", "not_identifiable"});
 template <>
-inline constexpr auto kNamesOf<identification::IntervalSource> = std::to_array<std::string_view>(
-    {"parabola", "profile", "initial_state", "other_minimum", "omitted_terms", "plateau",
-     "small_alpha", "discrepancy", "carried_force"});
-template <>
 inline constexpr auto kNamesOf<models::InitialState> = std::to_array<std::string_view>({"virgin",
                                                                                         "steady"});
-template <>
-inline constexpr auto kNamesOf<loop::Channel> = std::to_array<std::string_view>({"displacement",
-                                                                                 "force"});
-template <>
-inline constexpr auto kNamesOf<SlipRegime> = std::to_array<std::string_view>({"partial", "gross"});
 template <>
 inline constexpr auto kNamesOf<identification::AdequacyVerdict> =
     std::to_array<std::string_view>({"adequate", "doubtful", "inadequate"});

@@ -1,19 +1,25 @@
 #include "mindahl/report/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
-#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/report/contact.h"
-#include "report/adequacy.h"
-#include "report/names.h"
-#include "report/trims.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
+
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
 namespace {
 
 void Require(const ReportInput& input) {
@@ -36,90 +42,184 @@ void Require(const ReportInput& input) {
   }
 }
 
-void SayFindings(Report& report) {
+/// Puts the fit into the units of a torque.
+void TranslateToTorque(Report& report) {
+  report.units = kUnitsOfTorque;
+  for (ParameterEstimate& estimate : report.fit.parameters) {
+    // Newtons over the unit of a column, whatever that is.
+    const bool is_of_column = estimate.name.starts_with(identification::NameOfCovariate(""));
+    estimate.unit = is_of_column ? std::string(report.units.force) + estimate.unit.substr(1)
+                                 : UnitIn(report.units, estimate.unit);
+  }
+}
+
+/// Withdraws what a curve says that goes through all samples, as there are no more of them than
+/// free parameters.
+void RequireMoreSamplesThanParameters(identification::FitResult& fit) {
+  const auto free = static_cast<std::size_t>(
+      std::ranges::count(fit.parameters, ParameterStatus::kFree, &ParameterEstimate::status));
+  if (fit.residuals.samples == 0 || fit.residuals.samples > free) return;
+  fit.adequacy = {};
+  for (ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) continue;
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+    estimate.standard_error.reset();
+    estimate.lower95.reset();
+    estimate.upper95.reset();
+  }
+}
+
+void CollectWarnings(Report& report) {
   for (const identification::Finding& finding : report.fit.findings) {
-    const bool is_note = finding.severity == identification::Severity::kNote;
-    (is_note ? report.notes : report.fit_warnings)
-        .push_back({std::string(finding.code), Sentence(finding, report.fit, report.units)});
+    if (finding.severity == identification::Severity::kNote) continue;
+    std::string message = Sentence(finding, report.fit, report.units);
+    if (!finding.parameters.empty()) {
+      message = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), message);
+    }
+    report.warnings.push_back({std::string(finding.code), std::move(message)});
   }
-}
-
-/// Notes which files were split where their load steps.
-void SayLoadPieces(Report& report) {
-  std::vector<std::string> pieces;
-  std::size_t left_out = 0;
-  for (std::size_t r = 0; r < report.records.size(); ++r) {
-    const std::optional<io::LoadPiece>& piece = report.records[r].piece;
-    if (!piece || piece->is_between_ramps) continue;
-    pieces.push_back(fmt::format("{:.4g} N ({})", piece->normal_load, report.files[r]));
-    left_out += piece->left_out;
-  }
-  if (pieces.empty()) return;
-  report.notes.push_back(
-      {"load_steps",
-       fmt::format(
-           "the normal load goes in steps: fitted as a record for each constant load, {}; "
-           "{} samples in between are left out, up to the second turning point under the new load",
-           fmt::join(pieces, ", "), left_out)});
-}
-
-/// Returns warnings about given values that contradict each other, or could not be used.
-std::vector<Warning> ContactWarnings(const Report& report) {
-  std::vector<Warning> warnings;
-  if (const auto why = WhyFrictionIsWithheld(report.fit, report.known)) {
-    warnings.push_back({"contact_not_identified", "contact: friction coefficient " + *why});
-  }
-  const auto value = [](const std::optional<contact::PropagatedValue>& quantity) {
-    return quantity ? std::optional<double>(quantity->value) : std::nullopt;
+  if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
+  const auto value = [&](std::string_view name) {
+    const ContactQuantity* quantity = report.Find(name);
+    return quantity != nullptr ? quantity->value : std::nullopt;
   };
+  if (report.is_torsional() || report.failed() || !report.check.empty()) return;
   for (const std::string& sentence :
-       contact::DoubtsAbout(report.known, value(report.contact.friction_coefficient),
-                            value(report.contact.contact_radius))) {
-    warnings.push_back({"contact_implausible", "contact: " + sentence});
+       contact::DoubtsAbout(report.known, value("friction_coefficient"), value("contact_radius"))) {
+    report.warnings.push_back({"contact_implausible", sentence});
   }
-  for (const std::string& sentence : report.contact.redundant) {
-    warnings.push_back({"contact_redundant", "contact: " + sentence});
+}
+
+// --- slips of units and of loads
+
+constexpr double kMostPressure = 1e11;  // [Pa], more than any solid bears
+constexpr double kLargestBall = 10.0;   // [m], a radius of a body on a rig
+constexpr double kMostOff = 200.0;      // factor by which Hertz's radius may be missed
+constexpr double kMostFriction = 5.0;
+constexpr double kLeastFriction = 1e-3;
+
+std::string LargeRadius(const Report& report) {
+  const std::array bodies = {&report.known.body_1, &report.known.body_2};
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const auto& radius = bodies[k]->radius;
+    if (!radius || std::isinf(radius->value) || std::abs(radius->value) < kLargestBall) continue;
+    return fmt::format("--radius-{} {:.4g} is {}: in mm it would be {}", k + 1, radius->value,
+                       Quantity(radius->value, "m", 3), Quantity(radius->value / 1000, "m", 3));
   }
-  return warnings;
+  return "";
+}
+
+/// Names the unit that most likely makes a contact larger or smaller by a factor than it can be.
+std::string WhichUnit(const Report& report) {
+  const io::RecordFile& first = report.records.front();
+  const bool has_load = report.known.normal_load.has_value();
+  const double friction =
+      has_load ? report.fit.law.slip_force / report.known.normal_load->value : 1.0;
+  if (friction > kMostFriction || friction < kLeastFriction) {
+    return fmt::format("the unit of the force, {}, or of the load", first.force.unit);
+  }
+  return fmt::format("the unit of the displacement, {}", first.displacement.unit);
+}
+
+/// Compares the contact with Hertz's, or with the radius that is known, and the pressure with what
+/// a solid bears: by the estimate alone, whatever its interval.
+std::string ImpossibleContact(const Report& report) {
+  const contact::IdentifiedContact contact = contact::IdentifyContact(
+      contact::UncertainValue{report.fit.law.tangential_stiffness, 0.0},
+      contact::UncertainValue{report.fit.law.slip_force, 0.0}, report.known);
+  const std::optional<contact::PropagatedValue> ratio =
+      contact.hertz ? std::optional(contact.hertz->sigma_over_hertz_mindlin)
+                    : contact.sigma_over_mindlin;
+  if (ratio && (ratio->value > kMostOff || ratio->value < 1 / kMostOff)) {
+    const double off = ratio->value > 1 ? ratio->value : 1 / ratio->value;
+    const std::string radius =
+        contact.contact_radius ? Quantity(contact.contact_radius->value, "m", 3) : "";
+    return fmt::format("the contact radius{} is {:.0f} times {} than {}: look at {}",
+                       radius.empty() ? "" : ", " + radius + ",", off,
+                       ratio->value > 1 ? "larger" : "smaller",
+                       contact.hertz ? "Hertz's" : "the given one", WhichUnit(report));
+  }
+  const auto too_high = [&](const std::optional<contact::PropagatedValue>& pressure) {
+    return pressure && pressure->value > kMostPressure;
+  };
+  if (contact.hertz && too_high(contact.hertz->maximum_pressure)) {
+    return fmt::format(
+        "Hertz's pressure is {}, more than any solid bears: look at the units of "
+        "radius and load",
+        Quantity(contact.hertz->maximum_pressure.value, "Pa", 3));
+  }
+  if (too_high(contact.maximum_pressure)) {
+    return fmt::format("the maximum pressure is {}, more than any solid bears: look at {}",
+                       Quantity(contact.maximum_pressure->value, "Pa", 3), WhichUnit(report));
+  }
+  if (contact.friction_coefficient && report.fit.Find("slip_force")->is_known()) {
+    const double friction = contact.friction_coefficient->value;
+    if (friction > kMostFriction || friction < kLeastFriction) {
+      return fmt::format("μ is {:.3g}: look at {}", friction, WhichUnit(report));
+    }
+  }
+  return "";
+}
+
+/// Returns a question where half gaps of several files differ as loads would make them.
+std::string DifferentLoads(const Report& report) {
+  constexpr double kSeverally = 2.0;
+  if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0.0;
+  for (const identification::RecordFit& record : report.fit.records) {
+    if (!record.facts.half_gap) return "";
+    const double half_gap = std::abs(*record.facts.half_gap);
+    least = std::min(least, half_gap);
+    greatest = std::max(greatest, half_gap);
+  }
+  if (!(greatest > kSeverally * least)) return "";
+  const std::string_view unit = report.units.force;
+  return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",
+                     Quantity(least, unit, 3), Quantity(greatest, unit, 3),
+                     report.is_torsional() ? "" : "different loads? --normal-load N1,N2,…; ");
+}
+
+std::string WhatToCheck(const Report& report) {
+  if (!report.is_torsional()) {
+    if (std::string found = LargeRadius(report); !found.empty()) return found;
+    if (std::string found = ImpossibleContact(report); !found.empty()) return found;
+  }
+  return DifferentLoads(report);
 }
 
 }  // namespace
+
+const ContactQuantity* Report::Find(std::string_view quantity) const {
+  const auto found = std::ranges::find(contact, quantity, &ContactQuantity::name);
+  return found == contact.end() ? nullptr : &*found;
+}
 
 Report MakeReport(ReportInput input) {
   Require(input);
   Report report;
   static_cast<ReportInput&>(report) = std::move(input);
-  if (report.is_torsional()) {
-    report.units = kUnitsOfTorque;
-    for (identification::ParameterEstimate& estimate : report.fit.parameters) {
-      // Newtons over the unit of a column, whatever that is.
-      const bool is_of_column = estimate.name.starts_with(identification::NameOfCovariate(""));
-      estimate.unit = is_of_column ? std::string(report.units.force) + estimate.unit.substr(1)
-                                   : std::string(UnitIn(report.units, estimate.unit));
-    }
-    report.fit.mindlin_test.reset();
-  }
+  if (report.is_torsional()) TranslateToTorque(report);
   if (report.fit.response == loop::Channel::kDisplacement) {
     report.units.response = report.units.displacement;
     report.units.excitation = report.units.force;
   }
-  AdaptCauses(report.units, report.fit.adequacy.causes);
-  SayFindings(report);
-  SayLoadPieces(report);
-  for (Warning& note : TrimNotes(report)) report.notes.push_back(std::move(note));
-  if (report.failed()) return report;
-  report.loop = DescribeLoop(report.fit);
-  report.slip_forces = DescribeSlipForces(report.fit);
-  if (report.is_torsional()) return report;
-  report.alpha = TestAlpha(report.fit);
-  report.contact = IdentifyFittedContact(report.fit, report.known);
-  if (report.fit.law_choice) {
-    report.contact_by_other_law =
-        IdentifyContactOf(report.fit, report.fit.law_choice->law, report.known);
+  constexpr double kWorthwhile = 0.9;
+  if (report.next && !(report.next->misfit_after <= kWorthwhile * report.next->misfit_before)) {
+    report.next.reset();
   }
-  report.stiffness = TestStiffness(report.fit, report.contact);
-  report.load_series = DescribeLoadSeries(report.fit, report.known);
-  report.contact_warnings = ContactWarnings(report);
+  if (!report.failed()) {
+    RequireMoreSamplesThanParameters(report.fit);
+    if (!report.is_torsional()) {
+      report.alpha = TestAlpha(report.fit);
+      report.contact = DescribeContact(report.fit, report.known);
+      report.load_hypotheses = TestLoadExponent(report.fit);
+    }
+    report.check = WhatToCheck(report);
+    // A fit that mixes loads or units up is not mended by a term.
+    if (!report.check.empty()) report.next.reset();
+  }
+  CollectWarnings(report);
   return report;
 }
 

@@ -138,9 +138,11 @@ std::string_view CssClass(Judgement judgement) {
     case Judgement::kPoor:
       return "poor";
     case Judgement::kBad:
+      return "bad";
+    case Judgement::kNone:
       break;
   }
-  return "bad";
+  return "plain";
 }
 
 Json FigureData(const std::optional<io::PlotPanel>& panel, const std::string& id) {

@@ -26,7 +26,7 @@ namespace mindahl::report {
 /// @throws std::logic_error naming the template, for a member that the data do not have
 std::string RenderPage(std::string_view name, const Json& data);
 
-/// Returns "good", "poor" or "bad": its class of the page's style.
+/// Returns "good", "poor", "bad" or "plain": its class of the page's style.
 std::string_view CssClass(Judgement judgement);
 
 /// Returns what drawing.html shows of a panel, null without one.

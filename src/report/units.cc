@@ -44,11 +44,7 @@ constexpr std::array<Prefix, 4> kCompliances = {{
     {1.0, "m/N"},
 }};
 
-/// Those that take a prefix before their first letter.
-constexpr std::array<std::string_view, 18> kPrefixed = {
-    "N",        "m",          "J",     "Pa",       "s",     "rad",
-    "N m",      "N/s",        "N m/s", "N m/rad",  "N s/m", "N m s/rad",
-    "N/sample", "N m/sample", "m/s",   "m/sample", "rad/s", "rad/sample"};
+constexpr std::array<std::string_view, 6> kPrefixed = {"N", "m", "J", "Pa", "s", "rad"};
 
 const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
   // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
@@ -70,7 +66,9 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude) {
     const Prefix& suiting = Suiting(unit == "N/m" ? kStiffnesses : kCompliances, size);
     return {suiting.factor, std::string(suiting.name)};
   }
-  if (std::ranges::find(kPrefixed, unit) == kPrefixed.end()) return {1.0, std::string(unit)};
+  // A prefix stands before a first letter that is a unit of one.
+  const std::string_view first = unit.substr(0, unit.find_first_of(" /"));
+  if (std::ranges::find(kPrefixed, first) == kPrefixed.end()) return {1.0, std::string(unit)};
   // Nobody reads kilometres or kiloradians.
   const bool is_length = unit == "m" || unit == "rad" || unit == "s";
   const Prefix& suiting =
@@ -122,29 +120,65 @@ std::string RoundedTo(double error, double value) {
              : text;
 }
 
-std::string NumberWithError(double value, std::optional<double> error, double factor) {
-  const double scaled_error = error.value_or(0.0) / factor;
-  std::string number = RoundedTo(scaled_error, value / factor);
-  if (!std::isfinite(scaled_error)) return number + " ± open";
-  if (scaled_error == 0) return number;
-  return fmt::format("{} ± {}", number, RoundedTo(scaled_error, scaled_error));
+namespace {
+
+std::string Joined(const std::string& number, const ScaledUnit& unit) {
+  return unit.name.empty() ? number : number + " " + unit.name;
 }
+
+}  // namespace
 
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit) {
-  const bool has_error = error && std::isfinite(*error);
-  const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(value), has_error ? *error : 0.0));
-  return fmt::format("{}{}{}", NumberWithError(value, error, scaled.factor),
-                     scaled.name.empty() ? "" : " ", scaled.name);
+  const double size = error.value_or(0.0);
+  const bool is_open = !std::isfinite(size);
+  const ScaledUnit scaled = UnitFor(unit, is_open ? value : std::max(std::abs(value), size));
+  const std::string number = RoundedTo(size / scaled.factor, value / scaled.factor);
+  if (is_open) return Joined(number + " ± open", scaled);
+  if (size == 0) return Joined(number, scaled);
+  const double rounded = size / scaled.factor;
+  return Joined(fmt::format("{} ± {}", number, RoundedTo(rounded, rounded)), scaled);
 }
 
-std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor) {
-  // RoundedTo() leaves two digits of an error, here a tenth of the width.
-  constexpr double kOfWidth = 0.1;
-  const double error = lower && upper ? kOfWidth * (*upper - *lower) / factor : 0.0;
-  const auto end = [&](const std::optional<double>& value) {
-    return value ? RoundedTo(error, *value / factor) : std::string("open");
+std::string QuantityWithInterval(double value, std::optional<double> lower,
+                                 std::optional<double> upper, std::string_view unit) {
+  const ScaledUnit scaled = UnitFor(unit, value);
+  if (!lower && !upper) return Quantity(value, unit);
+  // Two digits of half the interval.
+  const double half = (upper.value_or(value) - lower.value_or(value)) / (lower && upper ? 2 : 1);
+  const auto rounded = [&](double end) {
+    return RoundedTo(half / scaled.factor, end / scaled.factor);
   };
-  return fmt::format("{} … {}", end(lower), end(upper));
+  const auto end = [&](const std::optional<double>& at) { return at ? rounded(*at) : "open"; };
+  return fmt::format("{} ({} … {})", Joined(rounded(value), scaled), end(lower), end(upper));
+}
+
+std::string UnitIn(const Units& units, std::string_view unit) {
+  if (units.force == kUnitsOfForce.force) return std::string(unit);
+  std::string translated;
+  bool is_below = false;  // beyond the stroke, where a product needs brackets
+  bool has_product = false;
+  while (!unit.empty()) {
+    const std::size_t end = std::min(unit.find_first_of(" /()"), unit.size());
+    std::string_view symbol = unit.substr(0, end);
+    const std::string_view power = symbol.ends_with("²") ? "²" : "";
+    symbol.remove_suffix(power.size());
+    const std::string_view other = symbol == "N"    ? "N m"
+                                   : symbol == "m"  ? "rad"
+                                   : symbol == "kg" ? "kg m²"
+                                                    : symbol;
+    has_product = has_product || (is_below && other.find(' ') != std::string_view::npos);
+    translated += other;
+    translated += power;
+    if (end == unit.size()) break;
+    is_below = is_below || unit[end] == '/';
+    translated += unit[end];
+    unit.remove_prefix(end + 1);
+  }
+  if (has_product && translated.find('(') == std::string::npos) {
+    translated.insert(translated.find('/') + 1, "(");
+    translated += ')';
+  }
+  return translated;
 }
 
 }  // namespace mindahl::report

@@ -48,10 +48,9 @@ constexpr std::array kBatchColumns = {
     ColumnRow{"initial_state", "/initial_state"},
     ColumnRow{"adequacy", "/adequacy/verdict"},
     ColumnRow{"cycles", "/input/cycles"},
-    ColumnRow{"amplitude", "/loop/amplitude"},
-    ColumnRow{"peak_force", "/loop/peak_force"},
+    ColumnRow{"amplitude", "/measured/amplitude"},
+    ColumnRow{"peak_force", "/measured/peak_force"},
     ColumnRow{"half_gap", "/measured/half_gap/value"},
-    ColumnRow{"sliding_amplitude", "/measured/sliding_amplitude"},
     ColumnRow{"energy_per_cycle", "/measured/energy_per_cycle"},
     ColumnRow{"energy_ratio", "/measured/energy_ratio"},
     ColumnRow{"sigma", "/parameters/sigma/value"},
@@ -71,10 +70,11 @@ constexpr std::array kBatchColumns = {
     ColumnRow{"slip_force_verdict", "/parameters/slip_force/identifiability"},
     ColumnRow{"rms", "/residuals/rms"},
     ColumnRow{"r_squared", "/residuals/r_squared"},
-    ColumnRow{"slip_regime", "/loop/slip_regime"},
-    ColumnRow{"normal_load", "/contact/normal_load"},
+    ColumnRow{"slides", "/measured/slides"},
+    ColumnRow{"normal_load", "/contact/normal_load/value"},
     ColumnRow{"friction_coefficient", "/contact/friction_coefficient/value"},
-    ColumnRow{"friction_coefficient_error", "/contact/friction_coefficient/standard_error"},
+    ColumnRow{"friction_coefficient_lower95", "/contact/friction_coefficient/ci95/0"},
+    ColumnRow{"friction_coefficient_upper95", "/contact/friction_coefficient/ci95/1"},
     ColumnRow{"contact_radius", "/contact/contact_radius/value"},
 };
 
@@ -105,6 +105,7 @@ Json ValueOf(const BatchEntry& entry, std::string_view column) {
 BatchCell CellOf(const Json& value) {
   if (value.is_null()) return {};
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_integer()) return value.get<std::int64_t>();
   return value.get<double>();
 }
@@ -139,10 +140,18 @@ struct StatedErrors {
 std::optional<StatedErrors> ErrorsOf(const BatchEntry& fit, const Repeated& quantity) {
   if (IsMeasured(quantity)) return std::nullopt;
   const std::string name(quantity.name);
-  Json own = ValueAt(fit, fmt::format("/parameters/{}/repeat_error", name));
-  if (!own.is_number()) own = ValueOf(fit, name + "_error");
+  // μ = Tc/N scatters as Tc does.
+  const bool is_friction = name == "friction_coefficient";
+  const std::string parameter = is_friction ? "slip_force" : name;
+  const Json value = ValueOf(fit, name);
+  const Json of_parameter = ValueOf(fit, parameter);
+  if (!value.is_number() || !of_parameter.is_number()) return std::nullopt;
+  const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
+  Json own = ValueOf(fit, parameter + "_error");
+  if (estimate != fit.parameters.end() && estimate->repeat_error) own = *estimate->repeat_error;
   if (!own.is_number() || !(own.get<double>() > 0)) return std::nullopt;
-  StatedErrors errors{.own = own.get<double>()};
+  const double scale = value.get<double>() / of_parameter.get<double>();
+  StatedErrors errors{.own = own.get<double>() * scale};
   const Json lower = ValueOf(fit, name + "_lower95");
   const Json upper = ValueOf(fit, name + "_upper95");
   if (!lower.is_number() || !upper.is_number()) return errors;
@@ -197,11 +206,15 @@ std::string ParameterText(const BatchEntry& entry, std::string_view name) {
   const ParameterEstimate& estimate = *found;
   switch (report::WhatIsShown(estimate)) {
     case report::Shown::kValue:
-      return report::QuantityWithError(estimate.value, estimate.standard_error, estimate.unit);
+      return report::QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
+                                          estimate.unit);
     case report::Shown::kHeld:
       return report::Quantity(estimate.value, estimate.unit) + ", held";
     case report::Shown::kLowerLimit:
       if (estimate.lower95) return "> " + report::Quantity(*estimate.lower95, estimate.unit);
+      break;
+    case report::Shown::kUpperLimit:
+      if (estimate.upper95) return "< " + report::Quantity(*estimate.upper95, estimate.unit);
       break;
     case report::Shown::kNothing:
       break;

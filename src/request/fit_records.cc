@@ -267,15 +267,6 @@ identification::FitResult FitAsked(const FitRequest& request, FitOptions& option
   }
 }
 
-/// Findings that stand where the model does not: those of the record. What else there is to say of
-/// an inadequate fit is in its text.
-bool IsOfTheRecord(std::string_view code) {
-  constexpr std::array<std::string_view, 7> kOfTheRecord = {
-      "reversals_uncertain", "glitches_left_out", "path_too_long",      "no_closed_cycle",
-      "few_places",          "loop_not_seen",     "weights_not_settled"};
-  return std::ranges::find(kOfTheRecord, code) != kOfTheRecord.end();
-}
-
 }  // namespace
 
 void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
@@ -353,19 +344,6 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
     for (const std::string& text : input.notes) note(text);
   }
   return inputs;
-}
-
-std::vector<std::string> WarningsBesideText(const report::Report& report) {
-  std::vector<std::string> warnings;
-  const bool is_inadequate = report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
-  for (const report::Warning& warning : report.fit_warnings) {
-    if (warning.code == "fit_failed") continue;  // an error, which the caller says
-    if (!is_inadequate || IsOfTheRecord(warning.code)) warnings.push_back(warning.message);
-  }
-  for (const report::Warning& warning : report.contact_warnings) {
-    if (warning.code == "contact_implausible") warnings.push_back(warning.message);
-  }
-  return warnings;
 }
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,

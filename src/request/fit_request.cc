@@ -324,7 +324,6 @@ FitOptions MakeFitOptions(const FitRequest& options) {
           fmt::format("--prior {} and --rig-stiffness say the same: give one of the two", name));
     }
   }
-  fit.regions = options.regions;
   const bool is_automatic = options.model == kAutomatic;
   RequireWithinBounds(fit);
   for (const auto& [name, value] : fit.priors) RequireFitted("--prior", name, is_automatic, fit);

@@ -25,7 +25,7 @@ using campaign::TrackedQuantity;
 
 namespace {
 
-std::string_view UnitOf(const TrackedTest& test, std::string_view unit) {
+std::string UnitOf(const TrackedTest& test, std::string_view unit) {
   return report::UnitIn(test.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
 }
 

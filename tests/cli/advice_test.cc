@@ -135,12 +135,9 @@ TEST(FirstCause, OfMeasuredRecordsMatchesTheirDescription) {
   }
 }
 
-TEST(Text, OfAMeasuredBrakeNamesItsBacklashAndASlipForceThatContainsTheHalfGap) {
+TEST(Text, OfAMeasuredBrakeHasASlipForceThatContainsTheHalfGap) {
   const std::string file = testing::MeasuredPath("band_brake/dataset-1_0.5Hz70lbtension.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
-  const Outcome outcome = RunCommand({"fit", file, "--terms", "none"});
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("next: it looks like a backlash"));
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("--backlash fit"));
   const json fit = RunCommand({"fit", file, "--terms", "none", "--json", "-"}).Json();
   const json& slip_force = fit["parameters"]["slip_force"];
   EXPECT_EQ(slip_force["identifiability"], "effective");
@@ -158,9 +155,6 @@ TEST(Backlash, OfAMeasuredBrakeHalvesTheMisfit) {
   const json alone = RunCommand({"fit", file, "--terms", "none", "--json", "-"}).Json();
   const json with = RunCommand({"fit", file, "--backlash", "fit", "--json", "-"}).Json();
   EXPECT_LT(misfit(with), 0.6 * misfit(alone));
-  const double measured = alone["measured"]["backlash"];
-  EXPECT_NEAR(with["parameters"]["backlash"]["value"].get<double>() / measured, 1.0, 0.2)
-      << "which the compliance of the contact before and after the gap is a part of";
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ const std::vector<Rule> kRules = {
     {"fit", {"--time-window", "--load-window", "--cycles", "--samples"}, kRange},
     {"fit", {"--fix", "--start"}, kAssignment},
     {"fit", {"--speed-exponent", "--ripple"}, {"nan", "text", "1:", "-1", "0", "1e999", ""}},
-    {"fit", {"--plateau-slope", "--drift", "--regions", "--join"}, {"5", "nan", "text"}},
+    {"fit", {"--plateau-slope", "--drift", "--details", "--join"}, {"5", "nan", "text"}},
     {"fit", {"--viscous", "--lag"}, {"nan", "text", "1:", "1,5", "1e999", ""}},
     {"simulate",
      {"--sigma", "--slip-force", "--lambda", "--cycles", "--frequency", "--tolerance",

@@ -117,16 +117,9 @@ TEST_F(FitTerms, RigidRigIsNoParameter) {
 TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
   const std::vector<Sample> loop = InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7);
   const json fit = Fit(loop, {"--terms", "none"});
-  const json& mapping = fit["mapping"];
   // Of an exponent that is not identifiable nothing is tested.
-  EXPECT_TRUE(mapping["likelihood_ratio_p_value"].is_null());
-  // k shows in the curvature alone: a few per cent at a noise of 0.25 % of Tc.
-  EXPECT_NEAR(mapping["tenable_with_rig_stiffness"].get<double>() / 8e7, 1, 0.15);
+  EXPECT_TRUE(fit["mapping"]["p_value"].is_null());
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
-  // No rig has a negative stiffness, and no contact a negative mass.
-  for (const json& cause : fit["adequacy"]["causes"]) {
-    EXPECT_FALSE(cause["code"] == "inertia" && cause["size"] < 0) << cause;
-  }
 
   // The default terms include the rig and recover its stiffness.
   const json with_rig = Fit(loop);
@@ -138,10 +131,9 @@ TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
   }
 }
 
-TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheLikelihoodRatio) {
+TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheTest) {
   const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
-  EXPECT_GT(fit["mapping"]["likelihood_ratio_p_value"].get<double>(), 1e-3);
-  EXPECT_TRUE(fit["mapping"]["tenable_with_rig_stiffness"].is_null());
+  EXPECT_GT(fit["mapping"]["p_value"].get<double>(), 1e-3);
   EXPECT_FALSE(Warns(fit, "shape_or_rig"));
 }
 
@@ -176,9 +168,7 @@ TEST_F(FitTerms, ForceFollowsALoadThatSwings) {
   }
   const json fit = Fit(loop);
   ExpectContact(fit, kNoiseFree);
-  EXPECT_NEAR(fit["contact"]["normal_load"].get<double>() / mean, 1, kNoiseFree);
-  ASSERT_EQ(fit["notes"].size(), 1U);
-  EXPECT_EQ(fit["notes"][0]["code"], "load_followed");
+  EXPECT_NEAR(fit["contact"]["normal_load"]["value"].get<double>() / mean, 1, kNoiseFree);
 }
 
 TEST_F(FitTerms, FilesUnderSeveralLoadsAreOneContact) {
@@ -207,32 +197,23 @@ TEST_F(FitTerms, FilesUnderSeveralLoadsAreOneContact) {
   EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kSlipForce / 100,
               kNoiseFree);
   // 1 N of one of three loads.
-  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["standard_error"].get<double>(),
-              kSlipForce / 100 / 300, kNoiseFree);
-  const json& series = fit["load_series"];
-  EXPECT_EQ(series["reference_load"], 100.0);
-  ASSERT_EQ(series["records"].size(), 3U);
-  EXPECT_NEAR(series["records"][0]["sigma"]["value"].get<double>() / kSigma,
-              std::pow(0.5, kExponent), kNoiseFree);
-  EXPECT_NEAR(series["records"][2]["alone"]["slip_force"]["value"].get<double>() / kSlipForce, 1.5,
-              kNoiseFree);
-  ASSERT_EQ(series["hypotheses"].size(), 5U);
-  EXPECT_EQ(series["hypotheses"][2]["name"], "cone");
-  EXPECT_NEAR(series["hypotheses"][2]["difference"].get<double>(), 0.0, kNoiseFree);
+  constexpr double kNormalQuantile = 1.959963984540054;
+  EXPECT_NEAR(std::log(fit["contact"]["friction_coefficient"]["ci95"][1].get<double>() /
+                       (kSlipForce / 100)),
+              kNormalQuantile / 300, kNoiseFree);
 }
 
 TEST_F(FitTerms, SamplesOutsideTheLoadWindowDoNotCount) {
   std::vector<Sample> loop = Simulate({"--cycles", "2"});
-  std::size_t spoilt = 0;
-  for (std::size_t i = 220; i < 260; ++i, ++spoilt) {
+  for (std::size_t i = 220; i < 260; ++i) {
     loop[i].normal_load = 50.0;
     loop[i].force *= 0.5;
   }
   const json fit = Fit(loop, {"--load-window", "95:105"});
   ExpectContact(fit, kNoiseFree);
-  EXPECT_EQ(fit["input"]["left_out"], spoilt);
+  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 40);
   EXPECT_EQ(fit["input"]["samples"], loop.size());
-  EXPECT_EQ(fit["contact"]["normal_load"], 100.0);
+  EXPECT_EQ(fit["contact"]["normal_load"]["value"], 100.0);
 }
 
 TEST_F(FitTerms, SkippedCyclesDoNotCount) {
@@ -242,7 +223,7 @@ TEST_F(FitTerms, SkippedCyclesDoNotCount) {
   for (std::size_t i = 0; i < kSkipped; ++i) loop[i].force *= 0.8;
   const json fit = Fit(loop, {"--skip-cycles", "1"});
   ExpectContact(fit, kNoiseFree);
-  EXPECT_EQ(fit["input"]["left_out"], kSkipped);
+  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], kSkipped);
 }
 
 TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
@@ -252,7 +233,7 @@ TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
   for (std::size_t i = 499; i < loop.size(); ++i) loop[i].force *= 0.9;
   const json fit = Fit(loop, {"--cycles", "2:4", "--samples", "1:499"});
   ExpectContact(fit, kNoiseFree);
-  EXPECT_EQ(fit["input"]["left_out"], 150 + loop.size() - 499);
+  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 150 + loop.size() - 499);
 }
 
 TEST_F(FitTerms, LateForceIsPutInItsPlace) {
@@ -282,10 +263,12 @@ TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
   const json fit = Fit(loop, {"--asymmetry", "fit"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_NEAR(Value(fit, "asymmetry"), 0.2, kNoiseFree);
-  const json& forces = fit["slip_forces"];
-  EXPECT_NEAR(forces["positive"]["value"].get<double>() / (1.2 * kSlipForce), 1, kNoiseFree);
-  EXPECT_NEAR(forces["negative"]["value"].get<double>() / (0.8 * kSlipForce), 1, kNoiseFree);
-  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"})).contains("slip_forces"));
+  const json& forces = fit["contact"];
+  EXPECT_NEAR(forces["slip_force_positive"]["value"].get<double>() / (1.2 * kSlipForce), 1,
+              kNoiseFree);
+  EXPECT_NEAR(forces["slip_force_negative"]["value"].get<double>() / (0.8 * kSlipForce), 1,
+              kNoiseFree);
+  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"}))["contact"].contains("slip_force_positive"));
   // From the second cycle on the contact has slipped, and only the zero of the force tells.
   const std::vector<Sample> cycled(loop.begin() + kSamplesPerCycle, loop.end());
   const json known = Fit(cycled, {"--asymmetry", "fit", "--fix", "force_offset=0"});
@@ -310,92 +293,26 @@ TEST_F(FitTerms, ForceOfAColumnIsFittedOrTakenOff) {
 }
 
 TEST_F(FitTerms, NothingIsLeftOutUnasked) {
-  EXPECT_EQ(Fit(Simulate({"--cycles", "2"}))["input"]["left_out"], 0);
-}
-
-TEST_F(FitTerms, DisplacementNoiseIsTheGivenOne) {
-  const std::vector<Sample> loop =
-      Simulate({"--cycles", "3", "--noise-force", "0.1", "--noise-displacement", "1e-8"});
-  for (const auto& [option, expected] : {std::pair{"1e-8", 1e-8}, std::pair{"0", 0.0}}) {
-    const json fit = Fit(loop, {"--displacement-noise", option});
-    ASSERT_THAT(fit["input"]["displacement_noise"], SizeIs(1));
-    EXPECT_EQ(fit["input"]["displacement_noise"][0], expected);
-  }
-}
-
-TEST_F(FitTerms, ForceNoiseIsReported) {
-  const std::vector<Sample> loop = Simulate({"--cycles", "3", "--noise-force", "0.1"});
-  // Of 600 samples: a relative standard error of 1/√1200, five of them.
-  EXPECT_NEAR(Fit(loop)["residuals"]["force_noise"].get<double>() / 0.1, 1, 5 / std::sqrt(1200.0));
-  EXPECT_EQ(Fit(loop, {"--force-noise", "0.3"})["residuals"]["force_noise"], 0.3);
+  EXPECT_THAT(Fit(Simulate({"--cycles", "2"}))["input"]["left_out"], IsEmpty());
 }
 
 class FitWithLoss : public FitTerms, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(FitWithLoss, IsNotMovedByOutliersAndCountsThem) {
+TEST_P(FitWithLoss, IsNotMovedByOutliers) {
   std::vector<Sample> loop = Simulate({"--cycles", "3", "--noise-force", "0.1"});
   // Four at a time: fewer are spikes, which are left out whatever the loss.
-  std::size_t spoilt = 0;
   for (std::size_t i = 20; i + 4 < loop.size(); i += 160) {
-    for (std::size_t k = 0; k < 4; ++k, ++spoilt) loop[i + k].force += 20;
+    for (std::size_t k = 0; k < 4; ++k) loop[i + k].force += 20;
   }
   const json fit = Fit(loop, {"--loss", GetParam()});
-  EXPECT_EQ(fit["input"]["left_out"], 0);
+  EXPECT_THAT(fit["input"]["left_out"], IsEmpty());
   // One sample in 40 is 20 N out: the mean of the plateau moves by 0.5 N, 1.25 % of Tc, where it
   // counts in full. With the least robust loss each pulls like 1.345 standard deviations.
   EXPECT_NEAR(Value(fit, "slip_force") / kSlipForce, 1, 2e-3);
-  EXPECT_GE(fit["residuals"]["outliers"], spoilt);
-  // Beside them at most Huber's half weight at 2.69 standard deviations, 0.7 % of normal noise.
-  EXPECT_LE(fit["residuals"]["outliers"], spoilt + loop.size() / 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(FitTerms, FitWithLoss, ::testing::Values("huber", "cauchy", "tukey"),
                          [](const auto& test) { return std::string(test.param); });
-
-TEST_F(FitTerms, WithoutALossNoSampleIsAnOutlier) {
-  EXPECT_EQ(Fit(Simulate({"--cycles", "2", "--noise-force", "0.1"}))["residuals"]["outliers"], 0);
-}
-
-TEST_F(FitTerms, StartsAreAsManyAsAskedAndTheSeedDrawsThoseBeyondTheGrid) {
-  const std::vector<Sample> loop = Simulate({"--cycles", "2", "--noise-force", "0.1"});
-  const auto starts = [&](const char* count, const char* seed) {
-    return Fit(
-        loop, {"--initial-state", "virgin", "--starts", count, "--seed", seed})["solver"]["starts"];
-  };
-  EXPECT_THAT(starts("1", "1"), SizeIs(1));
-  const json seven = starts("7", "1");
-  ASSERT_THAT(seven, SizeIs(7));
-  EXPECT_EQ(seven[0]["from"], "grid");
-  EXPECT_EQ(seven[6]["from"], "seed");
-  EXPECT_EQ(starts("7", "1"), seven);
-  EXPECT_NE(starts("7", "2")[6]["start"], seven[6]["start"]);
-}
-
-TEST_F(FitTerms, ResidualsOfNoiseHaveNoStructure) {
-  const json fit = Fit(Simulate({"--cycles", "4", "--noise-force", "0.1"}));
-  ASSERT_THAT(fit["residual_structure"], SizeIs(1));
-  const json& record = fit["residual_structure"][0];
-  EXPECT_EQ(record["repeatable_share"], 0.0);
-  ASSERT_THAT(record["directions"], SizeIs(2));
-  EXPECT_EQ(record["directions"][0]["direction"], "up");
-  EXPECT_EQ(record["directions"][1]["direction"], "down");
-  for (const json& direction : record["directions"]) {
-    EXPECT_GE(direction["strokes"], 3);
-    // Half of 0.1 to twice: 200 samples and more.
-    EXPECT_GT(direction["rms"].get<double>(), 0.05);
-    EXPECT_LT(direction["rms"].get<double>(), 0.2);
-    EXPECT_LT(std::abs(direction["mean"].get<double>()), 0.05);
-    EXPECT_FALSE(direction["along_stroke"].empty());
-    for (const json& bin : direction["along_stroke"]) {
-      EXPECT_GT(bin["position"], 0.0);
-      EXPECT_LT(bin["position"], 1.0);
-      EXPECT_TRUE(bin["mean"].is_number());
-      EXPECT_TRUE(bin["standard_error"].is_number());
-    }
-  }
-  EXPECT_FALSE(Warns(fit, "systematic_residual"));
-  EXPECT_FALSE(Warns(fit, "no_model_fits"));
-}
 
 /// A force of position that no law here has.
 std::vector<Sample> Rippled(std::vector<Sample> loop, double height) {
@@ -412,57 +329,22 @@ TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
           {"--terms", "none"});
   EXPECT_TRUE(Warns(fit, "systematic_residual"));
   EXPECT_FALSE(Warns(fit, "no_model_fits"));
-  EXPECT_GT(fit["residual_structure"][0]["repeatable_share"], 0.5);
 }
 
-TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
+TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThat) {
   // rms 0.3/√2 = 21 % of Tc, beyond the 15 % of the half gap to which a fit is of use.
   const std::vector<Sample> loop =
       Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
   EXPECT_EQ(Fit(loop, {"--terms", "none"})["adequacy"]["use"], "none");
   const Outcome outcome = RunCommand({"fit", Write(loop), "--terms", "none"});
-  EXPECT_THAT(outcome.err, HasSubstr("leaves a repeatable residual"));
-  EXPECT_THAT(outcome.out, HasSubstr("no parameter is usable"));
+  EXPECT_THAT(outcome.out, HasSubstr("alike in every stroke"));
 }
 
-TEST_F(FitTerms, ModelAutoComparesAllWithAndWithoutARig) {
+TEST_F(FitTerms, ModelAutoChoosesTheLawOfTheLoop) {
   const json fit = Fit(Simulate({"--cycles", "4", "--noise-force", "0.1"}),
                        {"--model", "auto", "--starts", "1"});
-  const json& selection = fit.at("model_selection");
-  const json& models = selection.at("models");
-  ASSERT_THAT(models, SizeIs(8));
-  Words names;
-  double weights = 0.0;
-  for (const json& model : models) {
-    names.push_back(model.at("model").get<std::string>() + (model.at("rig") ? "+rig" : ""));
-    weights += model.at("akaike_weight").get<double>();
-    EXPECT_TRUE(model.at("free_parameters").is_number_unsigned());
-    for (const char* key :
-         {"rms", "aicc", "delta_aicc", "held_out_rms", "held_out_standard_error"}) {
-      EXPECT_TRUE(model.at(key).is_number() || model.at(key).is_null()) << key;
-    }
-    for (const char* key : {"converged", "at_bound", "redundant"}) {
-      EXPECT_TRUE(model.at(key).is_boolean()) << key;
-    }
-    EXPECT_TRUE(model.at("remark").is_string());
-  }
-  for (const char* name : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
-    EXPECT_THAT(names, AllOf(Contains(name), Contains(std::string(name) + "+rig")));
-  }
-  constexpr double kRounding = 1e-12;
-  EXPECT_NEAR(weights, 1.0, kRounding);
-  const std::size_t chosen = selection.at("chosen");
-  EXPECT_EQ(models[chosen]["model"], fit["model"]);
-  EXPECT_THAT(selection.at("indistinguishable"), Contains(chosen));
-  EXPECT_EQ(selection.at("held_out_cycles"), 3);  // of four, the way in closes none
-  EXPECT_THAT(selection.at("verdict").get<std::string>(),
-              HasSubstr(fit["model"].get<std::string>()));
   // Jenkins and Dahl's own law are far from a Mindlin loop of this noise.
   EXPECT_THAT((Words{"mindlin", "mindlin-dahl"}), Contains(fit["model"].get<std::string>()));
-}
-
-TEST_F(FitTerms, OnlyModelAutoComparesModels) {
-  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"})).contains("model_selection"));
 }
 
 TEST_F(FitTerms, TextKeepsToAHundredColumns) {

@@ -112,7 +112,7 @@ COMMANDS = [
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
-    ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1 --regions", 0),
+    ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1", 0),
     ("fit sweep.csv --sweep tangent", 0),
     ("fit sweep.csv --sweep tangent --model mindlin", 0),
     ("track long.csv --output cycles.csv --normal-load 50", 0),
@@ -167,9 +167,13 @@ def place_of(name):
     return (FOLDER / f"{name}.json").as_uri()
 
 
+def schema_of(name):
+    return f"mindahl.{name}/{2 if name == 'fit' else 1}"
+
+
 def faults(document):
     """What is wrong with a document, by the schema that it names."""
-    name = re.fullmatch(r"mindahl\.([a-z_]+)/1", document["schema"]).group(1)
+    name = re.fullmatch(r"mindahl\.([a-z_]+)/[12]", document["schema"]).group(1)
     for error in validator(name).iter_errors(document):
         yield f"{'.'.join(map(str, error.absolute_path))}: {error.message[:300]}"
     if name == "fit":
@@ -179,9 +183,7 @@ def faults(document):
 
 
 # Optional keys of a shared definition that this place never has, and why.
-NEVER = {
-    "fit: contact.mindlin_gross_slip_displacement.largest_input": "it rests on the fit alone",
-}
+NEVER = {}
 
 
 def resolved(schema, root):
@@ -244,7 +246,6 @@ def check_outputs(program):
     problems = []
     seen = collections.Counter()
     keys = collections.defaultdict(set)
-    mutations = ContractMutations()
     with tempfile.TemporaryDirectory() as scratch:
         directory = pathlib.Path(scratch)
 
@@ -269,77 +270,18 @@ def check_outputs(program):
             seen[document["schema"]] += 1
             name = ("sweep" if "--sweep" in line else "track_separate" if "--separate" in line
                     else line.split()[0])
-            if document["schema"] != f"mindahl.{name}/1":
+            if document["schema"] != schema_of(name):
                 problems.append(f"{line}: schema {document['schema']}")
             problems += [f"{line}: {fault}" for fault in faults(document)]
             keys[name].update(keys_of(document, SCHEMAS[name], SCHEMAS[name]))
-            if name == "fit":
-                problems += mutations.faults(document)
     for name in SCHEMAS:
-        if not seen[f"mindahl.{name}/1"]:
+        if not seen[schema_of(name)]:
             problems.append(f"{name}.json: no command of the table writes it")
         for key in sorted(set(optional_keys(SCHEMAS[name], SCHEMAS[name])) - keys[name]):
             if f"{name}: {key[1:]}" not in NEVER:
                 problems.append(f"{name}.json: no command of the table writes {key[1:]}")
-    print(f"{sum(seen.values())} documents of {len(seen)} schemas, {len(mutations.done)} made wrong")
+    print(f"{sum(seen.values())} documents of {len(seen)} schemas")
     return problems
-
-
-# --- fit.json against the contract ---------------------------------------------------------------
-
-CONTRACT_ROW = re.compile(r"^\| `([a-zA-Z_.\[\]\d]+)` \| ([a-z, ]+) \| [^|]* \| (.*) \|$", re.MULTILINE)
-
-
-def objects_of(value, schema, root, path=""):
-    """Every object of a document with members of its own, as docs/contract.md names its place."""
-    if schema.get("$ref") == "#/$defs/quantity" or "anyOf" in schema:
-        path = "contact.QUANTITY"
-    schema = resolved(schema, root)
-    if isinstance(value, dict):
-        known = schema.get("properties")
-        if known:
-            yield path, value, schema
-        for key, member in value.items():
-            below = known[key] if known else schema["additionalProperties"]
-            name = key if known else "NAME"
-            yield from objects_of(member, below, root, f"{path}.{name}" if path else name)
-    elif isinstance(value, list) and "items" in schema:
-        for member in value:
-            yield from objects_of(member, schema["items"], root, f"{path}[]")
-
-
-class ContractMutations:
-    """Documents that the contract does not allow: without a key, with another one, with a null."""
-
-    def __init__(self):
-        self.rows = CONTRACT_ROW.findall((ROOT / "docs/contract.md").read_text())
-        self.done = set()
-
-    def may(self, path):
-        """Whether a key may be absent, and whether it may be null."""
-        for row, kind, label in self.rows:
-            if row == path or row.startswith((path + ".", path + "[")):
-                return "absent" in label, row == path and "null" in kind
-        raise AssertionError(f"{path} is not in docs/contract.md")
-
-    def faults(self, document):
-        """Of the first object of a kind; each is checked by the schema of its place alone."""
-        root = SCHEMAS["fit"]
-        for path, value, schema in objects_of(document, root, root):
-            check = jsonschema.Draft202012Validator({**schema, "$defs": root["$defs"]})
-            changed = [("another key", "", {**value, "other": 1})]
-            for key in value:
-                place = f"{path}.{key}" if path else key
-                may_be_absent, may_be_null = self.may(place)
-                if not may_be_absent:
-                    changed.append(("missing", key, {name: part for name, part in value.items() if name != key}))
-                if not may_be_null:
-                    changed.append(("null", key, {**value, key: None}))
-            for what, key, object_ in changed:
-                if (path, key, what) not in self.done:
-                    self.done.add((path, key, what))
-                    if check.is_valid(object_):
-                        yield f"fit.json lets pass: {path}.{key}: {what}"
 
 
 # --- documents that the schemas must refuse ----------------------------------------------------
@@ -399,7 +341,7 @@ def check_refusals():
     """A schema that lets anything pass is worth nothing."""
     for name, schema in SCHEMAS.items():
         jsonschema.Draft202012Validator.check_schema(schema)
-        if validator(name).is_valid({"schema": f"mindahl.{name}/1", "version": "0.1.0"}):
+        if validator(name).is_valid({"schema": schema_of(name), "version": "0.1.0"}):
             yield f"{name}.json lets a document pass that has nothing else than its name"
     yield from undocumented_keys()
     check = validator("contact")
@@ -408,7 +350,7 @@ def check_refusals():
     for why, document in [
             ("a missing key", without(CONTACT, "version")),
             ("a missing parameter", without(CONTACT, "parameters", "alpha")),
-            ("another schema", altered(CONTACT, "mindahl.fit/1", "schema")),
+            ("another schema", altered(CONTACT, "mindahl.fit/2", "schema")),
             ("a text for a number", altered(CONTACT, "1.0", "parameters", "sigma", "value")),
             ("a null", altered(CONTACT, None, "contact", "compliance", "value")),
             ("a negative error", altered(CONTACT, -1, "contact", "compliance", "standard_error")),

@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
@@ -54,11 +51,6 @@ class LoadStepsOfFit : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-std::string TextOf(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 double Value(const json& fit, const char* parameter) {
   return fit.at("parameters").at(parameter).at("value");
 }
@@ -71,48 +63,14 @@ TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {
   EXPECT_NEAR(Value(fit, "load_exponent"), 1.0 / 3, kNoiseFree);
   EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, kNoiseFree);
   EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kFriction, kNoiseFree);
-  const json& records = fit["load_series"]["records"];
-  ASSERT_EQ(records.size(), 3U);
-  EXPECT_EQ(records[0]["normal_load"], 20.0);
-  EXPECT_EQ(records[2]["normal_load"], 100.0);
-  EXPECT_NEAR(records[1]["sigma"]["value"].get<double>() / kSigma, 1.0, kNoiseFree);
-
   // Line 1 is the header; a piece begins with the second turn of the sine after the step.
-  const json& pieces = fit["input"]["load_pieces"];
-  ASSERT_EQ(pieces.size(), 3U);
-  EXPECT_EQ(pieces[0]["first_line"], 2);
-  EXPECT_EQ(pieces[0]["last_line"], 5 * kCycle + 1);
-  EXPECT_EQ(pieces[1]["first_line"], 5 * kCycle + 3 * kCycle / 4 + 2);
-  EXPECT_EQ(pieces[1]["file"], file + ":577-1001");
+  ASSERT_EQ(fit["input"]["files"].size(), 3U);
   EXPECT_EQ(fit["input"]["files"][1], file + ":577-1001");
-  EXPECT_EQ(pieces[2]["samples"], 5 * kCycle - 3 * kCycle / 4 + 1);
-  EXPECT_EQ(fit["input"]["between_loads"], 2 * (3 * kCycle / 4));
-  EXPECT_EQ(fit["input"]["left_out"], 2 * (3 * kCycle / 4));
-  EXPECT_EQ(fit["input"]["samples"], 15 * kCycle + 1);
+  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 2 * (3 * kCycle / 4));
+  EXPECT_EQ(fit["input"]["left_out"][0]["why"], "another load");
 
   const Outcome text = RunCommand({"fit", file});
-  EXPECT_THAT(text.out, HasSubstr("note: the normal load goes in steps"));
-  EXPECT_THAT(text.out, HasSubstr("150 samples in between are"));
-}
-
-TEST_F(LoadStepsOfFit, GiveWhatAFileForEachLoadGives) {
-  const std::string file = Simulate(15, Staircase);
-  const json whole = Fit({file});
-  const json& pieces = whole["input"]["load_pieces"];
-  const Words lines = testing::Lines(TextOf(file));
-  Words files;
-  for (const json& piece : pieces) {
-    std::string text = lines.front() + "\n";
-    for (std::size_t line = piece["first_line"]; line <= piece["last_line"]; ++line) {
-      text += lines[line - 1] + "\n";
-    }
-    files.push_back(directory_.Write(fmt::format("{}.csv", files.size() + 1), text).string());
-  }
-  const json apart = Fit(files);
-  EXPECT_EQ(whole["parameters"], apart["parameters"]);
-  EXPECT_EQ(whole["load_series"], apart["load_series"]);
-  EXPECT_FALSE(apart["input"].contains("load_pieces"));
-  EXPECT_FALSE(apart["input"].contains("between_loads"));
+  EXPECT_THAT(text.out, HasSubstr("150 samples (another load)"));
 }
 
 TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadWindow) {
@@ -121,8 +79,7 @@ TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadWindow) {
                             Words{"--load-window", "15:105"}}) {
     const json fit = Fit({file}, more);
     EXPECT_EQ(fit["input"]["files"].size(), 1U) << more[0];
-    EXPECT_FALSE(fit["input"].contains("load_pieces")) << more[0];
-    EXPECT_EQ(fit["notes"][0]["code"], "load_followed") << more[0];
+    EXPECT_FALSE(fit["parameters"].contains("load_exponent")) << more[0];
   }
 }
 
@@ -134,8 +91,7 @@ TEST_F(LoadStepsOfFit, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
         })}) {
     const json fit = Fit({Simulate(15, load_at)});
     EXPECT_EQ(fit["input"]["files"].size(), 1U);
-    EXPECT_EQ(fit["notes"][0]["code"], "load_followed");
-    EXPECT_FALSE(fit.contains("load_series"));
+    EXPECT_FALSE(fit["parameters"].contains("load_exponent"));
   }
 }
 

@@ -11,13 +11,11 @@
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/models/friction_model.h"
 #include "mindahl/request/batch.h"
 #include "report/fields.h"
 #include "report/names.h"
 
-// Prints the library's tables as JSON, from which library_tables.py makes those of the pages and
-// the schema of the report.
+// Prints the library's tables as JSON, from which library_tables.py makes those of the pages.
 namespace mindahl {
 namespace {
 
@@ -25,13 +23,8 @@ using report::Json;
 
 Json FieldsTable() {
   Json rows = Json::array();
-  for (const report::FieldDescription& field : report::DescribeFields()) {
-    rows.push_back({{"path", field.path},
-                    {"unit", field.unit},
-                    {"label", field.label},
-                    {"type", field.type},
-                    {"may_be_null", field.may_be_null},
-                    {"may_be_absent", field.may_be_absent}});
+  for (const report::Field& field : report::Fields()) {
+    rows.push_back({{"path", field.path}, {"unit", field.unit}, {"meaning", field.meaning}});
   }
   return rows;
 }
@@ -94,15 +87,6 @@ Json CausesTable() {
   return rows;
 }
 
-/// Models that a fit may have.
-Json ModelsTable() {
-  Json names = Json::array();
-  for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (!model.scaled_by_peak) names.push_back(model.name);
-  }
-  return names;
-}
-
 Json FlagsTable() {
   Json rows = Json::array();
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
@@ -128,10 +112,12 @@ Json Columns() {
 }  // namespace mindahl
 
 int main() {
-  const mindahl::report::Json tables = {
-      {"fields", mindahl::FieldsTable()},         {"terms", mindahl::TermsTable()},
-      {"thresholds", mindahl::ThresholdsTable()}, {"findings", mindahl::FindingsTable()},
-      {"causes", mindahl::CausesTable()},         {"models", mindahl::ModelsTable()},
-      {"flags", mindahl::FlagsTable()},           {"columns", mindahl::Columns()}};
+  const mindahl::report::Json tables = {{"fields", mindahl::FieldsTable()},
+                                        {"terms", mindahl::TermsTable()},
+                                        {"thresholds", mindahl::ThresholdsTable()},
+                                        {"findings", mindahl::FindingsTable()},
+                                        {"causes", mindahl::CausesTable()},
+                                        {"flags", mindahl::FlagsTable()},
+                                        {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

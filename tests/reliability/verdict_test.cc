@@ -47,7 +47,7 @@ TEST(Verdict, IsWarnedIfTruthIsFarOffWithWarning) {
 
 TEST(Verdict, DoesNotTakeANoteForAWarning) {
   FitResult fit = FitOf(105.0, 1.0);
-  fit.findings.push_back({.code = "turning_points_between_samples", .severity = Severity::kNote});
+  fit.findings.push_back({.code = "glitches_left_out", .severity = Severity::kNote});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent);
 }
 

@@ -1,116 +1,163 @@
 #include "mindahl/report/contact.h"
 
-#include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/prelude.h"
 
-// From a fit to the contact, by rules that hold for every caller of the library.
 namespace mindahl::report::contact_test {
 namespace {
 
-using namespace contact;
-using namespace loop;
-using namespace identification;
-
-using report::IdentifyFittedContact;
-using report::MeanNormalLoad;
-using report::WhyFrictionIsWithheld;
+using testing::kSigma;
 using testing::kSlipForce;
+using testing::MadeFit;
+using testing::MadeRecord;
 
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
-constexpr double kLoad = 100.0;  // [N]
+const contact::KnownBody kSteel{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
+const contact::KnownBody kPlane{.youngs_modulus = 210e9,
+                                .poisson_ratio = 0.3,
+                                .radius = std::numeric_limits<double>::infinity()};
+const contact::KnownContact kSphere{.normal_load = 50.0, .body_1 = kSteel, .body_2 = kPlane};
 
-FitResult FitThatLeavesTheSlipForceOpen() {
-  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
-  ParameterEstimate& slip_force = fit.parameters[2];
-  slip_force.identifiability = Identifiability::kBoundedBelow;
-  slip_force.standard_error.reset();
-  slip_force.upper95.reset();
-  slip_force.lower95 = 4.0;
-  return fit;
+identification::FitResult Fit() { return MadeFit({MadeRecord(2e-6)}, 2e-6); }
+
+ContactQuantity Of(const std::vector<ContactQuantity>& contact, std::string_view name) {
+  return *std::ranges::find(contact, name, &ContactQuantity::name);
 }
 
-TEST(FittedContact, GivesTheFrictionCoefficientOfAnIdentifiableSlipForce) {
-  const FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
-  const IdentifiedContact contact = IdentifyFittedContact(fit, {.normal_load = kLoad});
-  ASSERT_TRUE(contact.friction_coefficient);
-  EXPECT_NEAR(contact.friction_coefficient->value / (kSlipForce / kLoad), 1, kRounding);
-  EXPECT_FALSE(WhyFrictionIsWithheld(fit, {.normal_load = kLoad}));
+constexpr double kExact = 1e-12;
+
+TEST(DescribeContact, MapsTheEndsOfTheIntervalOfTheParameter) {
+  identification::FitResult fit = Fit();
+  fit.parameters[0].lower95 = 0.8 * kSigma;  // an interval that is not symmetric
+  fit.parameters[0].upper95 = 1.5 * kSigma;
+  fit.parameters[2].lower95 = 0.9 * kSlipForce;
+  fit.parameters[2].upper95 = 1.05 * kSlipForce;
+  const auto contact = DescribeContact(fit, kSphere);
+  const auto expect_ends = [&](const char* name, double lower, double upper) {
+    const ContactQuantity quantity = Of(contact, name);
+    EXPECT_NEAR(*quantity.lower / *quantity.value, lower, kExact) << name;
+    EXPECT_NEAR(*quantity.upper / *quantity.value, upper, kExact) << name;
+  };
+  expect_ends("friction_coefficient", 0.9, 1.05);
+  expect_ends("contact_radius", 0.8, 1.5);
+  expect_ends("equivalent_radius", std::pow(0.8, 3), std::pow(1.5, 3));   // ρ ∝ a³
+  expect_ends("maximum_pressure", std::pow(1.5, -2), std::pow(0.8, -2));  // p₀ ∝ a⁻²
+  expect_ends("sigma_over_hertz_mindlin", 0.8, 1.5);
+  EXPECT_EQ(*Of(contact, "friction_coefficient").value, kSlipForce / 50);
 }
 
-TEST(FittedContact, WithholdsTheFrictionCoefficientOfASlipForceThatIsOpenThoughTheLoadIsKnown) {
-  const FitResult fit = FitThatLeavesTheSlipForceOpen();
-  const IdentifiedContact contact = IdentifyFittedContact(fit, {.normal_load = kLoad});
-  EXPECT_FALSE(contact.friction_coefficient);
-  // μ >= 4 N/100 N
-  const char* expected = "needs an identifiable slip force; from this loop it is at least 0.04";
-  EXPECT_EQ(WhyFrictionIsWithheld(fit, {.normal_load = kLoad}), expected);
-  EXPECT_EQ(contact.unidentified.back(), std::string("friction coefficient ") + expected);
+TEST(DescribeContact, AddsTheUncertaintyOfInputsInQuadrature) {
+  contact::KnownContact known = kSphere;
+  known.normal_load = {50.0, 2.5};  // 5 %
+  identification::FitResult fit = Fit();
+  fit.parameters[2].lower95 = kSlipForce / 1.1;
+  fit.parameters[2].upper95 = kSlipForce * 1.1;
+  const ContactQuantity friction = Of(DescribeContact(fit, known), "friction_coefficient");
+  const double half_width = std::hypot(std::log(1.1), 1.959963984540054 * 0.05);
+  EXPECT_NEAR(std::log(*friction.upper / *friction.value), half_width, 1e-9);
+  EXPECT_NEAR(std::log(*friction.value / *friction.lower), half_width, 1e-9);
 }
 
-TEST(FittedContact, WithholdsItAlsoWhereTheIntervalIsClosedButTooWide) {
-  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
-  fit.parameters[2].identifiability = Identifiability::kNotIdentifiable;
-  EXPECT_FALSE(IdentifyFittedContact(fit, {.normal_load = kLoad}).friction_coefficient);
-}
-
-TEST(FittedContact, IsWithheldInEveryFormOfTheReport) {
-  report::ReportInput input = MadeInput();
-  input.fit = FitThatLeavesTheSlipForceOpen();
-  input.known.normal_load = kLoad;
-  const report::Report report = report::MakeReport(std::move(input));
-  EXPECT_FALSE(report.contact.friction_coefficient);
-  EXPECT_THAT(report::ToJson(report), HasSubstr("\"friction_coefficient\": null"));
-  EXPECT_THAT(report::ToText(report), Not(HasSubstr("μ = Tc/N")));
-  EXPECT_THAT(report::ToText(report), HasSubstr("at least"));
-}
-
-TEST(FittedContact, TakesTheCorrelationOfTheErrorsAlong) {
-  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
-  // δc = 3Tc/(2σ), errors of 1 % each: √(1 + 1 − 2ρ) %
-  for (const double correlation : {0.0, 0.5, 1.0, -1.0}) {
-    fit.correlation[2] = fit.correlation[6] = correlation;
-    const PropagatedValue slip = IdentifyFittedContact(fit, {}).gross_slip_displacement;
-    EXPECT_NEAR(slip.standard_error / slip.value, 0.01 * std::sqrt(2 - 2 * correlation), 1e-15);
+TEST(DescribeContact, GivesNoValueOfAParameterThatIsNotIdentifiable) {
+  identification::FitResult fit = Fit();
+  fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
+  fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
+  fit.parameters[2].upper95.reset();
+  const auto contact = DescribeContact(fit, kSphere);
+  for (const ContactQuantity& quantity : contact) {
+    EXPECT_EQ(quantity.value.has_value(), quantity.name == "normal_load") << quantity.name;
   }
-  fit.correlation[2] = std::numeric_limits<double>::quiet_NaN();
-  const PropagatedValue slip = IdentifyFittedContact(fit, {}).gross_slip_displacement;
-  EXPECT_NEAR(slip.standard_error / slip.value, 0.01 * std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(*Of(contact, "friction_coefficient").lower, 0.98 * kSlipForce / 50, kExact);
 }
 
-TEST(ContactOfAnotherLaw, HasTheRelativeErrorsOfTheFit) {
-  const FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);  // of which each is 1 %
-  const models::BranchLaw other{2 * kSigma, 0.5, 3 * kSlipForce};
-  const IdentifiedContact contact =
-      report::IdentifyContactOf(fit, other, {.normal_load = kLoad, .tangential_compliance = 4e-11});
-  EXPECT_NEAR(contact.contact_radius->value / (2 * kSigma * 4e-11 / 8), 1, kRounding);
-  EXPECT_NEAR(contact.contact_radius->standard_error / contact.contact_radius->value, 0.01, 1e-15);
-  EXPECT_NEAR(contact.friction_coefficient->value / (3 * kSlipForce / kLoad), 1, kRounding);
-  EXPECT_NEAR(contact.friction_coefficient->standard_error / contact.friction_coefficient->value,
-              0.01, 1e-15);
+TEST(DescribeContact, OfAHeldParameterHasTheUncertaintyOfInputsAlone) {
+  identification::FitResult fit = Fit();
+  fit.parameters[2].status = identification::ParameterStatus::kFixed;
+  fit.parameters[2].lower95.reset();
+  fit.parameters[2].upper95.reset();
+  const ContactQuantity friction = Of(DescribeContact(fit, kSphere), "friction_coefficient");
+  EXPECT_NEAR(*friction.lower, *friction.value, kExact);
+  EXPECT_NEAR(*friction.upper, *friction.value, kExact);
 }
 
-TEST(FittedContact, CountsAHeldParameterAsExactAndAnOpenOneAsUnknown) {
-  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
-  fit.parameters[0].standard_error.reset();
-  EXPECT_TRUE(std::isinf(
-      IdentifyFittedContact(fit, {.tangential_compliance = 4e-11}).contact_radius->standard_error));
-  fit.parameters[0].status = ParameterStatus::kFixed;
-  const IdentifiedContact contact = IdentifyFittedContact(fit, {.tangential_compliance = 4e-11});
-  EXPECT_EQ(contact.contact_radius->standard_error, 0.0);
-  EXPECT_NEAR(contact.contact_radius->value / (kSigma * 4e-11 / 8), 1, kRounding);
+TEST(DescribeContact, KeepsAnEndOpenThatTheParameterLeavesOpen) {
+  identification::FitResult fit = Fit();
+  fit.parameters[0].upper95.reset();
+  const auto contact = DescribeContact(fit, kSphere);
+  EXPECT_FALSE(Of(contact, "contact_radius").upper);
+  EXPECT_TRUE(Of(contact, "contact_radius").lower);
+  EXPECT_FALSE(Of(contact, "maximum_pressure").lower);
+  EXPECT_TRUE(Of(contact, "maximum_pressure").upper);
+}
+
+TEST(DescribeContact, GivesGrossSlipOfMindlinsContactAlone) {
+  identification::FitResult fit = Fit();
+  const ContactQuantity slip = Of(DescribeContact(fit, {}), "gross_slip_displacement");
+  EXPECT_NEAR(*slip.value / (1.5 * kSlipForce / kSigma), 1, kExact);
+  // Tc and σ are known to ±2 %, uncorrelated.
+  EXPECT_NEAR(std::log(*slip.upper / *slip.value), std::hypot(std::log(1.02), std::log(0.98)),
+              1e-9);
+  fit.parameters[1] = testing::MadeParameter("alpha", "-", 0.6, 0.01);
+  EXPECT_FALSE(Of(DescribeContact(fit, {}), "gross_slip_displacement").value);
+}
+
+TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {
+  identification::FitResult fit = Fit();
+  fit.parameters.push_back(testing::MadeParameter("asymmetry", "-", 0.1, 0.005));
+  fit.correlation.assign(16, 0.0);
+  const auto contact = DescribeContact(fit, {});
+  EXPECT_NEAR(*Of(contact, "slip_force_positive").value, 1.1 * kSlipForce, 1e-9);
+  EXPECT_NEAR(*Of(contact, "slip_force_negative").value, 0.9 * kSlipForce, 1e-9);
+  EXPECT_NEAR(std::log(*Of(contact, "slip_force_positive").upper / (1.1 * kSlipForce)),
+              std::hypot(std::log(1.02), 0.01 / 1.1), 1e-9);
+}
+
+TEST(DescribeContact, GivesNoSlipForceThatThePlateausContradict) {
+  identification::FitResult fit = Fit();
+  fit.parameters.push_back(testing::MadeParameter("asymmetry", "-", 0.5, 0.05));
+  fit.correlation.assign(16, 0.0);
+  loop::LoopFacts& facts = fit.records[0].facts;
+  facts.closed = true;
+  facts.energy_ratio = 0.95;
+  facts.half_gap = kSlipForce;
+  facts.cycles.resize(1);
+  facts.cycles[0].centre_force = 0.07 * kSlipForce;
+  EXPECT_FALSE(Of(DescribeContact(fit, {}), "slip_force_positive").value);
+  facts.cycles[0].centre_force = 0.5 * kSlipForce;
+  EXPECT_TRUE(Of(DescribeContact(fit, {}), "slip_force_positive").value);
+}
+
+TEST(TestAlpha, RejectsAThirdOutsideTheIntervalAlone) {
+  identification::FitResult fit = Fit();
+  EXPECT_FALSE(*TestAlpha(fit).is_rejected);
+  fit.parameters[1].lower95 = 0.34;
+  EXPECT_TRUE(*TestAlpha(fit).is_rejected);
+  fit.parameters[1].identifiability = identification::Identifiability::kNotIdentifiable;
+  EXPECT_FALSE(TestAlpha(fit).is_rejected);
+  EXPECT_FALSE(TestAlpha(fit).p_value);
+}
+
+TEST(TestLoadExponent, RejectsWhatTheExponentDenies) {
+  identification::FitResult fit = Fit();
+  EXPECT_THAT(TestLoadExponent(fit), IsEmpty());
+  fit.parameters.push_back(testing::MadeParameter("load_exponent", "-", 0.335, 0.01));
+  fit.correlation.assign(16, 0.0);
+  fit.load_exponent = 0.335;
+  const auto theories = TestLoadExponent(fit);
+  ASSERT_EQ(theories.size(), 5U);
+  EXPECT_GT(*theories[0].p_value, 0.5);   // a sphere
+  EXPECT_LT(*theories[2].p_value, 1e-4);  // a cone
+  EXPECT_FALSE(DeniesHertz(fit));
+  fit.parameters.back() = testing::MadeParameter("load_exponent", "-", 0.5, 0.01);
+  EXPECT_TRUE(DeniesHertz(fit));
 }
 
 TEST(MeanNormalLoad, IsThatOfTheSamplesInTheWindow) {
-  Record first;
-  first.normal_load = {1, 2, 3};
-  Record second;
-  second.normal_load = {10, 4};
-  const std::vector<Record> records = {first, second};
-  EXPECT_EQ(MeanNormalLoad(records), 4.0);
-  EXPECT_EQ(MeanNormalLoad(records, Interval{2, 4}), 3.0);
-  EXPECT_FALSE(MeanNormalLoad(records, Interval{5, 6}));
-  EXPECT_FALSE(MeanNormalLoad(std::vector<Record>{first, Record{}}));
+  loop::Record record = MadeRecord(1e-6, 4);
+  record.normal_load = {10, 20, 30, 40};
+  EXPECT_EQ(*MeanNormalLoad({&record, 1}), 25.0);
+  EXPECT_EQ(*MeanNormalLoad({&record, 1}, identification::Interval{15, 35}), 25.0);
+  EXPECT_EQ(*MeanNormalLoad({&record, 1}, identification::Interval{5, 25}), 15.0);
+  EXPECT_FALSE(MeanNormalLoad({&record, 1}, identification::Interval{50, 60}));
 }
 
 }  // namespace

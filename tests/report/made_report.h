@@ -69,6 +69,7 @@ inline identification::FitResult MadeFit(const std::vector<loop::Record>& record
       MadeParameter("alpha", "-", law.shape_exponent, 0.01),
       MadeParameter("slip_force", "N", law.slip_force, 0.01 * law.slip_force)};
   fit.correlation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  fit.adequacy.tried = 12;
   fit.residuals.samples = 9;
   fit.residuals.degrees_of_freedom = 6;
   for (const loop::Record& record : records)

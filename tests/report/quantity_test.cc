@@ -70,18 +70,31 @@ TEST(QuantityWithError, ShowsMissingErrorAndOpenIntervals) {
 
 TEST(QuantityWithError, WithoutAnErrorIsTheQuantity) {
   EXPECT_EQ(QuantityWithError(1.5e-6, std::nullopt, "m"), "1.5 µm");
-  EXPECT_EQ(NumberWithError(40.0, 12.0, 1.0), "40 ± 12");
-  EXPECT_EQ(NumberWithError(4e7, 4e5, 1e6), "40.00 ± 0.40");
 }
 
-TEST(IntervalText, HasThreeDigitsOfItsWidth) {
-  EXPECT_EQ(IntervalText(3.92e7, 4.08e7, 1e6), "39.20 … 40.80");
-  EXPECT_EQ(IntervalText(-0.5, 0.25, 1.0), "-0.500 … 0.250");
+TEST(QuantityWithInterval, HasTwoDigitsOfHalfTheInterval) {
+  EXPECT_EQ(QuantityWithInterval(4.0e7, 3.92e7, 4.08e7, "N/m"), "40.00 N/µm (39.20 … 40.80)");
+  EXPECT_EQ(QuantityWithInterval(0.433, 0.381, 0.498, "-"), "0.433 (0.381 … 0.498)");
 }
 
-TEST(IntervalText, SaysWhichEndIsOpen) {
-  EXPECT_EQ(IntervalText(12.5, std::nullopt, 1.0), "12.5 … open");
-  EXPECT_EQ(IntervalText(std::nullopt, 12.5, 1.0), "open … 12.5");
+TEST(QuantityWithInterval, SaysWhichEndIsOpen) {
+  EXPECT_EQ(QuantityWithInterval(15.0, 12.0, std::nullopt, "N"), "15.0 N (12.0 … open)");
+  EXPECT_EQ(QuantityWithInterval(15.0, std::nullopt, std::nullopt, "N"), "15 N");
+}
+
+TEST(UnitIn, TranslatesEveryUnitOfAForceToThatOfATorque) {
+  const auto of_torque = [](const char* unit) { return UnitIn(kUnitsOfTorque, unit); };
+  EXPECT_EQ(of_torque("N"), "N m");
+  EXPECT_EQ(of_torque("m"), "rad");
+  EXPECT_EQ(of_torque("N/m"), "N m/rad");
+  EXPECT_EQ(of_torque("N/m²"), "N m/rad²");
+  EXPECT_EQ(of_torque("N s/m"), "N m s/rad");
+  EXPECT_EQ(of_torque("m/N"), "rad/(N m)");
+  EXPECT_EQ(of_torque("kg"), "kg m²");
+  EXPECT_EQ(of_torque("N samples²/m"), "N m samples²/rad");
+  EXPECT_EQ(of_torque("J"), "J");
+  EXPECT_EQ(of_torque("-"), "-");
+  EXPECT_EQ(UnitIn(kUnitsOfForce, "N/m²"), "N/m²");
 }
 
 /// What is printed is the value to within half of its last digit, whatever the sizes.

@@ -65,13 +65,17 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
       {"standard_error", made.error},
       {"ci95", {made.slip_force - made.half_width, made.slip_force + made.half_width}},
       {"identifiability", made.verdict}};
-  if (made.repeat_error > 0) json["parameters"]["slip_force"]["repeat_error"] = made.repeat_error;
   json["measured"]["half_gap"]["value"] = made.half_gap;
   json["warnings"] = nlohmann::json::array();
   BatchEntry entry;
   entry.done = made.done;
   entry.file = file;
   SetFitJson(entry, json.dump());
+  if (made.repeat_error > 0) {
+    identification::ParameterEstimate& slip_force = entry.parameters.emplace_back();
+    slip_force.name = "slip_force";
+    slip_force.repeat_error = made.repeat_error;
+  }
   return entry;
 }
 
@@ -184,7 +188,7 @@ TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
   EXPECT_THAT(page, HasSubstr("<h1>2 of 3 files fitted</h1>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"a%20%3Cb%3E.html\">a &lt;b&gt;.csv</a>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"c--d.html\">"));
-  EXPECT_THAT(page, HasSubstr("40.00 ± 0.40 N/µm"));
+  EXPECT_THAT(page, HasSubstr("40.00 N/µm (39.20 … 40.80)"));
   EXPECT_THAT(page, Not(HasSubstr("77.77")));
   EXPECT_THAT(page, HasSubstr("d.csv:2:1: no number"));
   EXPECT_THAT(page, HasSubstr("more than the errors"));
@@ -222,10 +226,9 @@ BatchEntry EntryOfAllColumns() {
   entry.sha256 = "5e";
   SetFitJson(entry, R"({
     "input": {"samples": 301, "cycles": 3}, "model": "dahl", "initial_state": "steady",
-    "adequacy": {"verdict": "doubtful"}, "loop": {"amplitude": 1.5, "peak_force": 2.5,
-    "slip_regime": "gross"},
-    "measured": {"half_gap": {"value": 3.5}, "sliding_amplitude": 4.5, "energy_per_cycle": 5.5,
-                 "energy_ratio": 6.5},
+    "adequacy": {"verdict": "doubtful"},
+    "measured": {"half_gap": {"value": 3.5}, "amplitude": 1.5, "peak_force": 2.5,
+                 "energy_per_cycle": 5.5, "energy_ratio": 6.5, "slides": true},
     "parameters": {
       "sigma": {"value": 7.5, "standard_error": 8.5, "ci95": [9.5, 10.5], "identifiability": "v1"},
       "alpha": {"value": 11.5, "standard_error": 12.5, "ci95": [13.5, null],
@@ -233,8 +236,8 @@ BatchEntry EntryOfAllColumns() {
       "slip_force": {"value": 14.5, "standard_error": null, "ci95": [15.5, 16.5],
                      "identifiability": "v3"}},
     "residuals": {"rms": 17.5, "r_squared": 18.5},
-    "contact": {"normal_load": 19.5, "friction_coefficient": {"value": 20.5,
-                "standard_error": 21.5}, "contact_radius": {"value": 22.5}},
+    "contact": {"normal_load": {"value": 19.5}, "friction_coefficient": {"value": 20.5,
+                "ci95": [21.5, 21.75]}, "contact_radius": {"value": 22.5}},
     "warnings": [{"code": "one"}, {"code": "two"}]})");
   return entry;
 }
@@ -244,13 +247,14 @@ TEST(BatchTable, HasEachNumberInItsColumn) {
   const std::string csv = TableCsv(entries);
   EXPECT_EQ(csv,
             "file,done,samples,model,initial_state,adequacy,cycles,amplitude,peak_force,half_gap,"
-            "sliding_amplitude,energy_per_cycle,energy_ratio,sigma,sigma_error,sigma_lower95,"
+            "energy_per_cycle,energy_ratio,sigma,sigma_error,sigma_lower95,"
             "sigma_upper95,sigma_verdict,alpha,alpha_error,alpha_lower95,alpha_upper95,"
             "alpha_verdict,slip_force,slip_force_error,slip_force_lower95,slip_force_upper95,"
-            "slip_force_verdict,rms,r_squared,slip_regime,normal_load,friction_coefficient,"
-            "friction_coefficient_error,contact_radius,warnings,fault,version,sha256\n"
-            "\"a,b.csv\",yes,301,dahl,steady,doubtful,3,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,"
-            "v1,11.5,12.5,13.5,,v2,14.5,,15.5,16.5,v3,17.5,18.5,gross,19.5,20.5,21.5,22.5,one "
+            "slip_force_verdict,rms,r_squared,slides,normal_load,friction_coefficient,"
+            "friction_coefficient_lower95,friction_coefficient_upper95,contact_radius,warnings,"
+            "fault,version,sha256\n"
+            "\"a,b.csv\",yes,301,dahl,steady,doubtful,3,1.5,2.5,3.5,5.5,6.5,7.5,8.5,9.5,10.5,"
+            "v1,11.5,12.5,13.5,,v2,14.5,,15.5,16.5,v3,17.5,18.5,yes,19.5,20.5,21.5,21.75,22.5,one "
             "two,," +
                 std::string(Version()) + ",5e\n");
 }

@@ -206,18 +206,6 @@ TEST(ReadRecords, RefuseALongFileBeforeItIsReadAsATable) {
   EXPECT_THAT(refusal(3000), HasSubstr("'broken' is not a number"));
 }
 
-TEST(WarningsBesideText, OfAnInadequateFitAreThoseOfTheRecord) {
-  report::Report report;
-  report.fit_warnings = {{"fit_failed", "1"},
-                         {"slip_force_bounded_below", "2"},
-                         {"no_closed_cycle", "3"},
-                         {"few_places", "4"}};
-  report.contact_warnings = {{"contact_implausible", "5"}, {"redundant_input", "6"}};
-  EXPECT_THAT(WarningsBesideText(report), ElementsAre("2", "3", "4", "5"));
-  report.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
-  EXPECT_THAT(WarningsBesideText(report), ElementsAre("3", "4", "5"));
-}
-
 TEST(FitRecords, ChoosesNoTermsByDefaultForSeveralLoads) {
   // A spring of 5 N/µm next to the contact: of one load it is found, of a file of two it is not
   // looked for unless that is asked.

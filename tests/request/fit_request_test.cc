@@ -115,7 +115,6 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   request.start["sigma"] = 3e7;
   request.bound["slip_force"] = {1.0, 5.0};
   request.prior["sigma"] = {2e7, 1e6};
-  request.regions = true;
   request.confidence = 0.5;
   request.force_noise = 0.125;
   request.displacement_noise = 1e-9;
@@ -145,7 +144,6 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   EXPECT_EQ(fit.start, request.start);
   EXPECT_EQ(fit.bounds.at("slip_force").lower, 1.0);
   EXPECT_EQ(fit.bounds.at("slip_force").upper, 5.0);
-  EXPECT_TRUE(fit.regions);
   EXPECT_EQ(fit.confidence, 0.5);
   EXPECT_EQ(fit.force_noise, 0.125);
   EXPECT_EQ(fit.preparation.displacement_noise, 1e-9);
@@ -171,7 +169,7 @@ TEST(FitRequest, LeavesToTheFitWhatIsNotAsked) {
   EXPECT_FALSE(made.initial_state || made.preparation.force_sense || made.force_noise ||
                made.preparation.load_window || made.preparation.cycles ||
                made.preparation.samples || made.preparation.reversal_gate ||
-               made.preparation.displacement_noise || made.regions);
+               made.preparation.displacement_noise);
   EXPECT_TRUE(made.offsets);
   EXPECT_EQ(made.loss, identification::Loss::kNone);
   FitRequest request;

@@ -64,18 +64,11 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
   return FitRecords(request, {file}, [](std::string_view) {});
 }
 
-std::string NoteOf(const report::Report& report, std::string_view code) {
-  const auto note = std::ranges::find(report.notes, code, &report::Warning::code);
-  return note == report.notes.end() ? "" : note->message;
-}
-
 TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
   Generator generator(8);
   const Record record = UnderARampingLoad(20, generator);
   const report::Report report = ReportOf(record);
-  EXPECT_THAT(NoteOf(report, "trimmed"), HasSubstr("under another normal load than 100 N"));
   EXPECT_EQ(report.fit.normal_load, 100.0);
-  EXPECT_EQ(NoteOf(report, "load_steps"), "");
   EXPECT_EQ(report.fit.FindFinding("load_followed"), nullptr);
   EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.005);
   // The ramp ends after three cycles, a turn is a quarter past each half, and the second counts.

@@ -17,52 +17,18 @@ namespace {
 
 using nlohmann::json;
 
-/// Splits "parameters.sigma.ci95[0]" into its names and places.
-std::vector<std::string> PartsOf(std::string_view path) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end =
-        std::min(path.find_first_of(".[", path[begin] == '[' ? begin + 1 : begin), path.size());
-    parts.emplace_back(path.substr(begin, end - begin));
-    begin = end < path.size() && path[end] == '.' ? end + 1 : end;
-  }
-  return parts;
-}
-
-bool Describes(const std::vector<std::string>& pattern, const std::vector<std::string>& path) {
-  return std::ranges::equal(pattern, path, [](const std::string& one, const std::string& other) {
-    const bool is_place = one == "[]" && other.starts_with('[');
-    return one == other || one == "NAME" || one == "QUANTITY" || is_place;
-  });
-}
-
 /// Returns the unit that the contract states of a path; empty where it states none.
-const std::string& StatedUnit(const std::string& path) {
-  static const auto described = [] {
-    std::vector<std::pair<std::vector<std::string>, std::string>> rows;
-    for (const report::FieldDescription& field : report::DescribeFields()) {
-      rows.emplace_back(PartsOf(field.path), field.unit);
-    }
-    return rows;
-  }();
-  static std::map<std::string, std::string> known;
-  const auto found = known.find(path);
-  if (found != known.end()) return found->second;
-  // A list with one entry a file, and a value with its error, may be described by their own path.
-  std::vector<std::string> parts = PartsOf(path);
-  const auto row_of = [&] {
-    return std::ranges::find_if(described,
-                                [&](const auto& one) { return Describes(one.first, parts); });
-  };
-  auto row = row_of();
-  const auto is_detail = [](const std::string& part) {
-    return part.starts_with('[') || part == "value" || part == "standard_error";
-  };
-  while (row == described.end() && is_detail(parts.back())) {
-    parts.pop_back();
-    row = row_of();
+std::string StatedUnit(const std::string& path) {
+  for (const report::Field& field : report::Fields()) {
+    if (field.path == path) return std::string(field.unit);
   }
-  return known[path] = row == described.end() ? "" : row->second;
+  // Members of cycles and of the other law.
+  static const std::map<std::string, std::string> kOfMembers = {
+      {"amplitude", "m"}, {"peak_force", "N"}, {"half_gap", "N"},
+      {"energy", "J"},    {"sigma", "N/m"},    {"slip_force", "N"}};
+  const auto member = kOfMembers.find(path.substr(path.rfind('.') + 1));
+  const bool is_member = path.starts_with("measured.") || path.starts_with("law.");
+  return !is_member || member == kOfMembers.end() ? "" : member->second;
 }
 
 struct Leaf {
@@ -89,11 +55,9 @@ void Collect(const json& value, const std::string& path, const std::string& own_
       Collect(value[k], path + "[" + std::to_string(k) + "]", own_unit, is_forced, leaves);
     }
   } else {
-    std::string unit = StatedUnit(path);
-    if (unit == "N or m") unit = is_forced ? "m" : "N";
-    if (unit == "m or N") unit = is_forced ? "N" : "m";
-    if (unit.starts_with("of the")) unit = own_unit;
-    if (path.ends_with("_cost")) unit = is_forced ? "m²" : "N²";  // half a sum of squares
+    std::string unit = own_unit.empty() ? StatedUnit(path) : own_unit;
+    if (unit == "response") unit = is_forced ? "m" : "N";
+    if (unit == "response²") unit = is_forced ? "m²" : "N²";
     leaves[path] = {value, unit};
   }
 }
@@ -208,7 +172,6 @@ std::vector<Question> Questions() {
        [](const UnitScale& scale) {
          FitRequest request;
          request.prior["slip_force"] = {41 * scale.force, 0.5 * scale.force};
-         request.regions = true;
          return request;
        },
        one},

@@ -42,6 +42,7 @@ struct PlotPanel {
   bool log_y = false;
   std::string title = {};  ///< above the axes; "" = none
   std::vector<PlotMark> marks = {};
+  double label_room = 0.0;  ///< least room for the numbers of the vertical axis [px]
 };
 
 /// Panels row by row; a row is as high as its highest panel.

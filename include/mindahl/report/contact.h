@@ -13,97 +13,65 @@
 
 namespace mindahl::report {
 
-/// Returns the correlation of the errors of two parameters of a fit; 0 where the fit does not say.
-double Correlation(const identification::FitResult& fit, std::string_view first,
-                   std::string_view second);
+/// Holds a quantity that follows from parameters of a fit and from what is known of the contact.
+struct ContactQuantity {
+  std::string_view name;    ///< key in the JSON: "friction_coefficient"
+  std::string_view symbol;  ///< "μ"
+  std::string_view unit;    ///< "-" if it is a ratio
+  /// The parameter beside which it is printed; empty of what was given.
+  std::string_view parameter;
+  std::optional<double> value;  ///< empty where it does not follow
+  /// Ends of the interval: those of the parameters' intervals, mapped; the uncertainties of known
+  /// inputs are added in quadrature to the half width of the logarithm. Empty where one is open.
+  std::optional<double> lower;
+  std::optional<double> upper;
+  std::string why;  ///< why value or an end is empty
+};
 
-/// Identifies the contact of a fit, with its errors and their correlation, and by the rules that
-/// keep it from stating what the record does not determine:
-///  - errors are those of the parameters' intervals, FitResult::ErrorOf(): a parameter that was
-///    held is exact, one that the record leaves open has an infinite error;
-///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit;
-///  - no ρ and no p₀ from a load series that denies Hertz's law.
-/// @param fit  one that did not fail
-/// @throws InvalidArgument as IdentifyContact()
-contact::IdentifiedContact IdentifyFittedContact(const identification::FitResult& fit,
-                                                 const contact::KnownContact& known);
-
-/// Identifies the contact by a law that was not fitted, with the same relative errors of σ and Tc.
-/// @throws InvalidArgument as IdentifyContact()
-contact::IdentifiedContact IdentifyContactOf(const identification::FitResult& fit,
-                                             const models::BranchLaw& law,
+/// Returns every quantity of the contact of a fit, in the order of the reports: friction
+/// coefficient, slip forces of either direction, contact radius, compliance, equivalent radius,
+/// maximum pressure, gross-slip displacement, σ/(8a/G*) and the normal load. Nothing follows from a
+/// parameter that the record leaves open, and of one that is bounded below μ has its lower end
+/// only.
+/// @param fit  one that did not fail, of a force along the contact
+/// @throws InvalidArgument as contact::IdentifyContact()
+std::vector<ContactQuantity> DescribeContact(const identification::FitResult& fit,
                                              const contact::KnownContact& known);
-
-/// Returns why μ is withheld though the normal load is known: the slip force is not identifiable.
-/// Empty where it is not withheld.
-std::optional<std::string> WhyFrictionIsWithheld(const identification::FitResult& fit,
-                                                 const contact::KnownContact& known);
-
-/// Returns the mean measured normal load [N], which a steady test keeps to: of the samples in the
-/// window where there is one. Empty where a record has no load or no sample counts.
-std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
-                                     const std::optional<identification::Interval>& window = {});
 
 /// Tests the fitted exponent against Mindlin's 1/3, which is rejected if and only if it lies
 /// outside the interval of α. No test is made where α was held or is not identifiable.
 struct AlphaTest {
   std::optional<double> minus_third;  ///< α − 1/3; empty where α was held
   std::optional<bool> is_rejected;
-  std::optional<double> z;  ///< over FitResult::ErrorTowards(1/3); empty where α is at a bound
-  std::optional<double> p_value;  ///< two-sided, of Student's t
-  /// Likelihood ratio of the model with α = 1/3; empty where α's interval includes more than this
-  /// model and says otherwise.
-  std::optional<identification::MindlinTest> likelihood;
+  std::optional<double> p_value;  ///< two-sided, of Student's t; empty where α is at a bound
+};
+AlphaTest TestAlpha(const identification::FitResult& fit);
+
+/// Compares a theory of how the stiffness follows the load, σ ∝ N^p, with the fitted exponent.
+struct LoadHypothesis {
+  std::string_view name;               ///< "smooth sphere (Hertz)"
+  double exponent = 0.0;               ///< predicted p
+  std::optional<double> p_value = {};  ///< two-sided; empty where p was held or is not identifiable
 };
 
-/// Tests whether the fitted stiffness is 8a/G*.
-struct StiffnessTest {
-  std::string_view radius;         ///< source of a: "hertz" or "given"
-  contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold
-  std::optional<identification::Interval> interval95 =
-      {};                              ///< empty, as the rest, where the ratio's error is 0 or open
-  double confidence = 0.95;            ///< confidence of the interval
-  std::optional<double> z = {};        ///< (ratio − 1)/SE
-  std::optional<double> p_value = {};  ///< two-sided
-};
+/// Returns the theories of docs/theory.md §9; empty where the records have one load.
+std::vector<LoadHypothesis> TestLoadExponent(const identification::FitResult& fit);
+
+/// True if a load series denies Hertz's law: p = 1/3 is rejected, or p was held at another value.
+/// Then no ρ and no pressure follow from a contact radius.
+bool DeniesHertz(const identification::FitResult& fit);
+
+/// Returns the mean measured normal load [N], which a steady test keeps to: of the samples in the
+/// window where there is one. Empty where a record has no load or no sample counts.
+std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
+                                     const std::optional<identification::Interval>& window = {});
+
+/// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip; of a law with
+/// α >= 1, which never quite does, 99 % of its slip force.
+bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
+                  double contact_amplitude);
 
 /// Significance at which tests are called rejected in words: the usual convention.
 inline constexpr double kSignificance = 0.05;
-
-/// @param fit  one that did not fail
-AlphaTest TestAlpha(const identification::FitResult& fit);
-
-/// Tests a ratio against 1, by Student's t with the degrees of freedom of Welch and Satterthwaite
-///   ν = ν_fit/s²,  s the fit's fraction of the variance
-/// (GUM G.4.1): the uncertainties of inputs are taken as known for certain.
-/// @param degrees_of_freedom  ν_fit of the fit, > 0
-StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
-                            double degrees_of_freedom, double confidence = 0.95);
-
-/// Returns a test for each radius that is known apart from the fit, if G* is known too; with the
-/// ratio alone if σ is not identifiable.
-std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
-                                         const contact::IdentifiedContact& contact);
-
-/// The force [N] at which a contact slips in one direction of the motion; without an error or an
-/// interval where the fit leaves them open or holds both of what it follows from.
-struct SlipForce {
-  double value = 0.0;
-  std::optional<double> standard_error = {};
-  std::optional<double> lower95 = {};
-  std::optional<double> upper95 = {};
-};
-
-struct SlipForces {
-  SlipForce positive;  ///< Tc(1 + a) [N], for motion towards positive displacement
-  SlipForce negative;  ///< Tc(1 − a) [N]
-};
-
-/// Returns the slip forces of a contact whose two differ, from its `slip_force` Tc and `asymmetry`
-/// a; empty where the fit has none, or leaves either of the two open.
-///   var ln Tc± = var ln Tc + var a/(1 ± a)² ± 2·cov(ln Tc, a)/(1 ± a)
-/// Ends of the intervals combine the distances of Tc's and a's ends from the estimate in the same
-/// way, so that an inflation of theirs inflates these.
-std::optional<SlipForces> DescribeSlipForces(const identification::FitResult& fit);
 
 }  // namespace mindahl::report

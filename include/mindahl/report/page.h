@@ -23,9 +23,10 @@ struct Provenance {
   std::vector<std::pair<std::string, std::string>> options;
 };
 
-/// Returns the report of a fit as one page of HTML 5, for people: docs/report.md. It
-/// loads nothing and runs no script, follows the light or dark scheme of its reader, and prints. No
-/// number of what is not identified is in it. Of a fit that failed, why, and what it was made from.
+/// Returns the report of a fit as one page of HTML 5, for people: the answer's lines beside the
+/// loop with its residual, and details below. It loads nothing and runs no script, follows the
+/// light or dark scheme of its reader, and prints. Of a fit that failed, why, and what it was made
+/// from.
 ///
 /// Figures have at most 6000 points each, so that the size of a page, some hundred kilobytes, does
 /// not grow with the record.

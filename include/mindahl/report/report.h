@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
@@ -13,8 +12,6 @@
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/segments.h"
 #include "mindahl/report/contact.h"
-#include "mindahl/report/load_series.h"
-#include "mindahl/report/loop_description.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::report {
@@ -30,7 +27,9 @@ struct NextStep {
   std::string text;            ///< in words: "a slip force that depends on the position"
   std::string options;         ///< to add to the command: "--terms slip_position"
   double misfit_before = 0.0;  ///< Adequacy::misfit_over_half_gap of the fit that is reported
-  double misfit_after = 0.0;   ///< of the fit with the options
+  double misfit_after = 0.0;   ///< likewise, with the options
+  /// Force [N] of that fit, one list a record, for the page; may be empty.
+  std::vector<std::vector<double>> fitted_force = {};
 };
 
 /// Holds the inputs of a report.
@@ -44,7 +43,7 @@ struct ReportInput {
   std::optional<identification::Interval> load_window = {};
   /// Holds the parts left out of each record as not of its test; empty where not requested.
   std::vector<loop::Trim> trims = {};
-  std::optional<identification::ModelSelection> selection = {};  ///< if a model was chosen
+  std::optional<identification::ModelSelection> selection = {};  ///< if models were compared
   std::optional<identification::TermSelection> terms = {};       ///< if terms were chosen
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
   /// reported.
@@ -52,56 +51,42 @@ struct ReportInput {
 };
 
 /// Holds the answer of a fit: its inputs, and everything that follows from them. ToJson(),
-/// ToText(), ToPlot() and ResidualsCsv() write it.
+/// ToText(), ToPage() and ToPlot() write it.
 struct Report : ReportInput {
-  std::optional<LoopDescription> loop;  ///< empty where the fit failed
-  contact::IdentifiedContact contact;   ///< empty where the fit failed
-  /// Holds the contact by Masing's law where Dahl's own was fitted, and the other way round; empty
-  /// where the two are not compared.
-  contact::IdentifiedContact contact_by_other_law;
-  std::optional<SlipForces> slip_forces;  ///< empty unless the fit knows that the two differ
-  std::optional<LoadSeries> load_series;  ///< empty where the records have one load
+  Units units;                           ///< units of all numbers in words
+  std::vector<ContactQuantity> contact;  ///< empty where the fit failed, and of a torque
   AlphaTest alpha;
-  std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
-  std::vector<Warning> fit_warnings;      ///< findings of the fit on which a person should act
-  std::vector<Warning> contact_warnings;  ///< findings of the translation into the contact
-  std::vector<Warning> notes;             ///< findings of the fit that are only worth knowing
-
-  Units units;  ///< units of all numbers in words
+  std::vector<LoadHypothesis> load_hypotheses;  ///< empty where the records have one load
+  std::vector<Warning> warnings;                ///< on which a person should act
+  /// Names a unit or a load that is most likely wrong, to look at first; "" where none is.
+  std::string check;
 
   /// True for a torque against an angle, which has no Hertz-Mindlin contact and no mapping.
   [[nodiscard]] bool is_torsional() const { return records.front().is_torsional; }
   /// True for a fit that failed and has no parameter, residual, loop, contact or mapping.
   [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
+  /// Returns nullptr where the contact has no such quantity.
+  [[nodiscard]] const ContactQuantity* Find(std::string_view quantity) const;
 };
 
-/// Makes loop, contact and mapping from a fit.
+/// Makes a report from a fit. A fit of no more samples than free parameters determines none of
+/// them.
 /// @param input  one name and one record for each record of the fit
 /// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,
-/// and
-///   as IdentifyFittedContact()
+///   and as DescribeContact()
 Report MakeReport(ReportInput input);
 
-/// Describes a finding in words, without an end of line: what was found, what it means and, where
-/// something can be done, what to do.
-/// @param finding  with the numbers and parameters that its code has (docs/contract.md)
-/// @param fit      the fit that found it: the model's name and why the solver stopped are its own
-/// @param units    of the record
-/// @throws std::logic_error for a kind without a sentence, and for a number that is missing
-std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
-                     const Units& units = kUnitsOfForce);
-
 struct TextOptions {
-  bool has_colours = false;  ///< escape sequences of a terminal around verdicts and headings
+  bool has_colours = false;  ///< escape sequences of a terminal around the labels
+  bool has_details = false;  ///< adds what the answer leaves out
 };
 
-/// Returns a text for people; UTF-8, at most 100 columns. The first 24 lines have the verdict, the
-/// use, the next step, the contact's parameters and the contact as far as it is known; what that
-/// rests on follows. A fit that is of no use has ten lines, and no parameter.
+/// Returns the answer for people, one line a quantity, each with one uncertainty: its interval.
+/// UTF-8, at most 100 columns.
 /// @throws InvalidArgument for a fit that failed
 std::string ToText(const Report& report, const TextOptions& options = {});
 
-/// Returns the JSON of schema mindahl.fit/1, as `mindahl fit --json` writes it, with the end of
+/// Returns the JSON of schema mindahl.fit/2, as `mindahl fit --json` writes it, with the end of
 /// line: docs/contract.md. UTF-8; bytes of a file name that are not are replaced.
 std::string ToJson(const Report& report);
 

@@ -11,46 +11,21 @@ struct Units {
   std::string_view force = "N";
   std::string_view displacement = "m";
   std::string_view stiffness = "N/m";
-  std::string_view drift = "N/s";
-  std::string_view viscous = "N s/m";
-  std::string_view compliance = "m/N";
-  std::string_view inertia = "kg";
-  std::string_view displacement_drift = "m/s";
   std::string_view response = "N";    ///< the channel that is fitted: of residuals
   std::string_view excitation = "m";  ///< the other one: of reversals
 };
-
-// Units of fields that are those of a channel: which it is, a report knows.
-inline constexpr const char* kOfResponse = "N or m";
-inline constexpr const char* kOfExcitation = "m or N";
 
 inline constexpr Units kUnitsOfForce{};
 inline constexpr Units kUnitsOfTorque{.force = "N m",
                                       .displacement = "rad",
                                       .stiffness = "N m/rad",
-                                      .drift = "N m/s",
-                                      .viscous = "N m s/rad",
-                                      .compliance = "rad/(N m)",
-                                      .inertia = "kg m²",
-                                      .displacement_drift = "rad/s",
                                       .response = "N m",
                                       .excitation = "rad"};
 
-/// Returns the unit in which a quantity is that has `unit` where the record has a force: "N/m" is N
-/// m/rad of a torque. Energies are in J either way.
-constexpr std::string_view UnitIn(const Units& units, std::string_view unit) {
-  if (unit == kUnitsOfForce.force) return units.force;
-  if (unit == kUnitsOfForce.displacement) return units.displacement;
-  if (unit == kUnitsOfForce.stiffness) return units.stiffness;
-  if (unit == kUnitsOfForce.drift) return units.drift;
-  if (unit == kUnitsOfForce.viscous) return units.viscous;
-  if (unit == kUnitsOfForce.compliance) return units.compliance;
-  if (unit == kUnitsOfForce.inertia) return units.inertia;
-  if (unit == kUnitsOfForce.displacement_drift) return units.displacement_drift;
-  if (unit == kOfResponse) return units.response;
-  if (unit == kOfExcitation) return units.excitation;
-  return unit;
-}
+/// Returns the unit in which a quantity is that has `unit` where the record has a force: of a
+/// torque N is N m, m is rad and kg is kg m², so "N/m²" is "N m/rad²". Energies are in J either
+/// way.
+std::string UnitIn(const Units& units, std::string_view unit);
 
 /// A unit for reading: with the prefix that makes a number of 1 to 1000 of a magnitude.
 struct ScaledUnit {
@@ -72,14 +47,13 @@ std::string Quantity(double value, std::string_view unit, int digits = 5);
 /// @param error  > 0; where it is not, or not finite, the number has six digits
 std::string RoundedTo(double error, double value);
 
-/// Returns "48.142 ± 0.039" of 4.8142e7 and 3.9e4 in units of 1e6; "± open" of an error that is not
-/// finite, no error where it is zero or there is none.
-std::string NumberWithError(double value, std::optional<double> error, double factor);
-
-/// Returns "48.142 ± 0.039 N/µm", likewise.
+/// Returns "48.142 ± 0.039 N/µm"; "± open" of an error that is not finite, no error where it is
+/// zero or there is none.
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit);
 
-/// Returns "48.07 … 48.22", three digits of its width; "open" for an end that is.
-std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor);
+/// Returns "48.14 N/µm (48.07 … 48.22)"; "open" for an end that there is not, no brackets without
+/// both.
+std::string QuantityWithInterval(double value, std::optional<double> lower,
+                                 std::optional<double> upper, std::string_view unit);
 
 }  // namespace mindahl::report

@@ -86,7 +86,6 @@ struct FitRequest {
   std::map<std::string, double> start;
   std::map<std::string, identification::Interval> bound;
   std::map<std::string, contact::UncertainValue> prior;
-  bool regions = false;
   double confidence = 0.95;
   std::optional<double> force_noise;
   std::optional<double> displacement_noise;
@@ -149,9 +148,6 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, io::Reco
 /// Reads the request's files, within its limits and time window.
 /// @throws InputError naming file, line and column
 std::vector<io::RecordFile> ReadRecords(const FitRequest& request, const Tell& note);
-
-/// Returns the warnings of a fit that its text does not have, one sentence each.
-std::vector<std::string> WarningsBesideText(const report::Report& report);
 
 /// Fits records together as one contact at Depth::kFull, and reports.
 /// @param records  within the time window, called as request.files; one whose normal load goes in

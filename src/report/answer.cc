@@ -1,0 +1,423 @@
+#include "report/answer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "mindahl/identification/model_selection.h"
+#include "report/fields.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using identification::AdequacyVerdict;
+using identification::Finding;
+using identification::FitResult;
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::RecordFit;
+
+namespace {
+
+/// Returns "a 0.251 mm (0.250 … 0.252)"; empty where it does not follow.
+std::string QuantityText(const Report& report, std::string_view name) {
+  const ContactQuantity* quantity = report.Find(name);
+  if (quantity == nullptr) return "";
+  if (!quantity->value) {
+    if (!quantity->lower) return "";
+    return fmt::format("{} > {}", quantity->symbol, Quantity(*quantity->lower, quantity->unit, 3));
+  }
+  return fmt::format(
+      "{} {}", quantity->symbol,
+      QuantityWithInterval(*quantity->value, quantity->lower, quantity->upper, quantity->unit));
+}
+
+bool IsInadequate(const Report& report) {
+  return IsJudged(report) && report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
+}
+
+bool IsOfLaw(std::string_view parameter) {
+  return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
+}
+
+/// Findings that a line of the answer says in its own words.
+bool IsSaidByALine(std::string_view code) {
+  constexpr auto kSaid = std::to_array<std::string_view>(
+      {"law_undecided", "other_law_fits_better", "systematic_residual", "no_model_fits",
+       "model_inadequate", "loop_not_seen", "no_closed_cycle", "fit_failed"});
+  return std::ranges::find(kSaid, code) != kSaid.end();
+}
+
+/// Makes the lines of one answer, so that a finding is said once.
+class Writer {
+ public:
+  explicit Writer(const Report& report) : report_(report), fit_(report.fit) {}
+
+  std::vector<Line> Answer() {
+    if (!report_.check.empty()) Add("check", report_.check, Judgement::kBad);
+    AddColumns();
+    AddFriction();
+    AddStiffness();
+    AddShape();
+    AddLoad();
+    AddTerms();
+    AddLaw();
+    Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
+    AddMeasured();
+    AddLeftOut();
+    if (report_.next) AddNext();
+    AddRest();
+    return std::move(lines_);
+  }
+
+ private:
+  void Add(std::string label, std::string text, Judgement judgement = Judgement::kNone) {
+    if (!text.empty()) lines_.push_back({std::move(label), std::move(text), judgement});
+  }
+
+  /// Returns why a parameter has no value, and takes note that it is said; "" where another line
+  /// says it, or nothing does.
+  std::string WhyNot(std::string_view parameter) {
+    for (const Finding& finding : fit_.findings) {
+      const bool names_it =
+          std::ranges::find(finding.parameters, parameter) != finding.parameters.end();
+      if (!names_it || finding.code.row().verdict == Identifiability::kIdentifiable) continue;
+      if (IsSaidByALine(finding.code)) return "";
+      if (std::ranges::find(said_, &finding) != said_.end()) return "";
+      said_.push_back(&finding);
+      return Sentence(finding, fit_, report_.units);
+    }
+    return "";
+  }
+
+  /// Says a parameter with what follows from it, or why it has no value. Of an inadequate model
+  /// a parameter that is not known is not mentioned.
+  void AddParameter(std::string label, std::string_view symbol, const ParameterEstimate& estimate,
+                    std::vector<std::string> before, std::vector<std::string> after) {
+    const Shown shown = WhatIsShown(estimate);
+    if (IsInadequate(report_) && !estimate.is_known()) return;
+    std::string text = ParameterText(symbol, estimate);
+    if (shown != Shown::kValue && shown != Shown::kHeld) {
+      if (const std::string why = WhyNot(estimate.name); !why.empty()) text += ": " + why;
+    }
+    std::erase(before, "");
+    std::erase(after, "");
+    before.push_back(std::move(text));
+    before.insert(before.end(), after.begin(), after.end());
+    Add(std::move(label), fmt::format("{}", fmt::join(before, ", ")), JudgementOf(estimate));
+  }
+
+  void AddColumns() {
+    const io::RecordFile& first = report_.records.front();
+    std::vector<std::string> columns;
+    const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
+      if (column.number == 0) return;
+      std::string text = role;
+      if (!column.name.empty()) text += fmt::format(" '{}'", column.name);
+      text += fmt::format(" ({}{})", column.number, remark);
+      if (column.name.find(column.unit) == std::string::npos && !column.unit.empty()) {
+        text += " in " + column.unit;
+      }
+      columns.push_back(std::move(text));
+    };
+    const bool is_torsional = report_.is_torsional();
+    add(is_torsional ? "angle" : "displacement", first.displacement, "");
+    add(is_torsional ? "torque" : "force", first.force,
+        fit_.force_sense < 0 ? ", opposite sign" : "");
+    if (first.normal_load) add("load", *first.normal_load, "");
+    Add(columns.empty() ? "record" : "columns",
+        columns.empty() ? NameOf(report_.files)
+                        : fmt::format("{}: {}", NameOf(report_.files), fmt::join(columns, ", ")));
+  }
+
+  void AddFriction() {
+    const ParameterEstimate* slip_force = fit_.Find("slip_force");
+    std::vector<std::string> after = {QuantityText(report_, "slip_force_positive"),
+                                      QuantityText(report_, "slip_force_negative")};
+    const ContactQuantity* load = report_.Find("normal_load");
+    const std::string friction = QuantityText(report_, "friction_coefficient");
+    if (!friction.empty() && load != nullptr && load->value) {
+      after.push_back(fmt::format("at N = {}", Quantity(*load->value, "N", 4)));
+    } else if (load != nullptr && !load->value && slip_force->is_known()) {
+      after.emplace_back("μ needs --normal-load");
+    }
+    AddParameter("friction", "Tc", *slip_force, {friction}, std::move(after));
+  }
+
+  void AddStiffness() {
+    const ParameterEstimate* sigma = fit_.Find("sigma");
+    std::vector<std::string> after;
+    for (const char* name :
+         {"contact_radius", "compliance", "sigma_over_hertz_mindlin", "equivalent_radius",
+          "maximum_pressure", "effective_modulus", "youngs_modulus"}) {
+      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
+      const bool is_known_otherwise =
+          (std::string_view(name) == "compliance" && report_.Find("contact_radius")->value) ||
+          (std::string_view(name) == "equivalent_radius" &&
+           report_.Find("sigma_over_hertz_mindlin")->value);
+      if (report_.is_torsional() || is_known_otherwise) continue;
+      after.push_back(QuantityText(report_, name));
+    }
+    AddParameter("stiffness", "σ", *sigma, {}, std::move(after));
+  }
+
+  void AddShape() {
+    const ParameterEstimate* alpha = fit_.Find("alpha");
+    std::vector<std::string> after;
+    const auto& test = report_.alpha;
+    if (test.is_rejected) {
+      after.emplace_back(*test.is_rejected ? "Mindlin's 1/3 is rejected" : "Mindlin's 1/3 fits");
+    } else if (test.minus_third && !IsInadequate(report_)) {
+      after.emplace_back("Mindlin's 1/3 is not tested");
+    }
+    after.push_back(QuantityText(report_, "gross_slip_displacement"));
+    AddParameter("shape", "α", *alpha, {}, std::move(after));
+  }
+
+  void AddLoad() {
+    const ParameterEstimate* exponent = fit_.Find("load_exponent");
+    if (exponent == nullptr) return;
+    std::vector<std::string> fits;
+    for (const LoadHypothesis& hypothesis : report_.load_hypotheses) {
+      if (hypothesis.p_value && *hypothesis.p_value >= kSignificance) {
+        fits.push_back(fmt::format("{} ({:.3g})", hypothesis.name, hypothesis.exponent));
+      }
+    }
+    AddParameter("load", "σ ∝ N^p, p", *exponent, {},
+                 {fits.empty() ? "" : fmt::format("as {}", fmt::join(fits, ", ")),
+                  fmt::format("σ and Tc are at the mean of {} loads", fit_.records.size())});
+  }
+
+  void AddTerms() {
+    std::vector<std::string> terms;
+    for (const ParameterEstimate* term : AddedTerms(report_)) {
+      if (IsInadequate(report_) && !term->is_known()) continue;
+      std::string text = ParameterText(term->name, *term);
+      if (WhatIsShown(*term) == Shown::kNothing) {
+        if (const std::string why = WhyNot(term->name); !why.empty()) text += ": " + why;
+      }
+      terms.push_back(std::move(text));
+    }
+    Add("terms", fmt::format("{}", fmt::join(terms, ", ")));
+  }
+
+  void AddLaw() {
+    const auto& choice = fit_.law_choice;
+    if (!choice || IsInadequate(report_)) return;
+    const auto name = [](const models::FrictionModel& model) {
+      return model.name == "dahl" ? "Dahl's own" : "Masing's";
+    };
+    std::vector<std::string> other;
+    const auto add = [&](const char* symbol, const char* parameter, double value) {
+      const ParameterEstimate& estimate = *fit_.Find(parameter);
+      if (WhatIsShown(estimate) != Shown::kValue) return;
+      other.push_back(fmt::format("{} {}", symbol, Quantity(value, estimate.unit, 3)));
+    };
+    add("σ", "sigma", choice->law.tangential_stiffness);
+    add("Tc", "slip_force", choice->law.slip_force);
+    const std::string values = other.empty() ? "" : fmt::format(" ({})", fmt::join(other, ", "));
+    const char* const fitted = name(*fit_.model);
+    const char* const alternative = name(*choice->alternative);
+    if (!choice->decided) {
+      Add("law", fmt::format("{}; {} fits as well{}", fitted, alternative, values));
+    } else if (choice->preferred == choice->alternative) {
+      Add("law",
+          fmt::format("{}; {} fits better{}: --model {}", fitted, alternative, values,
+                      choice->alternative->name),
+          Judgement::kPoor);
+    } else {
+      Add("law", fmt::format("{}, not {}", fitted, alternative), Judgement::kGood);
+    }
+  }
+
+  void AddMeasured() {
+    const RecordFit& widest = fit_.WidestRecord();
+    const loop::LoopFacts& facts = widest.facts;
+    const Units& units = report_.units;
+    std::vector<std::string> parts;
+    if (facts.half_gap && facts.closed) {
+      parts.push_back("half gap " + QuantityWithError(*facts.half_gap,
+                                                      facts.half_gap_standard_deviation,
+                                                      units.force));
+    }
+    if (facts.closed) {
+      parts.push_back(Quantity(facts.energy_per_cycle, "J", 4) + " a cycle");
+      parts.push_back("±" + Quantity(facts.amplitude, units.displacement, 4));
+      parts.push_back(fmt::format("{} cycle{}", widest.measures.cycles,
+                                  widest.measures.cycles == 1 ? "" : "s"));
+      if (loop::Slides(facts)) parts.emplace_back("it slides");
+    } else {
+      parts.push_back("±" + Quantity(widest.measures.amplitude, units.displacement, 4));
+      parts.push_back("±" + Quantity(widest.measures.peak_force, units.force, 4));
+      parts.emplace_back("no closed cycle");
+    }
+    Add("measured", fmt::format("{}", fmt::join(parts, ", ")));
+  }
+
+  void AddLeftOut() {
+    std::vector<std::string> parts;
+    const std::vector<LeftOut> all = DescribeLeftOut(report_);
+    constexpr std::size_t kMost = 3;
+    for (const LeftOut& part : all) {
+      if (parts.size() == kMost) {
+        parts.push_back(fmt::format("{} more parts", all.size() - kMost));
+        break;
+      }
+      parts.push_back(part.first == 0 ? fmt::format("{} samples ({})", part.samples, part.why)
+                      : part.first == part.last
+                          ? fmt::format("line {} ({})", part.first, part.why)
+                          : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
+    }
+    Add("left out", fmt::format("{}", fmt::join(parts, ", ")));
+  }
+
+  void AddNext() {
+    const NextStep& next = *report_.next;
+    Add("next", fmt::format("{}: {}misfit {:.2g} → {:.2g} % of the half gap (tried)", next.options,
+                            next.text.empty() ? "" : next.text + ", ", 100 * next.misfit_before,
+                            100 * next.misfit_after));
+  }
+
+  /// Says what else a person should act on: of the record, where the model is inadequate.
+  void AddRest() {
+    for (const Finding& finding : fit_.findings) {
+      const bool is_note = finding.severity == identification::Severity::kNote;
+      const bool is_said = std::ranges::find(said_, &finding) != said_.end();
+      const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
+      if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
+      std::string text = Sentence(finding, fit_, report_.units);
+      // Names only what no line has: "sigma, alpha" of a finding about both.
+      if (finding.parameters.size() > 1 ||
+          (finding.parameters.size() == 1 && !IsOfLaw(finding.parameters.front()))) {
+        text = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), text);
+      }
+      Add("note", std::move(text), Judgement::kPoor);
+    }
+    for (const Warning& warning : report_.warnings) {
+      if (warning.code == "contact_implausible") Add("note", warning.message, Judgement::kPoor);
+    }
+  }
+
+  const Report& report_;
+  const FitResult& fit_;
+  std::vector<Line> lines_;
+  std::vector<const Finding*> said_;
+};
+
+/// Lists the models that were compared, the best first.
+void AddComparison(const Report& report, std::vector<Line>& lines) {
+  if (!report.selection) return;
+  std::vector<const identification::ModelScore*> scores;
+  for (const auto& score : report.selection->scores) {
+    if (score.converged) scores.push_back(&score);
+  }
+  std::ranges::sort(scores, {}, [](const auto* score) { return score->delta_aicc; });
+  for (const auto* score : scores) {
+    std::string text = fmt::format("{}{}: ΔAICc {:.4g}, rms {}", score->model->name,
+                                   score->rig ? " behind a rig" : "", score->delta_aicc,
+                                   Quantity(score->rms, report.units.response, 4));
+    if (score->held_out_rms) {
+      text +=
+          fmt::format(", held-out {}", Quantity(*score->held_out_rms, report.units.response, 4));
+    }
+    if (score->redundant) text += ", the same as a simpler one";
+    lines.push_back({"compared", std::move(text)});
+  }
+}
+
+}  // namespace
+
+std::string MisfitStatement(const Report& report) {
+  const FitResult& fit = report.fit;
+  if (!fit.converged) return "not converged: " + fit.solver.message;
+  const std::string_view unit = report.units.response;
+  const std::string rms = Quantity(fit.residuals.rms, unit, 3);
+  if (!IsJudged(report)) return rms + " rms; too few samples to judge the law";
+  const Finding* unseen = fit.FindFinding("loop_not_seen");
+  if (unseen != nullptr) return Sentence(*unseen, fit, report.units);
+  const identification::Adequacy& adequacy = fit.adequacy;
+  if (adequacy.verdict == AdequacyVerdict::kAdequate) {
+    return rms + " rms, like noise: the law describes the record";
+  }
+  std::string text = Quantity(adequacy.misfit, unit, 3);
+  if (adequacy.misfit_over_half_gap) {
+    const double percent = 100 * *adequacy.misfit_over_half_gap;
+    constexpr double kWhole = 100.0;
+    text += percent < kWhole ? fmt::format(", {:.2g} % of the half gap", percent)
+                             : ", more than the half gap";
+  }
+  constexpr double kMostOfIt = 0.5;
+  if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
+  if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
+    const bool is_included =
+        std::ranges::any_of(fit.parameters, &ParameterEstimate::includes_discrepancy);
+    return text + ": the law is not the whole story" +
+           (is_included ? "; the intervals include it" : "");
+  }
+  const bool is_any_known = std::ranges::any_of(fit.parameters, [](const auto& estimate) {
+    return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue;
+  });
+  return text + ": the law does not describe the record" +
+         (is_any_known ? "; no more is known of it than the lines above"
+                       : "; use what is measured");
+}
+
+std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
+
+std::vector<Line> DetailLines(const Report& report) {
+  std::vector<Line> lines;
+  const FitResult& fit = report.fit;
+  lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
+                                        fit.has_mixed_states()
+                                            ? std::string("initial states differ")
+                                            : fmt::format("{} contact", Name(fit.initial_state)))});
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (IsOfLaw(estimate.name) || !estimate.is_known()) continue;
+    lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
+  }
+  for (const char* section : {"adequacy", "residuals", "solver"}) {
+    std::vector<std::string> values;
+    for (const auto& [name, value] : ValuesUnder(report, fmt::format("{}.", section))) {
+      values.push_back(fmt::format("{} {}", name, value));
+    }
+    lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
+  }
+  for (const identification::Cause& cause : fit.adequacy.causes) {
+    std::string code(cause.code);
+    std::ranges::replace(code, '_', ' ');
+    lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", code,
+                                               std::min(100.0, 100 * cause.explains))});
+  }
+  if (report.alpha.p_value) lines.push_back({"α = 1/3", ChanceText(*report.alpha.p_value)});
+  for (const LoadHypothesis& hypothesis : report.load_hypotheses) {
+    if (!hypothesis.p_value) continue;
+    lines.push_back({fmt::format("p = {:.3g}", hypothesis.exponent),
+                     fmt::format("{}: {}", hypothesis.name, ChanceText(*hypothesis.p_value))});
+  }
+  if (report.terms) {
+    for (const identification::ConsideredTerm& term : report.terms->considered) {
+      constexpr double kWorthSaying = 0.01;
+      if (!(term.gain > kWorthSaying)) continue;
+      lines.push_back(
+          {"tried",
+           fmt::format("{}: misfit −{:.0f} %{}{}", term.name, 100 * term.gain,
+                       term.added ? ", added" : "",
+                       term.obstacle.empty() ? "" : fmt::format(", refused: {}", term.obstacle))});
+    }
+  }
+  AddComparison(report, lines);
+  for (const Finding& finding : fit.findings) {
+    if (finding.severity != identification::Severity::kNote || IsSaidByALine(finding.code))
+      continue;
+    lines.push_back({"note", Sentence(finding, fit, report.units)});
+  }
+  return lines;
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,309 @@
+#include "report/answer.h"
+
+#include <iterator>
+#include <sstream>
+
+#include "mindahl/identification/finding.h"
+#include "report/made_report.h"
+#include "support/prelude.h"
+
+// Answers that would mislead, each made by hand: what a line says must not contradict another.
+namespace mindahl::report::answer_test {
+namespace {
+
+using identification::AdequacyVerdict;
+using identification::Finding;
+using identification::Identifiability;
+using identification::ParameterStatus;
+using testing::MadeInput;
+using testing::MadeParameter;
+
+std::string Answer(ReportInput input) { return ToText(MakeReport(std::move(input))); }
+
+std::string Details(ReportInput input) {
+  return ToText(MakeReport(std::move(input)), {.has_details = true});
+}
+
+/// Returns a line by its label; "" where there is none.
+std::string LineOf(const ReportInput& input, std::string_view label) {
+  for (const Line& line : AnswerLines(MakeReport(input))) {
+    if (line.label == label) return line.text;
+  }
+  return "";
+}
+
+std::size_t WordsIn(const std::string& text) {
+  std::istringstream words(text);
+  return static_cast<std::size_t>(std::distance(std::istream_iterator<std::string>(words),
+                                                std::istream_iterator<std::string>()));
+}
+
+loop::LoopFacts Facts(double half_gap) {
+  loop::LoopFacts facts;
+  facts.closed = true;
+  facts.half_gap = half_gap;
+  facts.half_gap_standard_deviation = 0.01 * half_gap;
+  facts.amplitude = 2e-6;
+  facts.peak_force = half_gap;
+  facts.energy_per_cycle = 3.6 * 2e-6 * half_gap;
+  facts.energy_ratio = 0.9;
+  return facts;
+}
+
+ReportInput Doubtful() {
+  ReportInput input = MadeInput();
+  auto& adequacy = input.fit.adequacy;
+  adequacy.verdict = AdequacyVerdict::kDoubtful;
+  adequacy.use = identification::Use::kIndicative;
+  adequacy.misfit = 2.0;
+  adequacy.misfit_over_half_gap = 0.05;
+  adequacy.p_value = 1.0;
+  for (auto& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kEffective;
+    estimate.includes_discrepancy = true;
+  }
+  input.fit.records[0].facts = Facts(40.0);
+  return input;
+}
+
+ReportInput Inadequate() {
+  ReportInput input = Doubtful();
+  input.fit.adequacy.verdict = AdequacyVerdict::kInadequate;
+  input.fit.adequacy.misfit_over_half_gap = 0.6;
+  for (auto& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+    estimate.includes_discrepancy = false;
+  }
+  input.fit.findings = {
+      {.code = "model_inadequate", .parameters = {"sigma", "alpha", "slip_force"}}};
+  return input;
+}
+
+const contact::KnownBody kBall{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.01};
+const contact::KnownBody kPlane{.youngs_modulus = 210e9,
+                                .poisson_ratio = 0.3,
+                                .radius = std::numeric_limits<double>::infinity()};
+
+TEST(Answer, NamesTheColumnsFirst) {
+  ReportInput input = MadeInput();
+  input.fit.force_sense = -1;
+  input.records[0].displacement = {.name = "Position [mm]", .number = 3, .unit = "mm"};
+  input.records[0].force = {.name = "", .number = 4, .unit = "N"};
+  EXPECT_THAT(Answer(input),
+              StartsWith("columns       loop_1.csv: displacement 'Position [mm]' (3), force (4, "
+                         "opposite sign) in N\n"));
+}
+
+TEST(Answer, HasOneLineAQuantityWithItsIntervalAndNoOtherUncertainty) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  EXPECT_EQ(LineOf(input, "friction"),
+            "μ 0.800 (0.784 … 0.816), Tc 40.00 N (39.20 … 40.80), at N = 50 N");
+  EXPECT_THAT(LineOf(input, "stiffness"), StartsWith("σ 40.00 N/µm (39.20 … 40.80)"));
+  EXPECT_THAT(LineOf(input, "shape"), StartsWith("α 0.333 (0.313 … 0.353), Mindlin's 1/3 fits"));
+  EXPECT_THAT(Answer(input), Not(HasSubstr("Tc 40.00 N ±")));
+}
+
+TEST(Answer, IsShort) {
+  constexpr std::size_t kClean = 150;
+  constexpr std::size_t kDoubtful = 200;
+  constexpr std::size_t kInadequate = 120;
+  ReportInput clean = MadeInput();
+  clean.known = {.normal_load = 50.0, .body_1 = kBall, .body_2 = kPlane};
+  clean.fit.records[0].facts = Facts(40.0);
+  EXPECT_LE(WordsIn(Answer(clean)), kClean);
+  EXPECT_LE(WordsIn(Answer(Doubtful())), kDoubtful);
+  EXPECT_LE(WordsIn(Answer(Inadequate())), kInadequate);
+}
+
+TEST(Answer, DoesNotSayThatNoiseExplainsAMisfit) {
+  EXPECT_THAT(Answer(Doubtful()), Not(HasSubstr("p = 1")));
+  EXPECT_THAT(LineOf(Doubtful(), "misfit"), HasSubstr("5 % of the half gap"));
+  EXPECT_THAT(LineOf(Doubtful(), "misfit"), HasSubstr("the intervals include it"));
+  EXPECT_THAT(LineOf(MadeInput(), "misfit"), HasSubstr("like noise"));
+}
+
+TEST(Answer, OfAnInadequateModelSaysNothingOfParametersThatItDoesNotKnow) {
+  const std::string text = Answer(Inadequate());
+  for (const char* label : {"friction", "stiffness", "shape", "law"}) {
+    EXPECT_EQ(LineOf(Inadequate(), label), "") << label;
+  }
+  EXPECT_THAT(text, HasSubstr("the law does not describe the record; use what is measured"));
+  EXPECT_THAT(text, HasSubstr("half gap 40.00 ± 0.40 N"));
+}
+
+TEST(Answer, OfAnInadequateModelKeepsWhatIsKnown) {
+  ReportInput input = Inadequate();
+  input.fit.parameters[2].identifiability = Identifiability::kEffective;
+  EXPECT_THAT(LineOf(input, "friction"), StartsWith("Tc 40.00 N (39.20 … 40.80)"));
+  EXPECT_THAT(LineOf(input, "misfit"), Not(HasSubstr("use what is measured")));
+}
+
+TEST(Answer, GivesAReasonInPlaceOfANumberOnce) {
+  ReportInput input = MadeInput();
+  for (auto& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+  }
+  input.fit.findings = {{.code = "few_places",
+                         .parameters = {"sigma", "alpha"},
+                         .numbers = {{"samples", 400.0}, {"places", 8.0}}}};
+  const std::string text = Answer(input);
+  EXPECT_THAT(LineOf(input, "stiffness"),
+              HasSubstr("σ not determined: all samples lie in 8 places"));
+  EXPECT_THAT(LineOf(input, "shape"), StartsWith("α not determined"));
+  EXPECT_EQ(text.find("8 places"), text.rfind("8 places"));
+  EXPECT_THAT(text, Not(HasSubstr("40.00 N/µm")));
+}
+
+TEST(Answer, OfALowerLimitHasThatAlone) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  auto& slip_force = input.fit.parameters[2];
+  slip_force.identifiability = Identifiability::kBoundedBelow;
+  slip_force.upper95.reset();
+  input.fit.findings = {{.code = "slip_force_bounded_below", .parameters = {"slip_force"}}};
+  EXPECT_THAT(LineOf(input, "friction"),
+              StartsWith("μ > 0.784, Tc > 39.2 N: the loop does not come near slip"));
+}
+
+TEST(Answer, ShowsNoValueAtALimitOfTheSearch) {
+  ReportInput input = MadeInput();
+  input.fit.parameters.push_back(MadeParameter("slip_speed", "-", 1.0, 0.5));
+  input.fit.parameters.back().status = ParameterStatus::kAtUpperBound;
+  input.fit.parameters.back().identifiability = Identifiability::kNotIdentifiable;
+  input.fit.findings = {{.code = "search_limit", .parameters = {"slip_speed"}}};
+  EXPECT_THAT(LineOf(input, "terms"), StartsWith("slip_speed not determined: the search stopped"));
+}
+
+TEST(Answer, SaysOneThingOfTheLaw) {
+  ReportInput input = MadeInput();
+  identification::LawChoice choice;
+  choice.alternative = models::FindFrictionModel("dahl");
+  choice.law = {6e7, 0.5, 41.0};
+  input.fit.law_choice = choice;
+  EXPECT_EQ(LineOf(input, "law"), "Masing's; Dahl's own fits as well (σ 60 N/µm, Tc 41 N)");
+  input.fit.law_choice->decided = true;
+  input.fit.law_choice->preferred = input.fit.model;
+  EXPECT_EQ(LineOf(input, "law"), "Masing's, not Dahl's own");
+}
+
+TEST(Answer, PutsAUnitThatIsWrongFirst) {
+  ReportInput input = MadeInput();
+  input.known = {.normal_load = 50.0, .body_1 = kBall, .body_2 = kPlane};
+  input.fit.law.tangential_stiffness *= 1e-3;  // µm read as mm
+  input.fit.parameters[0].value *= 1e-3;
+  input.records[0].displacement = {.name = "x", .number = 1, .unit = "mm"};
+  EXPECT_THAT(Answer(input), StartsWith("check"));
+  EXPECT_THAT(LineOf(input, "check"),
+              HasSubstr("times smaller than Hertz's: look at the unit of the displacement, mm"));
+}
+
+TEST(Answer, PutsAPressureThatNoSolidBearsFirst) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  input.known.contact_radius = 1e-8;
+  EXPECT_THAT(LineOf(input, "check"), HasSubstr("more than any solid bears"));
+}
+
+TEST(Answer, PutsABallOfMetresFirst) {
+  ReportInput input = MadeInput();
+  input.known = {.normal_load = 50.0, .body_1 = kBall, .body_2 = kPlane};
+  input.known.body_1.radius = 50.0;
+  EXPECT_EQ(LineOf(input, "check"), "--radius-1 50 is 50 m: in mm it would be 50 mm");
+}
+
+TEST(Answer, AsksForTheLoadsOfFilesWhoseHalfGapsDiffer) {
+  ReportInput input =
+      testing::MadeInput({testing::MadeRecord(2e-6), testing::MadeRecord(2e-6)}, 2e-6);
+  input.fit.records[0].facts = Facts(10.0);
+  input.fit.records[1].facts = Facts(60.0);
+  input.next = {
+      .text = "", .options = "--terms viscous", .misfit_before = 0.5, .misfit_after = 0.1};
+  EXPECT_THAT(LineOf(input, "check"), HasSubstr("different loads? --normal-load N1,N2"));
+  EXPECT_THAT(LineOf(input, "check"), HasSubstr("mindahl batch"));
+  EXPECT_EQ(LineOf(input, "next"), "");
+  input.fit.normal_load = 50.0;
+  EXPECT_EQ(LineOf(input, "check"), "");
+}
+
+TEST(Answer, HasTheNextStepThatWasTried) {
+  ReportInput input = Doubtful();
+  input.next = {.text = "a slip force that depends on the position",
+                .options = "--terms slip_position",
+                .misfit_before = 0.056,
+                .misfit_after = 0.021};
+  EXPECT_EQ(
+      LineOf(input, "next"),
+      "--terms slip_position: a slip force that depends on the position, misfit 5.6 → 2.1 % of "
+      "the half gap (tried)");
+  EXPECT_EQ(LineOf(Doubtful(), "next"), "");
+}
+
+TEST(Answer, HasNoFractionAboveTheWhole) {
+  ReportInput input = Doubtful();
+  input.fit.adequacy.misfit_over_half_gap = 3.66;
+  identification::Cause cause;
+  cause.code = "amplitude_dependence";
+  cause.explains = 3.66;
+  cause.size = -3.66;
+  input.fit.adequacy.causes = {cause};
+  EXPECT_THAT(Details(input), Not(HasSubstr("366")));
+}
+
+TEST(Answer, OfNoLoopSaysSo) {
+  ReportInput input = Inadequate();
+  input.fit.findings.push_back({.code = "loop_not_seen", .numbers = {{"r_squared", -0.52}}});
+  EXPECT_THAT(LineOf(input, "misfit"), StartsWith("no loop is seen: the fit explains 0 %"));
+}
+
+TEST(Answer, OfTooFewSamplesDeterminesNothing) {
+  ReportInput input = MadeInput();
+  input.fit.residuals.samples = 3;
+  EXPECT_THAT(LineOf(input, "stiffness"), StartsWith("σ not determined"));
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("too few samples"));
+}
+
+TEST(Answer, SaysEveryWarningOnce) {
+  ReportInput input = MadeInput();
+  input.fit.findings = {{.code = "reversals_uncertain",
+                         .numbers = {{"count", 7.0}, {"other_count", 9.0}, {"other_gate", 1e-7}}},
+                        {.code = "load_followed", .numbers = {{"variation", 0.1}}}};
+  EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals or 9"));
+  EXPECT_THAT(Answer(input), Not(HasSubstr("which the law follows")));
+  EXPECT_THAT(Details(input), HasSubstr("which the law follows"));
+}
+
+TEST(Answer, IsAtMostAHundredColumnsWide) {
+  ReportInput input = Doubtful();
+  input.known = {.normal_load = 50.0, .body_1 = kBall, .body_2 = kPlane};
+  input.next = {.text = std::string(60, 'x'),
+                .options = "--terms slip_position",
+                .misfit_before = 1.0,
+                .misfit_after = 0.1};
+  std::istringstream lines(Details(input));
+  for (std::string line; std::getline(lines, line);) {
+    const auto characters =
+        std::ranges::count_if(line, [](char byte) { return (byte & 0xC0) != 0x80; });
+    EXPECT_LE(characters, 100) << line;
+  }
+}
+
+TEST(Judgement, IsGoodOnlyOfWhatMayBeQuoted) {
+  auto estimate = MadeParameter("sigma", "N/m", 4e7, 4e5);
+  EXPECT_EQ(JudgementOf(estimate), Judgement::kGood);
+  estimate.identifiability = Identifiability::kEffective;
+  EXPECT_EQ(JudgementOf(estimate), Judgement::kPoor);
+  estimate.identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_EQ(JudgementOf(estimate), Judgement::kBad);
+  estimate.status = ParameterStatus::kFixed;
+  EXPECT_EQ(JudgementOf(estimate), Judgement::kNone);
+}
+
+TEST(Sentence, ThereIsOneForEveryFinding) {
+  for (const identification::FindingRow& row : identification::kFindings) {
+    EXPECT_TRUE(HasSentence(row.code)) << row.code;
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::report::answer_test
