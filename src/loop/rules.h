@@ -32,7 +32,7 @@ struct ReversalRules {
   std::size_t many = 8;
   /// [-] the ratio of their ranges, which lie as densely as those of noise,
   double spread = 10.0;
-  /// [-] and the ratio of the plateau's ends above them.
+  /// [-] The third mark is the ratio of the plateau's ends above them.
   double far = 10.0;
 };
 

@@ -42,7 +42,7 @@ struct FittedSample {
 std::optional<HeavyTails> FindHeavyTails(std::span<const FittedSample> samples,
                                          const Evidence& evidence);
 
-/// Likewise in the weighted residuals of all samples of a problem. Cost: n log n, negligible
+/// Finds them in the weighted residuals of all samples of a problem. Cost: n log n, negligible
 /// against a fit.
 std::optional<HeavyTails> FindHeavyTails(const Problem& problem, std::span<const double> theta,
                                          std::span<const double> residual, const Noise& noise,
