@@ -17,8 +17,8 @@ struct ReversalRules {
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
   double beyond = 1.25;
-  /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less than
-  /// the two that a motion makes.
+  /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less
+  /// than the two that a motion makes.
   double counts = 1.5;
   /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
   double rough = 0.05;
@@ -88,15 +88,6 @@ struct SlidingRules {
   double gap = 0.5;
   /// [-] Largest distance of the energy from that of a gap that is the same over the stroke.
   double uneven = 0.1;
-};
-
-/// Sets the limits by which the ends of a record are not part of its test.
-struct TrimRules {
-  /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
-  double rest = 0.01;
-  /// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a
-  /// sine is within `rest` of its extreme for 0.05 of a stroke to either side.
-  double longest_dwell = 0.5;
 };
 
 /// Sets the limits by which the ends of a record are not part of its test.

@@ -21,7 +21,7 @@ namespace {
 struct RepeatedStrokes {
   std::size_t first = 0;  // samples of the first and of the last turning point
   std::size_t last = 0;
-  double range = 0.0;  // [m] of the widest
+  double range = 0.0;   // [m] of the widest
   double lowest = 0.0;  // [m]
   double highest = 0.0;
 };
@@ -72,8 +72,8 @@ std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displ
   for (std::size_t tried = 0; last > 0 && tried < rules.classes; ++tried) {
     const double widest = excursions[last - 1].range;
     if (!(widest > 0)) return std::nullopt;
-    const auto first = std::ranges::lower_bound(excursions, rules.alike * widest, {},
-                                                &Excursion::range);
+    const auto first =
+        std::ranges::lower_bound(excursions, rules.alike * widest, {}, &Excursion::range);
     const auto begin = static_cast<std::size_t>(first - excursions.begin());
     const std::span<const Excursion> alike = std::span(excursions).subspan(begin, last - begin);
     if (auto strokes = StrokesOf(displacement, alike, rules)) return strokes;
@@ -112,9 +112,7 @@ double UsualStroke(std::span<const double> displacement, double gate) {
 
 class TestSearch {
  public:
-  explicit TestSearch(const RecordView& record) : record_(record) {
-    test_.last = record.size();
-  }
+  explicit TestSearch(const RecordView& record) : record_(record) { test_.last = record.size(); }
 
   TestPart Find() {
     LeaveOutLoadRamps();

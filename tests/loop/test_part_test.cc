@@ -19,7 +19,8 @@ constexpr std::size_t kLost = kCycle + kCycle / 4;
 using OfCycle = std::function<double(double cycle)>;
 
 /// A sine from zero, its amplitude [of kReach] going with the cycles.
-std::vector<double> Sine(double cycles, const OfCycle& amplitude = [](double) { return 1.0; }) {
+std::vector<double> Sine(
+    double cycles, const OfCycle& amplitude = [](double) { return 1.0; }) {
   std::vector<double> displacement;
   const auto samples = static_cast<std::size_t>(std::lround(cycles * static_cast<double>(kCycle)));
   for (std::size_t i = 0; i <= samples; ++i) {
@@ -116,9 +117,8 @@ TEST(TestPart, LeavesOutATravelBeforeOrAfterOfAnyLengthAndDirection) {
 }
 
 TEST(TestPart, LeavesOutTheFallOfASpecimenThatBreaks) {
-  std::vector<double> cycles = Sine(30, [](double cycle) {
-    return cycle < 27 ? 1.0 : 1 + (cycle - 27) * (cycle - 27);
-  });
+  std::vector<double> cycles =
+      Sine(30, [](double cycle) { return cycle < 27 ? 1.0 : 1 + (cycle - 27) * (cycle - 27); });
   const std::vector<double> fall = Way(cycles.back(), -40 * kReach, 20);
   const TestPart test = FindTestPart(WithForce(Joined({cycles, fall})));
   EXPECT_EQ(test.first, 0U);
@@ -139,8 +139,8 @@ TEST(TestPart, IsFoundInADisplacementWithNoise) {
 
 TEST(TestPart, LeavesOutRestsButForTheSampleThatTheMotionBeginsFrom) {
   const std::vector<double> test = Sine(3);
-  const TestPart part = FindTestPart(WithForce(Joined(
-      {std::vector<double>(90, 0.0), test, std::vector<double>(40, test.back())})));
+  const TestPart part = FindTestPart(WithForce(
+      Joined({std::vector<double>(90, 0.0), test, std::vector<double>(40, test.back())})));
   EXPECT_EQ(part.first, 90U);  // the sine's own first sample is at rest too, and stays
   EXPECT_EQ(part.last, 90U + test.size());
   EXPECT_FALSE(part.begins_cycled);
@@ -171,9 +171,7 @@ TEST(TestPart, LeavesOutTheRampsOfALoad) {
   EXPECT_EQ(test.left_out.front().reason, LeftOutReason::kLoadRamp);
 }
 
-TEST(TestPart, OfAnEmptyRecordIsEmpty) {
-  EXPECT_EQ(FindTestPart(Record()).last, 0U);
-}
+TEST(TestPart, OfAnEmptyRecordIsEmpty) { EXPECT_EQ(FindTestPart(Record()).last, 0U); }
 
 }  // namespace
 }  // namespace mindahl::loop::test_part_test
