@@ -129,7 +129,7 @@ ConvertedContact MakeConversion(const ConversionRequest& asked) {
 
 std::string ToJson(const ConvertedContact& made) {
   const convert::Conversion& conversion = made.conversion;
-  Json json = {{"schema", "mindahl.convert/2"},
+  Json json = {{"schema", "mindahl.convert/1"},
                {"version", Version()},
                {"from",
                 {{"law", made.from},

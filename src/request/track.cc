@@ -191,7 +191,7 @@ std::string ToText(const TrackedTest& test, const std::vector<Evolution>& evolut
 }
 
 std::string ToJson(const TrackedTest& test, const std::vector<Evolution>& evolutions) {
-  return Dump({{"schema", "mindahl.track/2"},
+  return Dump({{"schema", "mindahl.track/1"},
                {"version", Version()},
                {"input",
                 {{"files", test.files},

@@ -237,7 +237,7 @@ io::Plot ToPlot(const Tradeoff& study) {
 
 std::string ToJson(const Tradeoff& study) {
   Json json;
-  json["schema"] = "mindahl.tradeoff/2";
+  json["schema"] = "mindahl.tradeoff/1";
   json["version"] = Version();
   json["law"] = {{"sigma", study.law.tangential_stiffness},
                  {"alpha", study.law.shape_exponent},

@@ -29,7 +29,7 @@ double Parameter(const json& report, const char* name) {
 
 TEST(Convert, ToDahlGivesTheLawOfTheSameSteadyLoop) {
   const json report = RunCommand(Command({"--to", "dahl", "--json", "-"})).Json();
-  EXPECT_EQ(report["schema"], "mindahl.convert/2");
+  EXPECT_EQ(report["schema"], "mindahl.convert/1");
   EXPECT_EQ(report["to"], "dahl");
   EXPECT_EQ(report["from"]["law"], "masing");
   const models::BranchLaw dahl = models::DahlEquivalent(kMindlin, kAmplitude);

@@ -348,7 +348,7 @@ TEST_F(TrackCommand, KeepsWholeRowsOnAFullDisk) {
 TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
   const Outcome outcome = RunCommand({"track", record_, "--output", Path("t.csv"), "--json", "-"});
   const nlohmann::json json = outcome.Json();
-  EXPECT_EQ(json["schema"], "mindahl.track/2");
+  EXPECT_EQ(json["schema"], "mindahl.track/1");
   const nlohmann::json slip_force = json["quantities"]["slip_force"];
   ASSERT_EQ(slip_force["steps"].size(), 1U);
   EXPECT_NEAR(slip_force["steps"][0]["cycle"].get<double>(), 120.5, 2);

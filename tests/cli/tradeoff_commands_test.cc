@@ -112,7 +112,7 @@ const json& Tradeoff() {
 
 TEST(Tradeoff, StudiesFiveExcitationsWithEveryMethodAndModel) {
   const json& study = Tradeoff();
-  EXPECT_EQ(study["schema"], "mindahl.tradeoff/2");
+  EXPECT_EQ(study["schema"], "mindahl.tradeoff/1");
   Words names;
   for (const json& excitation : study["excitations"]) {
     names.push_back(excitation["name"]);

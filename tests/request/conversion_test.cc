@@ -93,7 +93,7 @@ TEST(ConvertedContact, JsonHasEveryNumberUnderItsName) {
   auto json = nlohmann::json::parse(ToJson(made));
   json.erase("version");
   EXPECT_EQ(json, nlohmann::json::parse(R"({
-    "schema": "mindahl.convert/2",
+    "schema": "mindahl.convert/1",
     "from": {"law": "dahl", "sigma": 2.5, "alpha": 0.75, "slip_force": 1.5},
     "to": "iwan", "amplitude": 3.5, "tolerance": 0.0625,
     "parameters": {"k": {"value": 9.5, "unit": "N/m"}, "n": {"value": 10.5, "unit": "-"}},

@@ -212,7 +212,7 @@ TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
   auto json = nlohmann::json::parse(ToJson(test, DescribedByHand()));
   for (const char* key : {"version", "flags", "headline"}) json.erase(key);
   EXPECT_EQ(json, nlohmann::json::parse(R"({
-    "schema": "mindahl.track/2",
+    "schema": "mindahl.track/1",
     "input": {"files": ["a.csv", "b.csv"], "samples": 812, "cycles": 60, "unused_samples": 5,
               "broken_rows": 4},
     "reversals": {"gate": 0.25, "certain": false}, "output": "t.csv", "fits": 2, "flagged": 1,

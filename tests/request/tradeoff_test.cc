@@ -102,7 +102,7 @@ TEST(TradeoffJson, HasEveryNumberUnderItsName) {
   json.erase("version");
   json.erase("excitations");
   EXPECT_EQ(json,
-            (nlohmann::json{{"schema", "mindahl.tradeoff/2"},
+            (nlohmann::json{{"schema", "mindahl.tradeoff/1"},
                             {"law", {{"sigma", 4e7}, {"alpha", 1.0 / 3}, {"slip_force", 40.0}}},
                             {"tolerance", 0.1}}));
 }

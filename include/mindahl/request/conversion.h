@@ -37,7 +37,7 @@ struct ConvertedContact {
 /// @throws InputError or InvalidArgument naming the option
 ConvertedContact MakeConversion(const ConversionRequest& request);
 
-/// Returns the JSON of schema mindahl.convert/2, as `mindahl convert --json` writes it.
+/// Returns the JSON of schema mindahl.convert/1, as `mindahl convert --json` writes it.
 std::string ToJson(const ConvertedContact& converted);
 
 /// Returns the text that `mindahl convert` prints.

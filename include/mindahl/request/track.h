@@ -125,7 +125,7 @@ class TrackRun {
   std::uintmax_t bytes_read_ = 0;
 };
 
-/// Returns the JSON of schema mindahl.track/2, as `mindahl track --json` writes it.
+/// Returns the JSON of schema mindahl.track/1, as `mindahl track --json` writes it.
 /// @param evolutions  of the test's courses, by Describe()
 std::string ToJson(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions);
 

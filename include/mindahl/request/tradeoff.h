@@ -44,7 +44,7 @@ struct Tradeoff {
 /// @throws InputError or InvalidArgument naming the option
 Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn);
 
-/// Returns the JSON of schema mindahl.tradeoff/2, as `mindahl tradeoff --json` writes it.
+/// Returns the JSON of schema mindahl.tradeoff/1, as `mindahl tradeoff --json` writes it.
 std::string ToJson(const Tradeoff& study);
 
 /// Returns the tables that `mindahl tradeoff` prints.
