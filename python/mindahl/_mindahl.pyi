@@ -139,11 +139,9 @@ Tracked = tuple[dict[str, Any], dict[str, str], list[str], TrackedTest]
 
 class TrackRequest:
     fit: FitRequest
-    normal_load: Optional[float]
     average: int
     every: int
     threads: int
-    shares_alpha: bool
     skips_broken_rows: bool
 
 def track(request: TrackRequest, records: Sequence[Record]) -> Tracked: ...
@@ -177,16 +175,6 @@ class PlanRequest:
     with_terms: list[str]
     def set_wanted(self, name: str, value: float, is_relative: bool) -> None: ...
 
-class DriveRequest:
-    waveform: str
-    lambda_: Optional[float]
-    amplitude: Optional[float]
-    path: str
-    path_unit: str
-    seed: int
-    def set_excitation(self, cycles: float, samples_per_cycle: int, frequency: float,
-                       growth: float) -> None: ...
-
 class BatchEntry:
     @property
     def name(self) -> str: ...
@@ -198,17 +186,14 @@ class BatchEntry:
     def notes(self) -> list[str]: ...
 
 def contact(options: ContactOptions) -> Answer: ...
-def convert(*, sigma: float, alpha: float, slip_force: float, amplitude: float, from_law: str,
-            to: str, least_amplitude: Optional[float], largest_amplitude: Optional[float],
+def convert(*, fit: str, sigma: Optional[float], alpha: Optional[float],
+            slip_force: Optional[float], amplitude: Optional[float], from_law: str, to: str,
             tolerance: float, elements: int, beta: float, normal_load: Optional[float],
             contact_radius: Optional[float],
             viscous: float) -> tuple[Answer, Optional[list[str]]]: ...
 def plan(request: PlanRequest, initial_state: str, record: Optional[Record]) -> Answer: ...
-def recommend(*, law: LawRequest, drive: DriveRequest, tolerance: float, cost: Optional[float],
-              transient_cycles: int, criterion: str, displacement: Floats) -> Answer: ...
-def recommend_for_record(record: Record) -> Answer: ...
 def tradeoff(law: LawRequest, excitations: Sequence[str], displacement: Floats,
-             path_name: str) -> Answer: ...
+             path_name: str, tolerance: float) -> Answer: ...
 def validate(cases: int, seed: int) -> Answer: ...
 def read_displacement_path(path: str, unit: str) -> Floats: ...
 def check_request(request: FitRequest) -> None: ...

@@ -74,15 +74,11 @@ const std::vector<Rule> kRules = {
     {"plan", {"--displacement-noise"}, kNonNegative},
     {"plan", {"--samples-per-cycle"}, kWhole},
     {"plan", {"--initial-state", "--with", "--want"}, And(kNoNumber, {"-1", "0", ""})},
-    {"recommend",
-     {"--sigma", "--slip-force", "--lambda", "--cycles", "--tolerance", "--cost"},
-     kPositive},
-    {"recommend", {"--seed", "--transient-cycles"}, kWholeOrZero},
     {"contact", {"--friction", "--normal-load", "--contact-radius", "--compliance"}, kPositive},
     {"track", {"--force-noise", "--normal-load"}, kPositive},
     {"track", {"--displacement-noise", "--reversal-gate"}, kNonNegative},
     {"track", {"--average", "--every", "--threads", "--starts"}, kWhole},
-    {"track", {"--alpha", "--broken-rows", "--model", "--loss"}, And(kNoNumber, {"-1", "0", ""})},
+    {"track", {"--broken-rows", "--model", "--loss"}, And(kNoNumber, {"-1", "0", ""})},
     {"track", {"--viscous", "--lag"}, {"nan", "inf", "text", "1:", "1,5", "1e999", ""}},
     {"track", {"--separate", "--resume", "--overwrite"}, {"5", "nan", "text"}},
     {"track", {"--normal-load-unit"}, {"text", "nan", "N", "kN"}},
@@ -91,7 +87,7 @@ const std::vector<Rule> kRules = {
     {"batch", {"--normal-load", "--force-noise"}, kPositive},
     {"validate", {"--cases"}, kWhole},
     {"validate", {"--seed"}, kWholeOrZero},
-    {"tradeoff", {"--sigma", "--slip-force", "--excitation"}, kPositive},
+    {"tradeoff", {"--sigma", "--slip-force", "--excitation", "--tolerance"}, kPositive},
 };
 
 /// A use of the command that would run, without the option.
@@ -101,7 +97,6 @@ Words UseOf(const std::string& command, const std::string& option, const std::st
       {"simulate", {"--sigma", "4e7", "--slip-force", "40", "--lambda", "1", "-o", output}},
       {"convert", {"--sigma", "4e7", "--slip-force", "40", "--amplitude", "1e-6", "--to", "lugre"}},
       {"plan", {"--sigma", "4e7", "--slip-force", "40", "--force-noise", "0.1"}},
-      {"recommend", {"--sigma", "4e7", "--slip-force", "40", "--lambda", "1", "--cycles", "2"}},
       {"contact",
        {"--friction", "0.3", "--normal-load", "50", "--contact-radius", "3e-4", "--compliance",
         "4e-11"}},

@@ -29,7 +29,7 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1, "recommend": 2,
+WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1,
                    "plan": 1, "track": 4, "batch": 5}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
@@ -41,7 +41,7 @@ EXEMPT = {
     ("fit", "--cycles"): "counts",
     ("fit", "--samples"): "counts",
     ("simulate", "--steps"): "a count",
-    ("recommend", "--tolerance"): "relative, and says so",
+    ("tradeoff", "--tolerance"): "relative, and says so",
     ("plan", "--cycles"): "a count",
     ("track", "--threads"): "a count",
     ("fit", "--terms"): "names",

@@ -96,19 +96,12 @@ COMMANDS = [
       for code in ("liggghts", "yade")],
     *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {robot} --viscous 3", 0)
       for robot in ("mujoco", "mujoco-joint", "urdf", "sdf")],
-    ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan "
-     "--least-amplitude 1e-6 --largest-amplitude 2e-6", 0),
+    ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
      "--initial-state steady --want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2", 0),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3", 0),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --cost 0.0001", 3),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 5 --cycles 3 --tolerance 30% "
-     "--transient-cycles 1 --criterion energy", 0),
-    ("recommend --record loop.csv", 0),
-    ("recommend --record noise.csv", None),
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
@@ -331,8 +324,6 @@ def undocumented_keys():
     command = {"sweep": "fit", "track_separate": "track"}
     for name, schema in SCHEMAS.items():
         text = sections[command.get(name, name)]
-        if name == "recommend":  # "the keys of a point of `tradeoff`"
-            text += sections["tradeoff"]
         for key in sorted(set(keys_in(schema)) - set(re.findall(r"`([a-z_0-9]+)`", text)) if name != "fit" else []):
             yield f"{name}.json: {key} is not in docs/contract.md"
 

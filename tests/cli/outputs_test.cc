@@ -95,8 +95,8 @@ TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
 TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
   const std::string path = directory_.Write("path.csv", "x [m]\n0\n1e-6\n0\n").string();
   const Words law = {"--sigma", "4e7", "--slip-force", "40", "--path", path};
-  for (const Words& words : std::vector<Words>{
-           {"simulate", "-o", path}, {"recommend", "--json", path}, {"tradeoff", "--csv", path}}) {
+  for (const Words& words :
+       std::vector<Words>{{"simulate", "-o", path}, {"tradeoff", "--csv", path}}) {
     Words all = words;
     all.insert(all.end(), law.begin(), law.end());
     ExpectRefused(all, "which it would replace");
@@ -113,8 +113,8 @@ TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
 TEST_F(Outputs, AreNotWrittenOverEachOther) {
   ExpectRefused({"fit", SampleRecord(), "--json", At("out"), "--residuals", At("./out")},
                 "--json and --residuals both write to");
-  ExpectRefused({"tradeoff", "--csv", At("out"), "--regions-csv", At("out")},
-                "--csv and --regions-csv both write to");
+  ExpectRefused({"tradeoff", "--csv", At("out"), "--plot", At("out")},
+                "--csv and --plot both write to");
   EXPECT_EQ(directory_.FileCount(), 0u);
 }
 

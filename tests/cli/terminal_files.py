@@ -26,7 +26,7 @@ SKIPPED = 77
 # What is typed, the last word being completed, and what is offered: all of it, or where it ends
 # with "…" at least that.
 COMPLETIONS = [
-    ("mindahl ", "fit simulate validate contact convert tradeoff recommend plan track batch"),
+    ("mindahl ", "fit simulate validate contact convert tradeoff plan track batch"),
     ("mindahl con", "contact convert"),
     ("mindahl --v", "--version"),
     ("mindahl fit --displacement-", "--displacement-unit --displacement-gain --displacement-zero --displacement-noise"),

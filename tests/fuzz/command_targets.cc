@@ -63,10 +63,10 @@ const std::vector<Words> kOptionsOfFit = {{"--model", "auto"},
                                           {"--slip-trend", "fit"},
                                           {"--terms", "backlash,slip_trend"},
                                           {"--encoding", "utf-16le"}};
-const std::vector<Words> kOptionsOfTrack = {{"--average", "2"},      {"--every", "3"},
-                                            {"--alpha", "shared"},   {"--broken-rows", "skip"},
-                                            {"--backlash", "2e-7"},  {"--rig-stiffness", "1e8+-3%"},
-                                            {"--slip-trend", "fit"}, {"--encoding", "latin1"}};
+const std::vector<Words> kOptionsOfTrack = {
+    {"--average", "2"},        {"--every", "3"},        {"--compliance", "4e-11"},
+    {"--broken-rows", "skip"}, {"--backlash", "2e-7"},  {"--rig-stiffness", "1e8+-3%"},
+    {"--slip-trend", "fit"},   {"--encoding", "latin1"}};
 const std::vector<Words> kOptionsOfSweep = {{},
                                             {"--model", "mindlin"},
                                             {"--model", "jenkins"},

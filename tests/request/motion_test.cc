@@ -306,7 +306,7 @@ TEST_F(SimulateRequest, OfAnImposedForceMovesAJenkinsElementByItsSpring) {
   request_.model = "simplified-dahl";
   EXPECT_THAT(SimulationRefusal(request_), StartsWith("--force-path cannot be used with --model"));
   request_.model = "jenkins";
-  request_.method = "rk4";
+  request_.method = "dopri5";
   EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--force-path cannot be used with"));
 }
 
@@ -350,7 +350,7 @@ TEST_F(SimulateRequest, OfABacklashPassesItsGapWhereTheForceTurnsItsSign) {
   request_.backlash = 2e-7;
   request_.model = "dahl";
   EXPECT_EQ(SimulationRefusal(request_), "");
-  request_.method = "euler";
+  request_.method = "dopri5";
   EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--backlash cannot be used with"));
 }
 
@@ -378,7 +378,7 @@ TEST_F(SimulateRequest, HasTheMethodWithTheResolutionThatIsAsked) {
   EXPECT_THAT(SimulationRefusal(request_),
               StartsWith("--steps 7 has no effect with --method exact"));
   request_.steps.reset();
-  request_.method = "rk4";
+  request_.method = "dopri5";
   request_.model = "coulomb";
   EXPECT_THAT(SimulationRefusal(request_), HasSubstr("cannot compute --model coulomb"));
 }
