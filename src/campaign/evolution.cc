@@ -70,12 +70,6 @@ std::string ChanceWords(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
 }
 
-const Evolution* FindByName(std::span<const Evolution> evolutions, std::string_view name) {
-  const auto found = std::ranges::find_if(
-      evolutions, [&](const Evolution& evolution) { return evolution.quantity->name == name; });
-  return found == evolutions.end() ? nullptr : &*found;
-}
-
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   constexpr double kShade = 0.3;  // of what is measured
   constexpr double kManyCycles = 100;
@@ -201,7 +195,9 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
 }
 
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
-  const bool has_friction = FindByName(evolutions, "friction_coefficient") != nullptr;
+  const bool has_friction = std::ranges::any_of(evolutions, [](const Evolution& evolution) {
+    return evolution.quantity->name == "friction_coefficient";
+  });
   std::vector<io::PlotPanel> panels;
   for (const Evolution& evolution : evolutions) {
     if (!evolution.quantity->is_drawn || evolution.course.bins().size() < 2) continue;
