@@ -49,6 +49,13 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
   });
 }
 
+void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
+  ReduceColumns(input, [first, last](auto& column) {
+    column.resize(last);
+    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first));
+  });
+}
+
 namespace {
 
 LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
@@ -63,10 +70,7 @@ LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
 NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
                          const LoadPiece& description, const std::string& file) {
   RecordFile part = input;
-  ReduceColumns(part, [&piece](auto& column) {
-    column.resize(piece.last);
-    column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(piece.first));
-  });
+  KeepSamples(part, piece.first, piece.last);
   part.notes.clear();
   part.piece = description;
   std::string name = fmt::format("{}:{}-{}", file, description.first_line, description.last_line);
@@ -74,15 +78,6 @@ NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piec
 }
 
 }  // namespace
-
-NamedRecord CutAtLoadRamps(const RecordFile& input, const std::string& file) {
-  const std::optional<loop::ConstantLoad> piece = loop::FindSettledLoad(input.record);
-  if (!piece) return {.name = file, .file = input};
-  LoadPiece description = Described(input, *piece);
-  description.is_between_ramps = true;
-  description.left_out = input.record.size() - (piece->last - piece->first);
-  return NamedPieceOf(input, *piece, description, file);
-}
 
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);

@@ -271,16 +271,9 @@ ReversalGate Doubted(Excursions excursions, double gate, double other_gate) {
   return chosen;
 }
 
-}  // namespace
-
-ReversalGate ChooseReversalGate(std::span<const double> displacement) {
-  return ChooseReversalGate(displacement, {}, std::pmr::get_default_resource());
-}
-
-ReversalGate ChooseReversalGate(std::span<const double> displacement, const ReversalRules& rules,
-                                std::pmr::memory_resource* scratch) {
-  const std::pmr::vector<Excursion> excursions = FindExcursions(displacement, scratch);
-  if (excursions.size() < 2) return Under(excursions, 0.0);
+/// Chooses the gate by what the excursions look like, one by one.
+ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excursions,
+                           const ReversalRules& rules, std::pmr::memory_resource* scratch) {
   const Judge judge(displacement, excursions, rules, scratch);
   if (!judge.any_brief()) return Under(excursions, 0.0);
   std::pmr::vector<Look> looks(scratch);
@@ -300,6 +293,24 @@ ReversalGate ChooseReversalGate(std::span<const double> displacement, const Reve
   const bool is_rivalled = rival.width() > rules.rival * chosen.width();
   return is_rivalled ? Doubted(excursions, chosen.gate(), rival.gate())
                      : Under(excursions, chosen.gate());
+}
+
+}  // namespace
+
+ReversalGate ChooseReversalGate(std::span<const double> displacement) {
+  return ChooseReversalGate(displacement, {}, std::pmr::get_default_resource());
+}
+
+ReversalGate ChooseReversalGate(std::span<const double> displacement, const ReversalRules& rules,
+                                std::pmr::memory_resource* scratch) {
+  const std::pmr::vector<Excursion> excursions = FindExcursions(displacement, scratch);
+  if (excursions.size() < 2) return Under(excursions, 0.0);
+  const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules, scratch);
+  // An encoder that counts to and fro is at rest, however long that takes it.
+  const double flicker = rules.counts * EncoderStep(displacement);
+  const bool flickers = excursions.front().range <= flicker;
+  const bool is_stroke = flicker >= excursions.back().range / 2;
+  return flickers && !is_stroke && flicker > chosen.gate ? Under(excursions, flicker) : chosen;
 }
 
 }  // namespace mindahl::loop

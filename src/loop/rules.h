@@ -17,6 +17,9 @@ struct ReversalRules {
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
   double beyond = 1.25;
+  /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less
+  /// than the two that a motion makes.
+  double counts = 1.5;
   /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
   double rough = 0.05;
   /// [of the excursions that look like noise] Largest fraction classified otherwise.
@@ -88,7 +91,22 @@ struct SlidingRules {
 };
 
 /// Sets the limits by which the ends of a record are not part of its test.
-struct TrimRules {
+struct TestPartRules {
+  /// [of the widest of them] Strokes of one amplitude differ by less.
+  double alike = 0.9;
+  /// [strokes] Fewer are not repeated: a record of one and a half cycles has three.
+  std::size_t fewest = 4;
+  /// [of the time from the first to the last of them] Least part that the strokes fill: the widest
+  /// swings of a random motion are far apart.
+  double filled = 0.8;
+  /// [of the excursion's range] Least fraction in one step between samples of a jump, which noise
+  /// and an encoder's last digit make.
+  double jump = 0.4;
+  /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
+  /// growing amplitude and a nested loop are inside.
+  double travel = 0.25;
+  /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.
+  std::size_t classes = 64;
   /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
   double rest = 0.01;
   /// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a

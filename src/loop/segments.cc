@@ -18,59 +18,6 @@ namespace mindahl::loop {
 
 namespace {
 
-/// Returns the number of samples, at least one, at which the displacement rests from its start.
-template <typename Displacements>
-std::size_t Resting(const Displacements& displacements, double reach) {
-  const double at_rest = *displacements.begin();
-  const auto moves = std::ranges::find_if(
-      displacements, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
-  return static_cast<std::size_t>(moves - displacements.begin());
-}
-
-/// Returns the number of samples of a usual stroke; 0 where there is none.
-double UsualStroke(std::span<const std::size_t> turning_points) {
-  if (turning_points.size() < 2) return 0.0;
-  std::vector<double> lengths;
-  for (std::size_t k = 1; k < turning_points.size(); ++k) {
-    lengths.push_back(static_cast<double>(turning_points[k] - turning_points[k - 1]));
-  }
-  return UpperMedian(lengths);
-}
-
-}  // namespace
-
-Trim FindTrim(const RecordView& record, const PreparationOptions& options) {
-  PreparationOptions whole = options;
-  whole.load_window.reset();
-  whole.skip_cycles = 0;
-  whole.cycles.reset();
-  whole.samples.reset();
-  whole.held_out.clear();
-  const PreparedRecords prepared = Prepare({&record, 1}, whole, std::pmr::get_default_resource());
-  const PreparedRecord& test = prepared.records.front();
-  const std::span<const double> displacement = test.displacement();
-  Trim trim{.samples = displacement.size(), .parts = {}};
-  const double usual =
-      UsualStroke(TurningPoints(displacement, test.reversals, std::pmr::get_default_resource()));
-  if (!(usual > 0)) return trim;
-  const TrimRules rules;
-  const auto [least, greatest] = std::ranges::minmax(displacement);
-  const double reach = std::max(rules.rest * (greatest / 2 - least / 2), test.reversal_gate);
-  const auto is_rest = [&](std::size_t samples) {
-    return static_cast<double>(samples) > rules.longest_dwell * usual && samples > 1;
-  };
-  // One sample stays, from which the motion begins and at which it ends.
-  const std::size_t before = Resting(displacement, reach);
-  if (is_rest(before)) trim.parts.push_back({.first = 0, .last = before - 1, .at_start = true});
-  const std::size_t after = Resting(std::views::reverse(displacement), reach);
-  if (is_rest(after)) {
-    trim.parts.push_back({.first = trim.samples - after + 1, .last = trim.samples});
-  }
-  return trim;
-}
-
-namespace {
-
 /// Medians of five, so that single readings end nothing.
 std::vector<double> WithoutSpikes(std::span<const double> load) {
   constexpr std::size_t kReach = 2;

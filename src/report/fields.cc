@@ -509,7 +509,7 @@ std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& repor
 }
 
 std::vector<LeftOut> DescribeLeftOut(const Report& report) {
-  std::vector<LeftOut> parts;
+  std::vector<LeftOut> parts = report.left_out;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const io::RecordFile& file = report.records[r];
     const RecordFit& fit = report.fit.records[r];
@@ -517,31 +517,21 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
       return sample < file.lines.size() ? file.lines[sample] : sample + 1;
     };
     std::size_t rest = fit.left_out;
-    const auto take = [&](std::size_t samples) { rest -= std::min(rest, samples); };
-    if (r < report.trims.size()) {
-      for (const loop::TrimmedPart& part : report.trims[r].parts) {
-        parts.push_back({.file = report.files[r],
-                         .samples = part.samples(),
-                         .first = line(part.first),
-                         .last = line(part.last - 1),
-                         .why = "rest"});
-        take(part.samples());
-      }
-    }
-    if (const std::size_t faults = fit.glitches.total(); faults > 0) {
+    const std::size_t faults = fit.glitches.total();
+    if (faults > 0) {
       const std::size_t first = fit.glitches.examples[0];
       parts.push_back({.file = report.files[r],
                        .samples = faults,
                        .first = faults == 1 ? line(first) : 0,
                        .last = faults == 1 ? line(first) : 0,
                        .why = "faults"});
-      take(faults);
+      rest -= std::min(rest, faults);
     }
     if (rest > 0) {
       const auto& counts = fit.counts;
       const auto first = std::ranges::find(counts, 0);
       const auto counted = std::find_if(first, counts.end(), [](auto c) { return c != 0; });
-      const bool is_one = parts.empty() && static_cast<std::size_t>(counted - first) == rest;
+      const bool is_one = faults == 0 && static_cast<std::size_t>(counted - first) == rest;
       const auto at = static_cast<std::size_t>(first - counts.begin());
       parts.push_back({.file = report.files[r],
                        .samples = rest,

@@ -35,15 +35,6 @@ Json JsonDocument(const Report& report);
 std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
                                                              std::string_view prefix);
 
-/// Holds successive lines of a file that do not count.
-struct LeftOut {
-  std::string file;
-  std::size_t samples = 0;
-  std::size_t first = 0;  ///< first line in the file, 1-based; 0 where they are not in a row
-  std::size_t last = 0;
-  std::string why;  ///< "rest", "faults", "selection" …
-};
-
 /// Returns the samples of each record that do not count.
 std::vector<LeftOut> DescribeLeftOut(const Report& report);
 

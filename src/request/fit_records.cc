@@ -16,6 +16,7 @@
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/test_part.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/request/fit_request.h"
 
@@ -32,6 +33,10 @@ using io::RecordFile;
 using loop::Record;
 
 namespace {
+
+std::size_t LineOf(const RecordFile& input, std::size_t sample) {
+  return sample < input.lines.size() ? input.lines[sample] : sample + 1;
+}
 
 /// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
 std::string PlaceOf(const std::string& file, const RecordFile& input,
@@ -143,23 +148,19 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
 }
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
-/// which samples of it count; and of a file whose ends are trimmed what is under its constant load.
+/// which samples of it count.
 /// @param names  written: those of the records
 std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
                                    std::vector<std::string>& names) {
   const bool splits =
       request.contact.normal_loads.empty() && !request.load_window && !request.samples;
-  const bool trims = request.trim == kAutomatic && !request.load_window;
   names = request.files;
-  if (!splits && !trims) return inputs;
+  if (!splits) return inputs;
   names.clear();
   std::vector<RecordFile> records;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
-    std::vector<io::NamedRecord> pieces;
-    if (splits) pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
-    if (trims && pieces.size() <= 1) {
-      pieces = {io::CutAtLoadRamps(inputs[r], request.files[r])};
-    }
+    std::vector<io::NamedRecord> pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
+    if (pieces.size() <= 1) pieces = {{.name = request.files[r], .file = std::move(inputs[r])}};
     for (io::NamedRecord& record : pieces) {
       names.push_back(std::move(record.name));
       records.push_back(std::move(record.file));
@@ -168,15 +169,33 @@ std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<Record
   return records;
 }
 
-/// Finds the parts of each record that are not of the test; empty where not requested.
-std::vector<loop::Trim> FindTrims(const FitRequest& request, const FitOptions& options,
-                                  std::span<const Record> records) {
-  std::vector<loop::Trim> trims;
-  if (request.trim != kAutomatic) return trims;
-  for (const Record& record : records) {
-    trims.push_back(loop::FindTrim(record, options.preparation));
+/// Cuts each record to its test, where that is asked for and nothing says which samples count.
+/// @param options  changed: a contact that was cycled before is steady
+std::vector<report::LeftOut> KeepTests(const FitRequest& request,
+                                       std::span<const std::string> names,
+                                       std::vector<RecordFile>& records, FitOptions& options) {
+  std::vector<report::LeftOut> left_out;
+  const bool is_chosen = request.load_window || request.samples || request.cycles;
+  if (request.trim != kAutomatic || is_chosen || options.response() != loop::Channel::kForce) {
+    return left_out;
   }
-  return trims;
+  bool all_cycled = true;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const loop::TestPart test = loop::FindTestPart(records[r].record);
+    for (const loop::LeftOut& part : test.left_out) {
+      left_out.push_back({.file = names[r],
+                          .samples = part.last - part.first,
+                          .first = LineOf(records[r], part.first),
+                          .last = LineOf(records[r], part.last - 1),
+                          .why = std::string(NameOf(part.reason))});
+    }
+    io::KeepSamples(records[r], test.first, test.last);
+    all_cycled = all_cycled && test.begins_cycled;
+  }
+  if (all_cycled && !options.initial_state && options.initial_states.empty()) {
+    options.initial_state = models::InitialState::kSteady;
+  }
+  return left_out;
 }
 
 /// Refuses a load window without a load column, or without samples, before the fit refuses it with
@@ -269,21 +288,6 @@ identification::FitResult FitAsked(const FitRequest& request, FitOptions& option
 
 }  // namespace
 
-void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
-  if (trims.empty()) return;
-  std::vector<std::vector<bool>>& held_out = options.preparation.held_out;
-  held_out.assign(trims.size(), {});
-  for (std::size_t r = 0; r < trims.size(); ++r) {
-    if (trims[r].parts.empty()) continue;
-    held_out[r].assign(trims[r].samples, false);
-    for (const loop::TrimmedPart& part : trims[r].parts) {
-      std::fill(held_out[r].begin() + static_cast<std::ptrdiff_t>(part.first),
-                held_out[r].begin() + static_cast<std::ptrdiff_t>(part.last), true);
-    }
-  }
-  if (std::ranges::all_of(held_out, &std::vector<bool>::empty)) held_out.clear();
-}
-
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
                                 FitOptions& options) {
   if (request.term_choice != kAutomatic) return "";
@@ -371,12 +375,11 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   RequireLoads(request, options.preparation.load_window, inputs);
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
+  std::vector<report::LeftOut> left_out = KeepTests(request, names, inputs, options);
   std::vector<Record> records;
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  std::vector<loop::Trim> trims = FindTrims(request, options, records);
-  LeaveOutTrimmed(trims, options);
   std::optional<identification::ModelSelection> selection;
   std::optional<identification::TermSelection> terms;
   identification::FitResult fit = FitAsked(request, options, records, selection, terms);
@@ -388,7 +391,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .options = options,
                              .known = known,
                              .load_window = options.preparation.load_window,
-                             .trims = std::move(trims),
+                             .left_out = std::move(left_out),
                              .selection = std::move(selection),
                              .terms = std::move(terms)});
 }

@@ -53,23 +53,5 @@ TEST(LoadPieces, OfOneLoadAreTheRecordItself) {
   EXPECT_EQ(pieces[0].file.record.size(), 320U);
 }
 
-TEST(LoadPieces, BetweenRampsAreOneWithItsLines) {
-  RecordFile file = TwoLoads();
-  for (std::size_t i = 0; i < 320; ++i) {
-    file.record.normal_load[i] = i < 60 ? 20.0 + 0.5 * static_cast<double>(i) : 50.0;
-  }
-  const NamedRecord piece = CutAtLoadRamps(file, "ramp.csv");
-  // 49.5 N is within 1 % of 50 N; of the turns at 50, 70, 90 the second after that begins it.
-  EXPECT_EQ(piece.name, "ramp.csv:92-321");
-  ASSERT_TRUE(piece.file.piece);
-  EXPECT_TRUE(piece.file.piece->is_between_ramps);
-  EXPECT_EQ(piece.file.piece->left_out, 90U);
-  EXPECT_EQ(piece.file.record.size(), 230U);
-  std::ranges::fill(file.record.normal_load, 20.0);
-  const NamedRecord whole = CutAtLoadRamps(file, "loop.csv");
-  EXPECT_EQ(whole.name, "loop.csv");
-  EXPECT_FALSE(whole.file.piece);
-}
-
 }  // namespace
 }  // namespace mindahl::io::load_pieces_test

@@ -410,5 +410,21 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
   EXPECT_GT(FindReversals(position, 0.0).size(), 1000U) << "the gate has nothing to do";
 }
 
+TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
+  // Two cycles over seven counts, whose readings flicker by one wherever a count ends.
+  constexpr double kCount = 1e-6;
+  Generator generator(3);
+  for (int record = 0; record < 20; ++record) {
+    std::vector<double> displacement;
+    for (std::size_t i = 0; i <= 800; ++i) {
+      const double place = 3.5 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 400);
+      displacement.push_back(kCount * std::round(place + 0.2 * testing::Normal(generator)));
+    }
+    const ReversalGate gate = ChooseReversalGate(displacement);
+    EXPECT_GE(gate.gate, 1.5 * kCount);
+    EXPECT_EQ(gate.count, 4U) << record;
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::loop::reversals_test

@@ -112,10 +112,7 @@ TEST(Json, OfATorqueHasItsUnitsAndNoContact) {
 TEST(Json, ListsWhatIsLeftOut) {
   ReportInput input = MadeInput();
   input.records[0].lines = {2, 3, 4, 5, 6, 7, 8, 9, 10};
-  loop::TrimmedPart part;
-  part.last = 3;
-  input.trims = {loop::Trim{.samples = 9, .parts = {part}}};
-  input.fit.records[0].left_out = 3;
+  input.left_out = {{.file = "a.csv", .samples = 3, .first = 2, .last = 4, .why = "rest"}};
   const Json left_out = Document(std::move(input))["input"]["left_out"];
   ASSERT_EQ(left_out.size(), 1U);
   EXPECT_EQ(left_out[0]["first"], 2);

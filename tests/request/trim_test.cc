@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "mindahl/identification/fit.h"
-#include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
@@ -73,6 +72,30 @@ TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
   EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.005);
   // The ramp ends after three cycles, a turn is a quarter past each half, and the second counts.
   EXPECT_EQ(report.records.front().record.size(), record.size() - (3 * kCycle + 3 * kCycle / 4));
+}
+
+TEST(TrimmedFit, HasSignGapAndScaleOfTheTestAndNamesTheRowsOfATravel) {
+  Generator generator(9);
+  const Record test = RunningIn(6, generator, 1.0);
+  Record record = test;
+  // An approach of 100 mm under a force of the other sign, and the same way back.
+  for (std::size_t i = 0; i < 150; ++i) {
+    const double far = -0.1 * (1 - static_cast<double>(i) / 150);
+    record.displacement.insert(record.displacement.begin() + static_cast<std::ptrdiff_t>(i), far);
+    record.force.insert(record.force.begin() + static_cast<std::ptrdiff_t>(i), -60.0);
+    record.displacement.push_back(-0.1 * static_cast<double>(i) / 150);
+    record.force.push_back(60.0);
+  }
+  const report::Report report = ReportOf(record);
+  EXPECT_EQ(report.fit.force_sense, 1);
+  EXPECT_NEAR(report.fit.records[0].measures.amplitude / kReach, 1, 0.001);
+  EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.01);
+  EXPECT_NEAR(report.fit.law.tangential_stiffness / kLaw.tangential_stiffness, 1, 0.02);
+  ASSERT_EQ(report.left_out.size(), 2U);
+  EXPECT_EQ(report.left_out[0].why, "travel");
+  EXPECT_EQ(report.left_out[0].first, 1U);
+  EXPECT_GE(report.left_out[0].last, 150U);
+  EXPECT_EQ(report.left_out[1].last, record.size());
 }
 
 TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {

@@ -46,8 +46,6 @@ struct LoadPiece {
   std::size_t first_line = 0;  ///< first line in the file, 1-based
   std::size_t last_line = 0;   ///< last line in the file
   std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
-  /// True if its load is constant and the file's load ramps to and from it.
-  bool is_between_ramps = false;
 };
 
 /// A record and where it came from.
@@ -199,16 +197,14 @@ ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& f
 /// @throws InputError when the record has no time, or no sample lies there
 void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last);
 
+/// Keeps the samples [first, last) of a record.
+void KeepSamples(RecordFile& input, std::size_t first, std::size_t last);
+
 /// One of several records of a file.
 struct NamedRecord {
   std::string name;  ///< the file's, and of a piece its lines: series.csv:2-501
   RecordFile file;
 };
-
-/// Returns the part of a record under one constant load, where that ramps at its ends
-/// (FindSettledLoad()); else the record itself.
-/// @param file  its name
-NamedRecord CutAtLoadRamps(const RecordFile& input, const std::string& file);
 
 /// Returns a record whose normal load goes in steps (loop/segments.h) as one record for each
 /// load; else the record itself.

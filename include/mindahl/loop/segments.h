@@ -4,34 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::loop {
-
-/// Successive samples [first, last) at an end of a record in which the displacement rests.
-struct TrimmedPart {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  bool at_start = false;  ///< true at the beginning of the record, false at its end
-
-  [[nodiscard]] std::size_t samples() const { return last - first; }
-};
-
-/// Locates the samples at the ends of a record that are not part of its test.
-struct Trim {
-  std::size_t samples = 0;         ///< number in the record
-  std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end
-};
-
-/// Finds the rests at the ends of a record: the displacement stays within 1 % of half its range, or
-/// within the reversal gate, for longer than half a usual stroke, before the motion begins or after
-/// it has ended.
-/// @param options  as the record will be prepared; windows, held-out samples and what counts are
-///   not looked at
-/// @throws InvalidArgument as Prepare()
-/// Cost: as Prepare().
-Trim FindTrim(const RecordView& record, const PreparationOptions& options = {});
 
 /// Successive samples [first, last) under one normal load.
 struct ConstantLoad {

@@ -10,7 +10,6 @@
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/loop/segments.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/units.h"
 
@@ -32,6 +31,15 @@ struct NextStep {
   std::vector<std::vector<double>> fitted_force = {};
 };
 
+/// Holds successive lines of a file that do not count.
+struct LeftOut {
+  std::string file;
+  std::size_t samples = 0;
+  std::size_t first = 0;  ///< first line in the file, 1-based; 0 where they are not in a row
+  std::size_t last = 0;
+  std::string why;  ///< "rest", "travel", "load ramp", "faults", "selection" …
+};
+
 /// Holds the inputs of a report.
 struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
@@ -41,8 +49,7 @@ struct ReportInput {
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};
-  /// Holds the parts left out of each record as not of its test; empty where not requested.
-  std::vector<loop::Trim> trims = {};
+  std::vector<LeftOut> left_out = {};  ///< what was cut off the records as not of their tests
   std::optional<identification::ModelSelection> selection = {};  ///< if models were compared
   std::optional<identification::TermSelection> terms = {};       ///< if terms were chosen
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not

@@ -14,7 +14,6 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/preparation.h"
-#include "mindahl/loop/segments.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/contact_request.h"
 
@@ -124,10 +123,6 @@ enum class Strictness {
 
 /// True if a fit is established, for the exit status.
 bool Established(const identification::FitResult& fit, Strictness strictness);
-
-/// Makes the fit leave out the trimmed samples of each record.
-/// @param trims  one a record, or none
-void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptions& options);
 
 /// @throws InvalidArgument or InputError for options that break a rule whatever the records are
 void Validate(const FitRequest& request);

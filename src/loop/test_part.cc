@@ -1,0 +1,207 @@
+#include "mindahl/loop/test_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory_resource>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <utility>
+
+#include "loop/rules.h"
+#include "loop/statistics.h"
+#include "loop/strokes.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/loop/segments.h"
+
+namespace mindahl::loop {
+namespace {
+
+/// The strokes of a test, which are of one range, and the positions that they reach.
+struct RepeatedStrokes {
+  std::size_t first = 0;  // samples of the first and of the last turning point
+  std::size_t last = 0;
+  double range = 0.0;   // [m] of the widest
+  double lowest = 0.0;  // [m]
+  double highest = 0.0;
+};
+
+/// True if no step between two samples makes most of an excursion.
+bool IsSmooth(std::span<const double> displacement, const Excursion& excursion, double jump) {
+  double largest = 0.0;
+  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
+    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
+  }
+  return largest < jump * excursion.range;
+}
+
+/// Describes excursions of nearly one range; nothing where they are too few, jump, or leave most of
+/// their time to something else.
+std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
+                                         std::span<const Excursion> excursions,
+                                         const TestPartRules& rules) {
+  RepeatedStrokes strokes{.first = displacement.size(),
+                          .range = excursions.back().range,
+                          .lowest = displacement[excursions.back().first],
+                          .highest = displacement[excursions.back().first]};
+  std::size_t count = 0;
+  double lasting = 0.0;  // [samples]
+  for (const Excursion& excursion : excursions) {
+    if (!IsSmooth(displacement, excursion, rules.jump)) continue;
+    count += excursion.reversals;
+    lasting += static_cast<double>(excursion.duration() * excursion.reversals);
+    strokes.first = std::min(strokes.first, excursion.first);
+    strokes.last = std::max(strokes.last, excursion.last);
+    const auto [low, high] =
+        std::minmax(displacement[excursion.first], displacement[excursion.last]);
+    strokes.lowest = std::min(strokes.lowest, low);
+    strokes.highest = std::max(strokes.highest, high);
+  }
+  if (count < rules.fewest) return std::nullopt;
+  const auto span = static_cast<double>(strokes.last - strokes.first);
+  if (lasting < rules.filled * span) return std::nullopt;
+  return strokes;
+}
+
+/// Finds the widest strokes that others repeat.
+std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement,
+                                                   const TestPartRules& rules) {
+  const std::pmr::vector<Excursion> excursions =
+      FindExcursions(displacement, std::pmr::get_default_resource());
+  std::size_t last = excursions.size();
+  for (std::size_t tried = 0; last > 0 && tried < rules.classes; ++tried) {
+    const double widest = excursions[last - 1].range;
+    if (!(widest > 0)) return std::nullopt;
+    const auto first =
+        std::ranges::lower_bound(excursions, rules.alike * widest, {}, &Excursion::range);
+    const auto begin = static_cast<std::size_t>(first - excursions.begin());
+    const std::span<const Excursion> alike = std::span(excursions).subspan(begin, last - begin);
+    if (auto strokes = StrokesOf(displacement, alike, rules)) return strokes;
+    --last;
+  }
+  return std::nullopt;
+}
+
+/// Returns by how much a part of the displacement leaves the positions of the strokes [m].
+double Beyond(std::span<const double> displacement, const RepeatedStrokes& strokes) {
+  if (displacement.empty()) return 0.0;
+  const auto [least, greatest] = std::ranges::minmax(displacement);
+  return std::max(strokes.lowest - least, greatest - strokes.highest);
+}
+
+/// Returns the number of samples, at least one, at which the displacement rests from its start.
+template <typename Displacements>
+std::size_t Resting(const Displacements& displacements, double reach) {
+  const double at_rest = *displacements.begin();
+  const auto moves = std::ranges::find_if(
+      displacements, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
+  return static_cast<std::size_t>(moves - displacements.begin());
+}
+
+/// Returns the number of samples of a usual stroke; 0 where there is none.
+double UsualStroke(std::span<const double> displacement, double gate) {
+  const std::vector<std::size_t> reversals = FindReversals(displacement, gate);
+  const std::pmr::vector<std::size_t> points =
+      TurningPoints(displacement, reversals, std::pmr::get_default_resource());
+  std::vector<double> lengths;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    lengths.push_back(static_cast<double>(points[k] - points[k - 1]));
+  }
+  return lengths.empty() ? 0.0 : UpperMedian(lengths);
+}
+
+class TestSearch {
+ public:
+  explicit TestSearch(const RecordView& record) : record_(record) { test_.last = record.size(); }
+
+  TestPart Find() {
+    LeaveOutLoadRamps();
+    LeaveOutTravel();
+    LeaveOutRests();
+    test_.left_out.insert(test_.left_out.end(), at_end_.rbegin(), at_end_.rend());
+    return std::move(test_);
+  }
+
+ private:
+  [[nodiscard]] std::span<const double> Displacement() const {
+    return record_.displacement.subspan(test_.first, test_.last - test_.first);
+  }
+
+  void CutBefore(LeftOutReason reason, std::size_t first) {
+    if (first <= test_.first) return;
+    test_.left_out.push_back({.reason = reason, .first = test_.first, .last = first});
+    test_.begins_cycled = test_.begins_cycled || reason != LeftOutReason::kRest;
+    test_.first = first;
+  }
+
+  void CutAfter(LeftOutReason reason, std::size_t last) {
+    if (last >= test_.last) return;
+    at_end_.push_back({.reason = reason, .first = last, .last = test_.last});
+    test_.last = last;
+  }
+
+  void LeaveOutLoadRamps() {
+    const std::optional<ConstantLoad> settled = FindSettledLoad(record_);
+    if (!settled) return;
+    CutBefore(LeftOutReason::kLoadRamp, settled->first);
+    CutAfter(LeftOutReason::kLoadRamp, settled->last);
+  }
+
+  void LeaveOutTravel() {
+    const std::span<const double> displacement = Displacement();
+    const std::size_t from = test_.first;
+    const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement, rules_);
+    if (!strokes) return;
+    const double travel = rules_.travel * strokes->range;
+    if (Beyond(displacement.first(strokes->first), *strokes) > travel) {
+      CutBefore(LeftOutReason::kTravel, from + strokes->first);
+    }
+    if (Beyond(displacement.subspan(strokes->last), *strokes) > travel) {
+      CutAfter(LeftOutReason::kTravel, from + strokes->last + 1);
+    }
+  }
+
+  void LeaveOutRests() {
+    const std::span<const double> displacement = Displacement();
+    const std::size_t from = test_.first;
+    const double gate = ChooseReversalGate(displacement).gate;
+    const double usual = UsualStroke(displacement, gate);
+    if (!(usual > 0)) return;
+    const auto [least, greatest] = std::ranges::minmax(displacement);
+    const double reach = std::max(rules_.rest * (greatest / 2 - least / 2), gate);
+    const auto is_rest = [&](std::size_t samples) {
+      return samples > 1 && static_cast<double>(samples) > rules_.longest_dwell * usual;
+    };
+    // One sample stays, from which the motion begins and at which it ends.
+    const std::size_t before = Resting(displacement, reach);
+    if (is_rest(before)) CutBefore(LeftOutReason::kRest, from + before - 1);
+    const std::size_t after = Resting(std::views::reverse(displacement), reach);
+    if (is_rest(after)) CutAfter(LeftOutReason::kRest, from + displacement.size() - after + 1);
+  }
+
+  const RecordView& record_;
+  TestPartRules rules_;
+  TestPart test_;
+  std::vector<LeftOut> at_end_;  // from the end inwards
+};
+
+}  // namespace
+
+std::string_view NameOf(LeftOutReason reason) {
+  switch (reason) {
+    case LeftOutReason::kLoadRamp:
+      return "load ramp";
+    case LeftOutReason::kTravel:
+      return "travel";
+    case LeftOutReason::kRest:
+      break;
+  }
+  return "rest";
+}
+
+TestPart FindTestPart(const RecordView& record) {
+  if (record.size() == 0) return {};
+  return TestSearch(record).Find();
+}
+
+}  // namespace mindahl::loop
