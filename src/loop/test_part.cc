@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory_resource>
 #include <optional>
 #include <ranges>
@@ -82,11 +83,52 @@ std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displ
   return std::nullopt;
 }
 
-/// Returns by how much a part of the displacement leaves the positions of the strokes [m].
-double Beyond(std::span<const double> displacement, const RepeatedStrokes& strokes) {
-  if (displacement.empty()) return 0.0;
-  const auto [least, greatest] = std::ranges::minmax(displacement);
-  return std::max(strokes.lowest - least, greatest - strokes.highest);
+/// A turning point, or an end of the record.
+struct Place {
+  std::size_t sample = 0;
+  double displacement = 0.0;  // [m]
+};
+
+std::vector<Place> PlacesOf(std::span<const double> displacement,
+                            std::span<const std::size_t> samples) {
+  std::vector<Place> places;
+  places.reserve(samples.size());
+  for (const std::size_t sample : samples) places.push_back({sample, displacement[sample]});
+  return places;
+}
+
+/// The part of a record that lies outside of its test, which ends at a sample.
+struct Part {
+  std::size_t sample = 0;
+  bool is_travel = false;
+};
+
+/// Follows the turning points from an end of the test's strokes outwards, as long as none leaves
+/// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
+/// left is travel unless it has as many strokes of that range as make a test.
+/// @param travel  [m] by which travel leaves the positions
+template <typename Places>
+Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel) {
+  double lowest = strokes.lowest;
+  double highest = strokes.highest;
+  auto place = places.begin();
+  Part outside{.sample = place->sample};
+  for (; place != places.end(); ++place) {
+    const double at = place->displacement;
+    if (at < lowest - travel || at > highest + travel) break;
+    // A rest within the stroke is no turn of the test.
+    if (at < lowest + travel || at > highest - travel) outside.sample = place->sample;
+    lowest = std::min(lowest, at);
+    highest = std::max(highest, at);
+  }
+  if (place == places.end()) return outside;
+  std::size_t like_those = 0;
+  for (auto next = std::next(place); next != places.end(); ++place, ++next) {
+    const double range = std::abs(next->displacement - place->displacement);
+    if (range > strokes.range / 2 && range < strokes.range + travel) ++like_those;
+  }
+  outside.is_travel = like_those < TestPartRules().fewest;
+  return outside;
 }
 
 /// Returns the number of samples, at least one, at which the displacement rests from its start.
@@ -153,12 +195,19 @@ class TestSearch {
     const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement, rules_);
     if (!strokes) return;
     const double travel = rules_.travel * strokes->range;
-    if (Beyond(displacement.first(strokes->first), *strokes) > travel) {
-      CutBefore(LeftOutReason::kTravel, from + strokes->first);
-    }
-    if (Beyond(displacement.subspan(strokes->last), *strokes) > travel) {
-      CutAfter(LeftOutReason::kTravel, from + strokes->last + 1);
-    }
+    std::vector<std::size_t> points = FindReversals(displacement, travel);
+    points.insert(points.begin(), 0);
+    points.push_back(displacement.size() - 1);
+    const std::vector<Place> places = PlacesOf(displacement, points);
+    const auto turn = [&](std::size_t sample) {
+      return std::ranges::lower_bound(places, sample, {}, &Place::sample);
+    };
+    const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
+    const Part before = Outside(std::ranges::subrange(begin, places.rend()), *strokes, travel);
+    if (before.is_travel) CutBefore(LeftOutReason::kTravel, from + before.sample);
+    const Part after =
+        Outside(std::ranges::subrange(turn(strokes->last), places.end()), *strokes, travel);
+    if (after.is_travel) CutAfter(LeftOutReason::kTravel, from + after.sample + 1);
   }
 
   void LeaveOutRests() {

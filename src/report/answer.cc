@@ -150,6 +150,11 @@ class Writer {
     AddParameter("friction", "Tc", *slip_force, {friction}, std::move(after));
   }
 
+  [[nodiscard]] bool HasValue(std::string_view quantity) const {
+    const ContactQuantity* found = report_.Find(quantity);
+    return found != nullptr && found->value;
+  }
+
   void AddStiffness() {
     const ParameterEstimate* sigma = fit_.Find("sigma");
     std::vector<std::string> after;
@@ -157,11 +162,10 @@ class Writer {
          {"contact_radius", "compliance", "sigma_over_hertz_mindlin", "equivalent_radius",
           "maximum_pressure", "effective_modulus", "youngs_modulus"}) {
       // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
-      const bool is_known_otherwise =
-          (std::string_view(name) == "compliance" && report_.Find("contact_radius")->value) ||
-          (std::string_view(name) == "equivalent_radius" &&
-           report_.Find("sigma_over_hertz_mindlin")->value);
-      if (report_.is_torsional() || is_known_otherwise) continue;
+      const std::string_view key = name;
+      const bool is_said = (key == "compliance" && HasValue("contact_radius")) ||
+                           (key == "equivalent_radius" && HasValue("sigma_over_hertz_mindlin"));
+      if (is_said) continue;
       after.push_back(QuantityText(report_, name));
     }
     AddParameter("stiffness", "σ", *sigma, {}, std::move(after));
@@ -257,6 +261,9 @@ class Writer {
       parts.push_back("±" + Quantity(widest.measures.peak_force, units.force, 4));
       parts.emplace_back("no closed cycle");
     }
+    if (fit_.is_load_series() && widest.normal_load) {
+      parts.push_back("at N = " + Quantity(*widest.normal_load, "N", 4));
+    }
     Add("measured", fmt::format("{}", fmt::join(parts, ", ")));
   }
 
@@ -289,7 +296,8 @@ class Writer {
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
-      const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
+      const bool is_moot = IsInadequate(report_) &&
+                           (!finding.parameters.empty() || finding.code == "slow_residuals");
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
       std::string text = Sentence(finding, fit_, report_.units);
       // Names only what no line has: "sigma, alpha" of a finding about both.
@@ -378,7 +386,8 @@ std::vector<Line> DetailLines(const Report& report) {
                                             ? std::string("initial states differ")
                                             : fmt::format("{} contact", Name(fit.initial_state)))});
   for (const ParameterEstimate& estimate : fit.parameters) {
-    if (IsOfLaw(estimate.name) || !estimate.is_known()) continue;
+    const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
+    if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing) continue;
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
   }
   for (const char* section : {"adequacy", "residuals", "solver"}) {

@@ -71,7 +71,7 @@ std::optional<PropagatedValue> OfContact(double sigma, double slip_force,
          kMember;
 }
 
-/// Likewise of a smooth sphere whose load is known.
+/// Makes one of a smooth sphere whose load is known.
 template <auto kMember>
 std::optional<PropagatedValue> OfSphere(double sigma, double /*slip_force*/,
                                         const KnownContact& known) {
@@ -207,7 +207,7 @@ constexpr std::array kQuantities = {
                 OfContact<&IdentifiedContact::maximum_pressure>, Kind::kMaximumPressure, "", true},
 };
 
-/// Of several loads: what a smooth sphere of known radii makes known of the materials.
+/// Lists what several loads make known of the materials of a smooth sphere of known radii.
 constexpr std::array kOfSeries = {
     QuantityRow{"compliance",
                 "G*",

@@ -279,9 +279,12 @@ const std::vector<Field>& Fields() {
        "first "
        "file",
        Columns, [](R) { return std::string("the file has none, or it is not used"); }},
-      {"input.samples", "", "samples of all records",
+      {"input.samples", "", "samples of all files, including those that do not count",
        [](R report) {
-         return Json(SumOver(report, [&](auto r) { return report.records[r].record.size(); }));
+         return Json(SumOver(report, [&](auto r) {
+           const io::RecordFile& file = report.records[r];
+           return file.record.size() + (file.piece ? file.piece->left_out : 0);
+         }));
        }},
       {"input.cycles", "", "complete cycles of all records",
        [](R report) {

@@ -220,7 +220,7 @@ std::vector<Bar> BarsOf(const Report& report) {
   return bars;
 }
 
-constexpr int kRow = 44;  // [px] of one bar
+constexpr int kRow = 50;  // [px] of one bar
 
 }  // namespace
 
@@ -260,7 +260,7 @@ std::string DrawIntervals(const Report& report) {
       svg += fmt::format(
           "<path class=\"mark\" d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/>"
           "<text x=\"{3:.1f}\" y=\"{4:.0f}\">1/3</text>",
-          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle - 8);
+          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
     }
     top += kRow;
   }

@@ -104,6 +104,14 @@ TEST(Answer, HasOneLineAQuantityWithItsIntervalAndNoOtherUncertainty) {
   EXPECT_THAT(Answer(input), Not(HasSubstr("Tc 40.00 N ±")));
 }
 
+TEST(Answer, OfATorqueHasItsUnitsAndNoContact) {
+  ReportInput input = MadeInput();
+  input.records[0].is_torsional = true;
+  EXPECT_EQ(LineOf(input, "friction"), "Tc 40.00 N m (39.20 … 40.80)");
+  EXPECT_EQ(LineOf(input, "stiffness"), "σ 40.00 MN m/rad (39.20 … 40.80)");
+  EXPECT_EQ(LineOf(input, "shape"), "α 0.333 (0.313 … 0.353)");
+}
+
 TEST(Answer, IsShort) {
   constexpr std::size_t kClean = 150;
   constexpr std::size_t kDoubtful = 200;

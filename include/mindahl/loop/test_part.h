@@ -40,9 +40,9 @@ struct TestPart {
 ///    and after (FindSettledLoad);
 ///  - travel: approach, parking, the fall of a broken specimen. The widest strokes that others
 ///    repeat - four or more of one range, to a tenth, that fill their time and that no jump between
-///    two samples makes - are the test's. An end of the record that leaves the range of their
-///    positions by more than a quarter of a stroke is travel, up to the first of these strokes, or
-///    from the last. Growing amplitudes, nested loops and a first loading stay within that range;
+///    two samples makes - are the test's. From them outwards amplitude and mean may change slowly;
+///    what leaves all positions so far by more than a quarter of a stroke at once is travel, unless
+///    it has four such strokes itself;
 ///  - rest: the displacement stays within 1 % of half its range, or within the noise that makes no
 ///    reversal, for longer than half a usual stroke. One sample of it stays.
 ///
