@@ -394,8 +394,9 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
   if (MayContinue()) {
     for (const ParameterEstimate& estimate : result.parameters) {
       if (estimate.status == ParameterStatus::kFixed) continue;
-      const Term& term = *FindTerm(TermNameOf(estimate.name), options.response());
-      if (term.entry == Entry::kLaw || estimate.name == "slip_force") {
+      const Term* const term = FindTerm(TermNameOf(estimate.name), options.response());
+      const bool is_of_law = term != nullptr && term->entry == Entry::kLaw;
+      if (is_of_law || estimate.name == "slip_force") {
         continued.start[estimate.name] = estimate.value;
       }
     }

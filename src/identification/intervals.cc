@@ -56,9 +56,7 @@ void WithdrawInterval(ParameterEstimate& estimate) {
 }
 
 bool TurnsWithMotion(const ParameterEstimate& estimate) {
-  const bool is_covariate = estimate.name.starts_with(NameOfCovariate(""));
-  const Term* const term =
-      is_covariate ? &TermOf(TermId::kCovariate) : FindTerm(TermNameOf(estimate.name));
+  const Term* const term = TermOfParameter(estimate.name);
   return term != nullptr && term->turns_with_motion;
 }
 

@@ -158,7 +158,7 @@ bool StopsAtLimit(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
     const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
                              estimate.status == ParameterStatus::kAtUpperBound;
-    const Term& term = *FindTerm(TermNameOf(estimate.name));
+    const Term& term = *TermOfParameter(estimate.name);
     const bool may_end = term.positive || term.theory_bound != TheoryBound::kNone ||
                          term.id == TermId::kDisplacementOffset;
     return is_at_bound && !may_end;
@@ -172,7 +172,7 @@ bool IsNearlyWhite(const FitResult& fit) {
 }
 
 bool IsPositiveTerm(std::string_view parameter) {
-  const Term* const term = FindTerm(TermNameOf(parameter));
+  const Term* const term = TermOfParameter(parameter);
   return term != nullptr && term->is_never_negative;
 }
 

@@ -162,6 +162,10 @@ const Term& TermOf(TermId id, loop::Channel response = loop::Channel::kForce);
 /// Returns nullptr when there is none of that name, which is without a record's number.
 const Term* FindTerm(std::string_view name, loop::Channel response = loop::Channel::kForce);
 
+/// Returns the term of a parameter of a result, numbered or of a column; nullptr where there is
+/// none.
+const Term* TermOfParameter(std::string_view parameter);
+
 /// A term, or a few that belong together, that a record may require.
 struct TermGroup {
   std::string_view name;

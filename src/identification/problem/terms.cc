@@ -459,6 +459,11 @@ std::string_view TermNameOf(std::string_view parameter) {
   return numbered ? parameter.substr(0, digits) : parameter;
 }
 
+const Term* TermOfParameter(std::string_view parameter) {
+  const bool is_of_column = parameter.starts_with(NameOfCovariate(""));
+  return is_of_column ? &TermOf(TermId::kCovariate) : FindTerm(TermNameOf(parameter));
+}
+
 std::string NameOfCovariate(std::string_view column) {
   std::string name = "covariate_";
   name += column;
