@@ -98,17 +98,12 @@ def track(
     force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
     time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
     normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
-    model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
+    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
-    plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    drift: bool = False, speed_exponent: Optional[Asked] = None,
-    inertia: Optional[Asked] = None, slip_position: Optional[str] = None,
-    slip_speed: Optional[Asked] = None,
-    slip_trend: Optional[Asked] = None, ripple: Optional[Asked] = None,
-    backlash: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
+    terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
-    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", confidence: float = 0.95,
     force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
@@ -125,7 +120,7 @@ def track(
     average: number of consecutive cycles that are fitted together. every: fits only every n-th.
     broken_rows: of files, "refuse" or "skip". threads: number of workers; default one per core.
     terms: as in fit(); "auto" chooses by the first cycles of the first source, for all cycles.
-    The others: as of fit(), but that model="auto" and covariates are not for single cycles.
+    The others: as of fit(), but that covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
         rows that were skipped.

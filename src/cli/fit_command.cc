@@ -36,7 +36,6 @@ struct FitCommandOptions {
   bool has_details = false;
   std::string sweep;  // "" for a record
   io::ColumnChoice response;
-  std::optional<double> response_noise;
 };
 
 /// @param provenance  asked for where a page is written: it reads the files once more
@@ -67,9 +66,9 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
 
 void RequireSweepOptions(const CLI::App& command) {
   constexpr auto kOfSweeps = std::to_array<std::string_view>(
-      {"strict", "help", "sweep", "json", "response", "response-unit", "response-noise",
-       "displacement", "force", "displacement-unit", "force-unit", "encoding", "displacement-gain",
-       "displacement-zero", "force-gain", "force-zero", "fix", "model", "confidence"});
+      {"strict", "help", "sweep", "json", "response", "response-unit", "displacement", "force",
+       "displacement-unit", "force-unit", "encoding", "displacement-gain", "displacement-zero",
+       "force-gain", "force-zero", "fix", "model", "confidence"});
   for (const OptionState& option : OptionsOf(command)) {
     const bool is_of_sweeps = std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end();
     if (!option.is_given || is_of_sweeps) continue;
@@ -83,7 +82,7 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
                      options.request.files);
   const Messages messages{console.err, "fit"};
   const request::FittedSweep fitted = request::FitSweepFile(
-      options.request, options.sweep, options.response, options.response_noise,
+      options.request, options.sweep, options.response, /*response_noise=*/std::nullopt,
       [&](std::string_view note) { messages.Note(note); });
   console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
   WriteAnswer(options.json_path, console, fitted);
@@ -91,8 +90,7 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
   if (!options.sweep.empty()) return RunSweep(options, command, console);
-  if (!options.response.column.empty() || !options.response.unit.empty() ||
-      options.response_noise) {
+  if (!options.response.column.empty() || !options.response.unit.empty()) {
     throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
   }
   const FitRequest& request = options.request;
@@ -143,8 +141,6 @@ void AddFitCommand(CLI::App& app, Console& console) {
   sweeps.Add("--response-unit", options->response.unit,
              "unit of the response, as N/um or um/N; default the header's, else N/m\nor m/N",
              "UNIT");
-  sweeps.Add("--response-noise", options->response_noise,
-             "known standard deviation of a response [N/m] or [m/N]", "S");
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
@@ -154,6 +150,8 @@ void AddFitCommand(CLI::App& app, Console& console) {
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
   AddStrict(group, options->strict, "exit status 3");
+  ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
+                      "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
   WhenCalled(command, [options, &command, &console] { RunFit(*options, command, console); });
 }
 

@@ -8,7 +8,7 @@
 
 The rules: every option is described; an option that takes a physical quantity states its unit in
 brackets; no line is wider than a page; every option that the documentation names exists. The
-options are read by cmake/command_help.py, as for the manual page and the completions.
+options are read by command_help.py from `--help-all`.
 """
 
 import argparse
@@ -20,10 +20,9 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "cmake"))
+import command_help
 
-import command_help  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
@@ -38,8 +37,7 @@ WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FIL
 EXEMPT = {
     ("fit", "--start"): "in the unit of the parameter, which --fix lists",
     ("fit", "--bound"): "likewise",
-    ("fit", "--cycles"): "counts",
-    ("fit", "--samples"): "counts",
+    ("fit", "--select"): "of what it selects",
     ("simulate", "--steps"): "a count",
     ("tradeoff", "--tolerance"): "relative, and says so",
     ("plan", "--cycles"): "a count",
@@ -50,8 +48,7 @@ EXEMPT = {
     ("batch", "--threads"): "a count",
     ("batch", "--start"): "in the unit of the parameter, which --fix lists",
     ("batch", "--bound"): "likewise",
-    ("batch", "--cycles"): "counts",
-    ("batch", "--samples"): "counts",
+    ("batch", "--select"): "of what it selects",
     ("track", "--start"): "in the unit of the parameter, which --fix lists",
     ("track", "--bound"): "likewise",
     ("plan", "--with"): "names",

@@ -34,51 +34,6 @@ class Outputs : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-// Loops of which no interval of Tc ends below the largest double, and some of whose errors are
-// open: what cannot be drawn is left out, and the page is written as the fit is.
-TEST(LoadSeriesFarFromSlip, IsDrawnAsItIsFitted) {
-  const TemporaryDirectory directory;
-  const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
-  for (const int seed : {1, 2, 3}) {
-    Words fit = {"fit"};
-    for (const int load : {20, 50, 120}) {
-      const std::string record = path(std::to_string(load) + ".csv");
-      const double radius = 2e-4 * std::cbrt(load / 50.0);
-      ASSERT_EQ(RunCommand({"simulate",
-                            "--friction",
-                            "0.3",
-                            "--normal-load",
-                            std::to_string(load),
-                            "--contact-radius",
-                            fmt::format("{}", radius),
-                            "--compliance",
-                            "4.4e-11",
-                            "--amplitude",
-                            "5e-9",
-                            "--cycles",
-                            "2",
-                            "--samples-per-cycle",
-                            "100",
-                            "--noise-force",
-                            "0.1",
-                            "--seed",
-                            std::to_string(7 * seed + load),
-                            "-o",
-                            record})
-                    .status,
-                0);
-      fit.push_back(record);
-    }
-    fit.insert(fit.end(), {"--normal-load", "20,50,120", "--initial-state", "steady"});
-    const int status = RunCommand(fit).status;
-    EXPECT_EQ(status, 0) << seed;
-    fit.insert(fit.end(), {"--report", path("page.html"), "--json", path("fit.json")});
-    const Outcome drawn = RunCommand(fit);
-    EXPECT_EQ(drawn.status, status) << drawn.err;
-    EXPECT_TRUE(std::filesystem::exists(path("page.html")));
-  }
-}
-
 TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
   const std::string record = Copy("loop.csv");
   const std::string content = FileContent(record);

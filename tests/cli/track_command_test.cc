@@ -442,9 +442,9 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   };
   const std::string one_stroke = Write("stroke.csv", "x,F\n0,0\n1,1\n2,2\n3,2.5\n4,2.7\n");
   for (const Case& refused :
-       {Case{{record_, "--model", "auto"}, "--model auto"},
+       {Case{{record_, "--compare"}, "--compare"},
         Case{{record_, "--covariate", "1"}, "--covariate"},
-        Case{{record_, "--asymmetry", "fit"}, "--asymmetry is not available in track"},
+        Case{{record_, "--terms", "asymmetry"}, "--terms asymmetry is not available in track"},
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},

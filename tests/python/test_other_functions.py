@@ -129,7 +129,6 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"model": "auto"}, "model auto: a model is chosen for a test"),
     ({"average": 0}, "average = 0 is invalid"),
     ({"average": 1000}, "average=1000: "),
     ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
@@ -198,7 +197,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
         assert moved[-1] == peeked
     # As above, times 1 + 2|A| and the largest torque over its mean.
     np.testing.assert_allclose(moved, force, rtol=0, atol=1e-12)
-    fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", asymmetry="fit",
+    fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", terms="asymmetry",
                       initial_state="virgin", reversal_gate=0)
     assert abs(fit.asymmetry.value + 0.2) < 1e-9
     assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9

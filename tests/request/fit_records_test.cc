@@ -123,16 +123,6 @@ TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {
               StartsWith("--normal-load: 2 loads for 3 files:"));
 }
 
-TEST(FitRecords, RefusesAUnitOfAColumnThatNoFileHas) {
-  FitRequest request;
-  request.columns.time.unit = "ms";
-  EXPECT_THAT(RefusalOf({LoopFile()}, request),
-              StartsWith("--time-unit ms: a.csv has no column of the time"));
-  io::RecordFile timed = LoopFile();
-  timed.time.emplace().number = 1;
-  EXPECT_THAT(RefusalOf({LoopFile(), timed}, request), Not(HasSubstr("--time-unit")));
-}
-
 TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {
   io::RecordFile file = LoopFile();
   for (std::size_t i = 0; i <= 100; ++i) {
@@ -172,73 +162,6 @@ TEST(FitRecords, JoinsPiecesOfOneRecord) {
   const report::Report one = FitRecords(request, {whole}, kIgnore);
   EXPECT_EQ(joined.fit.law.slip_force, one.fit.law.slip_force);
   EXPECT_EQ(joined.fit.rms, one.fit.rms);
-}
-
-TEST(ReadRecords, HoldNoMoreRowsInAllThanAreAllowed) {
-  const TemporaryDirectory directory;
-  FitRequest request;
-  request.files = {directory.Write("a.csv", "x [m],F [N]\n0,0\n1,1\n0,2\n").string(),
-                   directory.Write("b.csv", "x [m],F [N]\n0,0\n1,1\n").string()};
-  request.max_rows = 5;  // of numbers: headers do not count
-  EXPECT_EQ(ReadRecords(request, kIgnore).size(), 2U);
-  request.max_rows = 4;
-  EXPECT_THROW(ReadRecords(request, kIgnore), InputError);
-  request.files.pop_back();
-  EXPECT_EQ(ReadRecords(request, kIgnore).size(), 1U);
-}
-
-TEST(ReadRecords, RefuseALongFileBeforeItIsReadAsATable) {
-  std::string text = "x [m],F [N]\n";
-  for (int row = 0; row < 2000; ++row) text += "0,1\n";
-  const TemporaryDirectory directory;
-  FitRequest request;
-  request.files = {directory.Write("a.csv", text + "broken\n1,1\n").string()};
-  const auto refusal = [&](std::uint64_t rows) -> std::string {
-    request.max_rows = rows;
-    try {
-      ReadRecords(request, kIgnore);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return {};
-  };
-  EXPECT_THAT(refusal(100), HasSubstr("has more than the 100 rows"));
-  EXPECT_THAT(refusal(3000), HasSubstr("'broken' is not a number"));
-}
-
-TEST(FitRecords, ChoosesNoTermsByDefaultForSeveralLoads) {
-  // A spring of 5 N/µm next to the contact: of one load it is found, of a file of two it is not
-  // looked for unless that is asked.
-  const auto loop_under = [](const std::vector<double>& loads) {
-    io::RecordFile file;
-    for (const double load : loads) {
-      const std::size_t begin = file.record.size();
-      for (std::size_t i = 0; i < 600; ++i) {
-        file.record.displacement.push_back(
-            3e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 100));
-        file.record.normal_load.push_back(load);
-        file.lines.push_back(begin + i + 2);
-      }
-      const std::vector<double> x(
-          file.record.displacement.begin() + static_cast<std::ptrdiff_t>(begin),
-          file.record.displacement.end());
-      const std::vector<double> force = testing::Respond(
-          testing::Model("mindlin-dahl"), {4e7 * std::cbrt(load / 100), 1.0 / 3, 0.4 * load}, x);
-      Generator generator(5);
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        file.record.force.push_back(force[i] + 5e6 * x[i] + 0.1 * testing::Normal(generator));
-      }
-    }
-    return file;
-  };
-  FitRequest request;
-  request.files = {"a.csv"};
-  const report::Report one = FitRecords(request, {loop_under({100.0})}, kIgnore);
-  ASSERT_TRUE(one.terms);
-  EXPECT_THAT(one.terms->added, Contains("plateau_slope"));
-  const report::Report two = FitRecords(request, {loop_under({100.0, 200.0})}, kIgnore);
-  ASSERT_EQ(two.records.size(), 2U);
-  EXPECT_FALSE(two.terms);
 }
 
 }  // namespace
