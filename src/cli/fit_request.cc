@@ -226,8 +226,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
       "--displacement", columns.displacement,
       "displacement column: header name or number from 1, with its unit if\nthe header has "
       "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
-      "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; default found from names, units and "
-      "numbers",
+      "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; found from names,\nunits and numbers by default; m, cm, mm, um, nm, in, or "
+      "rad, deg",
       "COL");
   group.Add("--force", columns.force,
             "force column, likewise: \"cell1+cell2\"; N, mN, uN, kN, lbf, kgf; of a\ntorque 'N m', "

@@ -162,7 +162,6 @@ class TrackRun {
 };
 
 void TrackRun::Begin(campaign::TrackOptions& made) {
-  const io::RecordFile& layout = run_.layout();
   TrackedTest& test = run_.test();
   if (!run_.chosen_terms().empty()) messages_.Note(run_.chosen_terms());
   const double gate = *made.fit.preparation.reversal_gate;

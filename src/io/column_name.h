@@ -31,7 +31,7 @@ std::string_view WithoutBrackets(std::string_view cell);
 /// bar...).
 bool LooksLikeUnit(std::string_view cell);
 
-/// What the user gives for each role.
+/// Holds what the user gives for each role.
 struct GivenColumns {
   Expression displacement, force, time, normal_load;
 };

@@ -9,7 +9,7 @@
 
 namespace mindahl::io {
 
-/// A quantity as a linear function of columns: the sum of weight·column, and an offset.
+/// Holds a quantity as a linear function of columns: the sum of weight·column, and an offset.
 struct Expression {
   struct Term {
     std::size_t column;  ///< from 0
