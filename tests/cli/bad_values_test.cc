@@ -77,7 +77,7 @@ const std::vector<Rule> kRules = {
     {"track", {"--average", "--every", "--threads"}, kWhole},
     {"track", {"--broken-rows", "--model", "--loss"}, And(kNoNumber, {"-1", "0", ""})},
     {"track", {"--separate", "--resume", "--overwrite"}, {"5", "nan", "text"}},
-    {"track", {"--normal-load-unit"}, {"text", "nan", "N", "kN"}},
+    {"track", {"--normal-load-column"}, {"[text]", "[nan]", "[N]", "9"}},
     {"batch", {"--threads"}, kWhole},
     {"batch", {"--normal-load", "--force-noise"}, kPositive},
     {"validate", {"--cases"}, kWhole},

@@ -76,11 +76,6 @@ double Value(const json& fit, const char* parameter) {
   return fit.at("parameters").at(parameter).at("value");
 }
 
-bool Warns(const json& fit, const std::string& code) {
-  return std::ranges::any_of(fit.at("warnings"),
-                             [&](const json& warning) { return warning.at("code") == code; });
-}
-
 void ExpectContact(const json& fit, double tolerance) {
   EXPECT_NEAR(Value(fit, "sigma") / kSigma, 1, tolerance);
   EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, tolerance);
@@ -272,14 +267,6 @@ TEST_P(FitWithLoss, IsNotMovedByOutliers) {
 
 INSTANTIATE_TEST_SUITE_P(FitTerms, FitWithLoss, ::testing::Values("huber", "cauchy", "tukey"),
                          [](const auto& test) { return std::string(test.param); });
-
-/// A force of position that no law here has.
-std::vector<Sample> Rippled(std::vector<Sample> loop, double height) {
-  for (Sample& sample : loop) {
-    sample.force += height * std::sin(4 * std::numbers::pi * sample.displacement / kAmplitude);
-  }
-  return loop;
-}
 
 struct Misuse {
   const char* name;

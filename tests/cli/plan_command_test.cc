@@ -65,8 +65,7 @@ TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
             std::to_string(1e6 * std::stod(cells[1])) + "\n";
   }
   const std::string file = directory.Write("columns.csv", text).string();
-  const Words columns = {"--displacement", "3", "--displacement-unit", "um",
-                         "--force",        "2", "--force-unit",        "mN"};
+  const Words columns = {"--displacement", "3 [um]", "--force", "2 [mN]"};
   const auto run = [&](const std::string& record, Words more) {
     more.insert(more.begin(), {"plan", "--record", record, "--json", "-"});
     const Outcome outcome = RunCommand(more);
@@ -74,13 +73,13 @@ TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
     return outcome.Json()["expected"]["slip_force"].get<double>();
   };
   EXPECT_NEAR(run(file, columns) / run(clean, {}), 1.0, 1e-4) << "six digits of the file";
-  const Outcome assumed = RunCommand({"plan", "--record", file, "--displacement", "3", "--force",
-                                      "2", "--force-unit", "mN", "--amplitude", "1"});
+  const Outcome assumed = RunCommand(
+      {"plan", "--record", file, "--displacement", "3", "--force", "2 [mN]", "--amplitude", "1"});
   EXPECT_THAT(assumed.err, HasSubstr("plan: note: "));
   const Outcome refused =
-      RunCommand({"plan", "--sigma", "4e7", "--slip-force", "40", "--force-unit", "kN"});
+      RunCommand({"plan", "--sigma", "4e7", "--slip-force", "40", "--force", "[kN]"});
   EXPECT_EQ(refused.status, kBadInput);
-  EXPECT_THAT(refused.err, HasSubstr("--force-unit kN"));
+  EXPECT_THAT(refused.err, HasSubstr("--force [kN]"));
 }
 
 TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {

@@ -120,7 +120,7 @@ const std::vector<BadUsage> kBadUsage = {
      "no column is called 'Dispacement' (for the displacement): did you mean 'displacement'? the "
      "columns are"},
     {"ColumnZero", {"fit", "@", "--force", "0"}, "there is no column 0"},
-    {"UnknownUnit", {"fit", "@", "--force-unit", "stone", "--json", "#"}, "'stone'"},
+    {"UnknownUnit", {"fit", "@", "--force", "[stone]", "--json", "#"}, "'stone'"},
     {"ModelThatNeedsTheAmplitude", {"fit", "@", "--model", "simplified-dahl"}, "--model"},
     {"FixWithoutValue", {"fit", "@", "--fix", "alpha", "--json", "#"}, "--fix: 'alpha'"},
     {"FixWithText", {"fit", "@", "--fix", "alpha=third"}, "'third' is not a number"},
@@ -140,6 +140,9 @@ const std::vector<BadUsage> kBadUsage = {
     {"FixNegativeStiffness", {"fit", "@", "--fix", "sigma=-1"}, "sigma [N/m] = -1 is invalid"},
     {"FixAgainstTheModel", {"fit", "@", "--model", "mindlin", "--fix", "alpha=1"}, "prescribes"},
     {"StartOutsideItsBounds", {"fit", "@", "--start", "alpha=1e6"}, "must lie within its bounds"},
+    {"UnitOfALoadThatIsNotThere",
+     {"fit", "@", "--normal-load-column", "[kN]"},
+     "no column is recognised as the normal load"},
     {"RigSofterThanTheLoop",
      {"fit", "@", "--rig-stiffness", "1e3", "--json", "#"},
      "rig_stiffness [N/m] = 1000 is invalid: must be >"},

@@ -22,8 +22,8 @@ io::RecordFile LoopFile() {
                                        file.record.displacement);
   Generator generator(4);
   for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
-  file.displacement.number = 2;
-  file.force.number = 4;
+  file.displacement.index = 2;
+  file.force.index = 4;
   return file;
 }
 

@@ -224,8 +224,8 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
 }
 
 /// Adds heavy tails that noise alone does not make to the causes.
-void AddHeavyTails(const std::optional<HeavyTails>& tails,
-                   const FitOptions& options, Adequacy& adequacy) {
+void AddHeavyTails(const std::optional<HeavyTails>& tails, const FitOptions& options,
+                   Adequacy& adequacy) {
   const Thresholds& thresholds = options.thresholds;
   if (AreHeavy(tails, thresholds)) {
     adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
