@@ -51,7 +51,7 @@ TEST(HeavyTails, AreFoundWithTheirFractionAndTheRobustLoss) {
   const Cause* cause = Find(fit, "heavy_tails");
   ASSERT_NE(cause, nullptr);
   EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
-  EXPECT_EQ(cause->option, "--loss huber");
+  EXPECT_EQ(cause->term, "");
   // Those next to a turn, or next to each other, are not looked at: at most a few of them.
   const double share = kReadings / static_cast<double>(record.size());
   EXPECT_GT(cause->size, share * 0.6);
