@@ -122,7 +122,6 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   // A load that varies would have to be read as late.
   if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
-    DenyLagBeyondKnee(problem, solution, buffers.response, test);
     std::vector<std::optional<loop::Backlash>> gaps;
     gaps.reserve(result.records.size());
     for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
