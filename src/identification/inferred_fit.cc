@@ -152,19 +152,6 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
 }
 
-/// Takes Tc off the parameters that a limit of the search or the choice of a law leaves open, where
-/// its interval covers what a loop that slides has carried: neither moves that.
-void KeepMeasuredSlipForce(FitResult& result) {
-  if (!CoversMeasuredGap(result)) return;
-  for (Finding& finding : result.findings) {
-    constexpr std::array<std::string_view, 3> kOfModel = {"search_limit", "law_undecided",
-                                                          "other_law_fits_better"};
-    const bool is_of_model =
-        std::ranges::find(kOfModel, std::string_view(finding.code)) != kOfModel.end();
-    if (is_of_model) std::erase(finding.parameters, "slip_force");
-  }
-}
-
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
 /// the displacement's, residuals are autocorrelated as its errors are, and their draws know that.
 std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const Noise& noise,
@@ -294,7 +281,6 @@ void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResul
   result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
   result.parameters[kSlipForce] = CoverOtherLaw(result);
-  KeepMeasuredSlipForce(result);
 }
 
 }  // namespace
@@ -323,7 +309,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
-    KeepMeasuredSlipForce(result);
   }
   result.parameters[kStiffness] = CoverSlipFactor(
       problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
