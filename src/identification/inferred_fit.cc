@@ -280,7 +280,6 @@ void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResul
       CompareLaws(fitted.problem, fitted.solution, result, attempt.options, attempt.buffers);
   result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
-  result.parameters[kSlipForce] = CoverOtherLaw(result);
 }
 
 }  // namespace
