@@ -227,13 +227,6 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   const Problem& problem = fitted.problem;
   result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
   if (!result.mindlin_test) return;
-  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
-    result.parameters = WidenByRanges(problem, ProfileShape(fitted, options, attempt.buffers),
-                                      fitted.estimates.quantile(), std::move(result.parameters));
-    Include(
-        result.parameters[kShape],
-        {.source = IntervalSource::kProfile, .lower = kMindlinExponent, .upper = kMindlinExponent});
-  }
   if (const auto rig =
           TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers)) {
     result.mindlin_test->rig_stiffness = rig->rig_stiffness;

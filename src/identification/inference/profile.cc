@@ -250,28 +250,6 @@ bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
 }
 
-ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
-                            SearchBuffers& buffers) {
-  const Problem& problem = fitted.problem;
-  const Solution& best = fitted.solution;
-  const Estimates& estimates = fitted.estimates;
-  constexpr double kStep = 0.05;
-  ProfiledRanges ranges = RangesAt(best);
-  const Parameter& shape = problem.parameters[kShape];
-  const double critical = estimates.quantile() * estimates.quantile();
-  HeldParameters held(fitted, kShape, SolverOptionsOf(options), buffers);
-  for (const double step : {-kStep, kStep}) {
-    std::vector<double> start = best.theta;
-    while (start[kShape] + step >= shape.lower && start[kShape] + step <= shape.upper) {
-      start[kShape] += step;
-      if (!(held.At(start[kShape], start) < critical)) break;
-      Include(ranges, held.solution().theta);
-      start = held.solution().theta;
-    }
-  }
-  return ranges;
-}
-
 std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
                                                 const FitOptions& options, SearchBuffers& buffers) {
   const Problem& problem = fitted.problem;

@@ -61,12 +61,6 @@ SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions&
 bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options,
                           SearchBuffers& buffers);
 
-/// The likelihood along α, from the estimate outwards. Where few samples lie on the bend of the
-/// branches σ and α are nearly confounded, and a fit is anywhere in a flat valley,
-/// at whose floor's end the parabola sees a steep wall.
-ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
-                            SearchBuffers& buffers);
-
 /// Profiles σ, α and Tc along the likelihood from the bound α = 0 upwards, each with half the
 /// interval that it has with α held; empty where α does not lie at that bound. There the parabola
 /// holds α, but a small α moves σ: at the same secant of a loop of T* the tangent σ is larger by
