@@ -230,13 +230,6 @@ std::optional<LawChoice> CompareLaws(const Problem& problem, const Solution& bes
   std::vector<RecordStates> states;
   if (!same_curve) states.push_back(problem.state);
   if (maybe_virgin) states.emplace_back(InitialState::kVirgin);
-  // A record that starts at an extreme passes for virgin as well, without a virgin branch.
-  const bool is_origin_given = std::ranges::any_of(options.fixed, [&](const auto& fixed) {
-    return fixed.first.starts_with(OriginTerm(problem.data->excitation));
-  });
-  if (problem.state.AreAll(InitialState::kVirgin) && is_open && !is_origin_given) {
-    states.emplace_back(InitialState::kSteady);
-  }
   const double samples_of_best =
       states.empty() ? 0.0 : EffectiveSamples(problem, best.theta, buffers.response);
   for (const RecordStates& state : states) {
