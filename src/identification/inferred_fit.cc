@@ -242,28 +242,15 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   }
 }
 
-/// Extends intervals to the other initial state and to another minimum, which the record does not
-/// exclude.
-void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const SolvedFit& solved,
-                 FitResult& result) {
-  const auto& [problem, solution, noise, estimates] = fitted;
-  const double peak_force = result.PeakForce();
-  const auto cover = [&](const Rival& other, FindingCode code) {
-    const std::vector<std::string> apart =
-        CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
-                   attempt.buffers.response, result.parameters);
-    if (!apart.empty()) result.findings.push_back({.code = code, .parameters = apart});
-  };
-  if (solved.rival) {
-    cover({solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState},
-          FindingCode("initial_state_undecided"));
-  }
-  if (solved.is_weighted) return;  // other starts led to another problem
-  for (const Descent& descent : solved.descents) {
-    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
-    cover({problem, descent.solution, IntervalSource::kOtherMinimum},
-          FindingCode("several_minima"));
-    break;  // one says it
+/// Extends intervals to the other initial state, which the record does not exclude.
+void CoverOtherState(const Attempt& attempt, const FittedProblem& fitted, const SolvedFit& solved,
+                     FitResult& result) {
+  if (!solved.rival) return;
+  const std::vector<std::string> apart = CoverRival(
+      fitted.problem, {solved.rival->problem, *solved.rival->solution}, fitted.noise,
+      attempt.options.thresholds, result.PeakForce(), attempt.buffers.response, result.parameters);
+  if (!apart.empty()) {
+    result.findings.push_back({.code = "initial_state_undecided", .parameters = apart});
   }
 }
 
@@ -296,7 +283,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, estimates, result);
   WidenByProfiles(fitted, options, buffers, result);
   if (is_tested) TestShape(attempt, fitted, result);
-  if (is_judged) CoverRivals(attempt, fitted, solved, result);
+  if (is_judged) CoverOtherState(attempt, fitted, solved, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {

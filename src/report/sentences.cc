@@ -179,7 +179,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"few_places", nullptr, FewPlaces},
     {"unknown_past", nullptr, UnknownPast},
     {"initial_state_undecided", nullptr, InitialStateUndecided},
-    {"several_minima", "two solutions fit: the intervals cover both"},
     {"shape_or_rig", nullptr, ShapeOrRig},
     {"rig_not_tried", "a compliant rig, which cannot be fitted here, would look the same"},
     {"prior_contradicted", nullptr, PriorContradicted},

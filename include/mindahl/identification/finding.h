@@ -64,7 +64,6 @@ inline constexpr auto kFindings = [] {
       {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
       {"initial_state_undecided", kIdentifiable, kWarning, true},
-      {"several_minima", kIdentifiable, kNote},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
       {.code = "prior_contradicted"},

@@ -178,25 +178,12 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
                           (other.value < *estimate.lower95 || other.value > *estimate.upper95);
     if (is_apart) apart.push_back(estimate.name);
     if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    Include(estimate, {.source = rival.source, .lower = other.lower95, .upper = other.upper95});
+    Include(
+        estimate,
+        {.source = IntervalSource::kInitialState, .lower = other.lower95, .upper = other.upper95});
   }
   response.Bind(problem);
   return apart;
-}
-
-bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
-                      const Noise& noise, std::span<const ParameterEstimate> estimates) {
-  const double quantile = NormalQuantile(noise.confidence);
-  if (!other.converged || !std::isfinite(other.sum_of_squares)) return false;
-  const double independent = noise.effective_samples() / static_cast<double>(noise.samples);
-  const double ratio = independent * (other.sum_of_squares - best.sum_of_squares) / noise.variance;
-  if (!(ratio < quantile * quantile)) return false;
-  return std::ranges::any_of(std::array{kStiffness, kShape, kSlipForce}, [&](std::size_t p) {
-    const ParameterEstimate& estimate = estimates[p];
-    if (problem.parameters[p].fixed || !estimate.lower95 || !estimate.upper95) return false;
-    const double value = problem.parameters[p].ToValue(other.theta[p]);
-    return value < *estimate.lower95 || value > *estimate.upper95;
-  });
 }
 
 ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds) {

@@ -88,11 +88,10 @@ ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
 
 /// Intervals that cover what another reading of the record would have for the parameters.
 
-/// Holds a competing solution for a record, and the reason why intervals extend to it.
+/// Holds a competing solution for a record.
 struct Rival {
   const Problem& problem;
   const Solution& solution;
-  IntervalSource source;
 };
 
 /// Extends intervals to σ, α and Tc of a competing solution, as of the other initial state; an end
@@ -102,11 +101,6 @@ struct Rival {
 std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
                                     const Thresholds& thresholds, double peak_force,
                                     Response& response, std::span<ParameterEstimate> estimates);
-
-/// True if a solution of the same problem lies outside an interval that is closed, of σ, α or Tc,
-/// and the noise does not exclude it: 2 ln Λ is below the quantile of χ² of the confidence.
-bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
-                      const Noise& noise, std::span<const ParameterEstimate> estimates);
 
 /// Returns Tc with its interval extended to half of the measured gap between the branches, where
 /// the shape of the loop is doubtful and the record slips.
