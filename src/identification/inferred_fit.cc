@@ -20,7 +20,6 @@
 #include "identification/diagnosis/residual_structure.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/heavy_tails.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
@@ -128,18 +127,10 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
     TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
   }
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
-  const Eigen::VectorXd& residual = estimates.residual();
-  std::optional<HeavyTails> heavy_tails;
-  if (options.loss == Loss::kNone) {
-    heavy_tails = FindHeavyTails(problem, solution.theta, {residual.data(), problem.size()}, noise,
-                                 buffers.response);
-  }
-  result.adequacy =
-      JudgeAdequacy(problem, solution, {test, causes, heavy_tails}, options, result.parameters);
+  result.adequacy = JudgeAdequacy(problem, solution, {test, causes}, options, result.parameters);
   const std::optional<Finding> slow = FindSlowResiduals(result, thresholds);
   Append(result.findings, slow);
-  const bool is_doubtful =
-      IsDoubtful(test, thresholds) || is_limited || slow || AreHeavy(heavy_tails, thresholds);
+  const bool is_doubtful = IsDoubtful(test, thresholds) || is_limited || slow;
   result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);

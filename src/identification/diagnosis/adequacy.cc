@@ -67,7 +67,6 @@ bool TellsAsymmetry(const Problem& problem) {
 
 bool IsAccepted(const Problem& problem, std::string_view option) {
   const ScaledRecords& data = *problem.data;
-  if (option == "--loss") return true;
   // In a fit of the displacement the terms of the force do not exist.
   if (data.is_forced()) return option == "--drift";
   const Term* const term = TermOfOption(option, loop::Channel::kForce);
@@ -110,10 +109,6 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
     accepted += " --initial-state virgin";
   }
   return accepted;
-}
-
-bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds) {
-  return tails && tails->p_value < thresholds.cause && tails->delta_aicc < 0;
 }
 
 namespace {
@@ -278,22 +273,6 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
 }
 
-/// Adds heavy tails that noise alone does not make to the causes.
-void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tails,
-                   const FitOptions& options, Adequacy& adequacy) {
-  const Thresholds& thresholds = options.thresholds;
-  if (AreHeavy(tails, thresholds)) {
-    adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
-    adequacy.causes.push_back({.code = kHeavyTails,
-                               .delta_aicc = tails->delta_aicc,
-                               .explains = tails->explains,
-                               .size = tails->fraction,
-                               .unit = "-",
-                               .option = AcceptedOptions(problem, options, kHeavyTailsOption)});
-  }
-  Order(adequacy.causes, thresholds);
-}
-
 /// Drops the causes that explain less than half of what is left beside terms that are fitted: of
 /// what several things make together none is to be blamed.
 void DropLesserCauses(std::vector<Cause>& causes) {
@@ -307,7 +286,7 @@ void DropLesserCauses(std::vector<Cause>& causes) {
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
                        const AdequacyEvidence& evidence, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates) {
-  const auto& [test, causes, heavy_tails] = evidence;
+  const auto& [test, causes] = evidence;
   const Thresholds& thresholds = options.thresholds;
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
@@ -332,7 +311,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
-  AddHeavyTails(problem, heavy_tails, options, adequacy);
+  Order(adequacy.causes, thresholds);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }
