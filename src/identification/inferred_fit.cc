@@ -289,7 +289,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     if (!options.initial_state && options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
-    Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, thresholds));
     Append(result.findings, FindFewPlaces(problem, thresholds));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));

@@ -161,9 +161,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"no_closed_cycle", "no cycle is closed: record one and a half cycles or more"},
     {"load_followed", nullptr, LoadFollowed},
     {"load_not_followed", nullptr, LoadNotFollowed},
-    {"noise_in_displacement",
-     "the displacement is the noisier channel: if the machine imposes the force, --noise-in "
-     "displacement"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination", nullptr, UndeterminedCombination},

@@ -48,7 +48,6 @@ inline constexpr auto kFindings = [] {
       {.code = "no_closed_cycle", .severity = kNote},
       {.code = "load_followed", .severity = kNote},
       {.code = "load_not_followed"},
-      {.code = "noise_in_displacement", .severity = kNote},
       // about the identifiability of the parameters
       {"undetermined_parameter", kNotIdentifiable},
       {"undetermined_combination", kNotIdentifiable},
