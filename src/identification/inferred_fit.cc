@@ -233,18 +233,6 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   }
 }
 
-/// Extends intervals to the other initial state, which the record does not exclude.
-void CoverOtherState(const Attempt& attempt, const FittedProblem& fitted, const SolvedFit& solved,
-                     FitResult& result) {
-  if (!solved.rival) return;
-  const std::vector<std::string> apart = CoverRival(
-      fitted.problem, {solved.rival->problem, *solved.rival->solution}, fitted.noise,
-      attempt.options.thresholds, result.PeakForce(), attempt.buffers.response, result.parameters);
-  if (!apart.empty()) {
-    result.findings.push_back({.code = "initial_state_undecided", .parameters = apart});
-  }
-}
-
 /// Compares Masing's law with Dahl's own.
 void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
   const std::optional<LawChoice> choice =
@@ -274,7 +262,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, estimates, result);
   WidenByProfiles(fitted, options, buffers, result);
   if (is_tested) TestShape(attempt, fitted, result);
-  if (is_judged) CoverOtherState(attempt, fitted, solved, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {

@@ -62,7 +62,6 @@ inline constexpr auto kFindings = [] {
       {"search_limit", kNotIdentifiable},
       {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
-      {"initial_state_undecided", kIdentifiable, kWarning, true},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
       {.code = "prior_contradicted"},

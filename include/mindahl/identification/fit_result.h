@@ -96,7 +96,6 @@ enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 enum class IntervalSource {
   kParabola,      ///< curvature of the likelihood at its maximum
   kProfile,       ///< the likelihood itself, where the parabola is not accurate enough
-  kInitialState,  ///< the other initial state, which the record does not exclude
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
   kPlateau,       ///< half gap of the loop, measured without a model
   kSmallShape,    ///< an α above the bound 0, where the search stopped

@@ -161,31 +161,6 @@ double Estimates::WhiteShare(std::size_t parameter) const {
          (variance_ * full_.factor(place, place));
 }
 
-std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
-                                    const Thresholds& thresholds, double peak_force,
-                                    Response& response, std::span<ParameterEstimate> estimates) {
-  const Estimates others(rival.problem, rival.solution, noise, {}, thresholds, response);
-  std::vector<std::string> apart;
-  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
-    ParameterEstimate& estimate = estimates[p];
-    const Parameter& parameter = rival.problem.parameters[p];
-    if (parameter.fixed) continue;
-    ParameterEstimate other = estimate;
-    other.value = parameter.ToValue(rival.solution.theta[p]);
-    others.Fill(p, other);
-    // An end that is open in either fit is reported elsewhere.
-    const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
-                          (other.value < *estimate.lower95 || other.value > *estimate.upper95);
-    if (is_apart) apart.push_back(estimate.name);
-    if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    Include(
-        estimate,
-        {.source = IntervalSource::kInitialState, .lower = other.lower95, .upper = other.upper95});
-  }
-  response.Bind(problem);
-  return apart;
-}
-
 ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds) {
   ParameterEstimate slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();

@@ -88,20 +88,6 @@ ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
 
 /// Intervals that cover what another reading of the record would have for the parameters.
 
-/// Holds a competing solution for a record.
-struct Rival {
-  const Problem& problem;
-  const Solution& solution;
-};
-
-/// Extends intervals to σ, α and Tc of a competing solution, as of the other initial state; an end
-/// that is open there is open then. Leaves the response bound to `problem`.
-/// @param peak_force  largest |force| of the record [N]: no slip force lies below it
-/// @returns the names of those that the competing solution has outside this one's interval
-std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
-                                    const Thresholds& thresholds, double peak_force,
-                                    Response& response, std::span<ParameterEstimate> estimates);
-
 /// Returns Tc with its interval extended to half of the measured gap between the branches, where
 /// the shape of the loop is doubtful and the record slips.
 ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds);

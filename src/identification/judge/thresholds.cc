@@ -142,7 +142,7 @@ constexpr std::array kTable = {
                  "within half a stroke the force passes through the whole law: noise of that "
                  "length cannot be distinguished from a misfit"},
     ThresholdRow{"rival_past", &Thresholds::rival_past, "ΔAICc",
-                 "intervals include both initial states, virgin and steady, if they differ by less",
+                 "one record of several is virgin, or steady, unlike the others if it gains more",
                  "evidence of e⁵ = 150 to 1: the two differ in a few samples only, where a single "
                  "odd reading decides"},
     ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
