@@ -287,12 +287,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   Append(result.findings, FindContradictedPrior(result, thresholds));
   result.findings = WithoutNeedless(result.parameters, std::move(result.findings));
-  if (is_tested && options.regions) {
-    result.regions.emplace();
-    if (!IsInadequate(result, thresholds)) {
-      result.regions = FindConfidenceRegions(fitted, options, buffers);
-    }
-  }
   if (is_judged && IsInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result), thresholds);
   }

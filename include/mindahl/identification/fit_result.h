@@ -36,19 +36,6 @@ struct LikelihoodProfile {
   std::vector<ProfilePoint> points;  ///< in order of slip force
 };
 
-/// Joint confidence region of two parameters, all others fitted again at every point of its
-/// boundary: 2 ln Λ = 2·F(2, ν), against the noise that the intervals have. It does not include
-/// the model discrepancy.
-struct ConfidenceRegion {
-  std::array<std::string, 2> parameters;        ///< names of the two
-  std::vector<std::array<double, 2>> boundary;  ///< [their units], once around the best fit
-  /// True if the likelihood reaches the critical value in every direction, or α = 0 before it.
-  bool closed = true;
-
-  /// True if a point [their units] lies within the boundary.
-  [[nodiscard]] bool Contains(double first, double second) const;
-};
-
 /// States whether a record follows Masing's law (Mindlin's, Full-Dahl) or Dahl's own. For the same
 /// loop σ and Tc of the two laws differ by factors of up to 2^α and 2.
 struct LawChoice {
@@ -237,9 +224,6 @@ struct FitResult {
   std::optional<LawChoice> law_choice;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
-  /// Regions of σ and α and of Tc and α, with FitOptions::regions and from Depth::kFull on, if both
-  /// parameters are inside their bounds and the model is not inadequate.
-  std::optional<std::vector<ConfidenceRegion>> regions;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

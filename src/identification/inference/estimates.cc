@@ -138,19 +138,6 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
-std::optional<std::array<Eigen::Matrix2d, 2>> Estimates::CovariancesOf(
-    std::array<std::size_t, 2> pair) const {
-  const LocalUncertainty& local = Conditional();
-  std::array<Eigen::Index, 2> places{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::size_t j = local.PlaceOf(pair[i]);
-    if (j == local.columns.size() || !local.determined[j]) return std::nullopt;
-    places[i] = static_cast<Eigen::Index>(j);
-  }
-  return std::array<Eigen::Matrix2d, 2>{variance_ * local.factor(places, places),
-                                        white_variance_ * local.white_factor(places, places)};
-}
-
 double Estimates::WhiteShare(std::size_t parameter) const {
   const std::size_t j = full_.PlaceOf(parameter);
   if (j == full_.columns.size() || !full_.determined[j]) return 1.0;

@@ -44,10 +44,6 @@ class Estimates {
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this fraction a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
-  /// Covariance of θ of two parameters, and what white residuals would make it, {all, white}; empty
-  /// where either is held, at a bound or undetermined.
-  [[nodiscard]] std::optional<std::array<Eigen::Matrix2d, 2>> CovariancesOf(
-      std::array<std::size_t, 2> pair) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Returns the half width of an interval of confidence() in standard errors.

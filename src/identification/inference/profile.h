@@ -75,14 +75,6 @@ std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
 ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOptions& options,
                                     SearchBuffers& buffers, ParameterEstimates parameters);
 
-/// Finds the joint confidence regions of σ and α and of Tc and α that have one: along rays from the
-/// best fit in the coordinates that make the parabola's ellipse a circle, the two parameters held
-/// and the others fitted again, the distance at which 2 ln Λ is the critical one. With Tc the
-/// second coordinate is α/Tc, which a loop far from slip determines.
-std::vector<ConfidenceRegion> FindConfidenceRegions(const FittedProblem& fitted,
-                                                    const FitOptions& options,
-                                                    SearchBuffers& buffers);
-
 /// Includes them in the intervals.
 ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,
                                      ParameterEstimates parameters);
