@@ -96,7 +96,7 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
 
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
 /// several records also some as virgin and some as steady, where all as one does not fit.
-Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents) {
+Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   std::array<Solution, 3>& solutions = attempt.buffers.states;
   const auto make = [&](const RecordStates& state, Solution& solution) {
@@ -109,15 +109,15 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents) {
                                double look = std::numeric_limits<double>::infinity()) {
     return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
   };
-  const auto descend = [&](Candidate& candidate, std::vector<Descent>* recorded) {
+  const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
-    Descend(candidate, options, attempt.buffers, recorded);
-    SearchBesideMinimum(candidate, options, attempt.buffers, recorded);
+    Descend(candidate, options, attempt.buffers);
+    SearchBesideMinimum(candidate, options, attempt.buffers);
   };
   if (const std::optional<RecordStates> given = GivenState(attempt)) {
     Candidate candidate = make(*given, solutions[0]);
     find_starts(candidate);
-    descend(candidate, descents);
+    descend(candidate);
     return candidate;
   }
   Candidate virgin = make(InitialState::kVirgin, solutions[0]);
@@ -131,16 +131,14 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents) {
   constexpr double kClearlyWorse = 4.0;
   const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
   if (is_one && steady_cost > kClearlyWorse * virgin_cost) {
-    descend(virgin, descents);
+    descend(virgin);
     if (virgin.solution->converged) return virgin;
   } else if (is_one && virgin_cost > kClearlyWorse * steady_cost) {
-    descend(steady, descents);
+    descend(steady);
     if (steady.solution->converged) return steady;
   }
-  std::vector<Descent> virgin_descents;
-  std::vector<Descent> steady_descents;
-  descend(virgin, descents != nullptr ? &virgin_descents : nullptr);
-  descend(steady, descents != nullptr ? &steady_descents : nullptr);
+  descend(virgin);
+  descend(steady);
   const Candidate& better =
       virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
   bool is_virgin = true;
@@ -158,15 +156,7 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents) {
       mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion, solutions[2]);
     }
   }
-  if (mixed) {
-    if (descents != nullptr) {
-      *descents = {{.start = mixed->solution->theta,
-                    .start_cost = mixed->solution->sum_of_squares,
-                    .solution = *mixed->solution}};
-    }
-    return std::move(*mixed);
-  }
-  if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
+  if (mixed) return std::move(*mixed);
   return std::move(is_virgin ? virgin : steady);
 }
 
@@ -206,9 +196,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
   ScaledRecords& data = attempt.data;
-  std::vector<Descent> descents;
-  std::vector<Descent>* const recorded = attempt.depth >= Depth::kIntervals ? &descents : nullptr;
-  SolvedFit solved(FitBestState(attempt, recorded), attempt);
+  SolvedFit solved(FitBestState(attempt), attempt);
   Candidate& best = solved.best;
   RequireToldAsymmetry(best.problem);
   const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
@@ -228,8 +216,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
         ThinnedRecords weighted_thin(data, attempt.memory);
         const Attempt weighted{options,       attempt.depth, attempt.prepared, data,
                                weighted_thin, buffers,       attempt.memory};
-        descents.clear();
-        best = FitBestState(weighted, recorded);
+        best = FitBestState(weighted);
         fit_with_weights(data);
       }
     }
@@ -251,7 +238,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
                               best.problem.parameters.free());
     }
   }
-  solved.descents = std::move(descents);
   return solved;
 }
 

@@ -145,16 +145,6 @@ struct MindlinTest {
   std::optional<double> rig_stiffness;
 };
 
-/// A starting point and what the solver reached from it.
-struct StartReport {
-  bool drawn = false;  ///< drawn at random, not from the scan of the plane
-  models::BranchLaw start;
-  double initial_rms = 0.0;  ///< [N or m]
-  models::BranchLaw reached;
-  double final_rms = 0.0;  ///< [N or m]
-  bool converged = false;
-};
-
 /// Holds Tc and σ as one record of a load series determines them at its load; the shape and all
 /// other parameters that the records share are held at the values of the whole series.
 struct RecordAlone {
@@ -232,7 +222,6 @@ struct FitResult {
   /// noise is known; empty stands for those of the residuals.
   std::optional<double> error_degrees_of_freedom;
   Adequacy adequacy;  ///< from depth kIntervals on
-  std::vector<StartReport> starts;
   std::vector<RecordFit> records;
   std::vector<Finding> findings;
 

@@ -70,7 +70,7 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   sprung.solution = &solution;
   FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
                std::pmr::get_default_resource());
-  Descend(sprung, with_rig, buffers, nullptr);
+  Descend(sprung, with_rig, buffers);
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss =
       EvidenceOfShape(fitted.noise, fitted.estimates)
