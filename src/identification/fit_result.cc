@@ -48,17 +48,6 @@ std::optional<double> ParameterEstimate::MovedByPriors() const {
   return (value - without_priors->value) / *without_priors->standard_error;
 }
 
-bool ConfidenceRegion::Contains(double first, double second) const {
-  bool inside = false;
-  for (std::size_t i = 0, last = boundary.size() - 1; i < boundary.size(); last = i++) {
-    const auto& [x, y] = boundary[i];
-    const auto& [last_x, last_y] = boundary[last];
-    if ((y > second) == (last_y > second)) continue;
-    if (first < x + (second - y) / (last_y - y) * (last_x - x)) inside = !inside;
-  }
-  return inside;
-}
-
 const ParameterEstimate* FitResult::Find(std::string_view name) const {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
   return found == parameters.end() ? nullptr : &*found;

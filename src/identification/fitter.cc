@@ -156,22 +156,6 @@ void FillLawEnergy(const Attempt& attempt, FitResult& result) {
   }
 }
 
-void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, FitResult& result) {
-  const auto rms = [&](double sum_of_squares) {
-    return problem.data->response_unit() *
-           std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted));
-  };
-  for (const Descent& descent : descents) {
-    if (descent.is_rival) continue;
-    result.starts.push_back({.drawn = descent.drawn,
-                             .start = problem.parameters.LawAt(descent.start),
-                             .initial_rms = rms(descent.start_cost),
-                             .reached = problem.parameters.LawAt(descent.solution.theta),
-                             .final_rms = rms(descent.solution.sum_of_squares),
-                             .converged = descent.solution.converged});
-  }
-}
-
 /// Assembles what a solution says by itself: values, residuals and what the records show without a
 /// model.
 /// @param last  a result that is not wanted any more, whose memory is used again
@@ -196,7 +180,6 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   if (is_judged) {
     result.findings = FindInRecords(result.records, attempt.options.thresholds, data.excitation);
     Append(result.findings, FindVaryingLoads(data));
-    ReportStarts(problem, solved.descents, result);
   }
   const bool any_virgin = problem.state.Any(InitialState::kVirgin);
   result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;

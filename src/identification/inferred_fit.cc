@@ -20,7 +20,6 @@
 #include "identification/diagnosis/residual_structure.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/heavy_tails.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
@@ -122,25 +121,16 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   // A load that varies would have to be read as late.
   if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
-    DenyLagBeyondKnee(problem, solution, buffers.response, test);
     std::vector<std::optional<loop::Backlash>> gaps;
     gaps.reserve(result.records.size());
     for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
     TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
   }
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
-  const Eigen::VectorXd& residual = estimates.residual();
-  std::optional<HeavyTails> heavy_tails;
-  if (options.loss == Loss::kNone) {
-    heavy_tails = FindHeavyTails(problem, solution.theta, {residual.data(), problem.size()}, noise,
-                                 buffers.response);
-  }
-  result.adequacy =
-      JudgeAdequacy(problem, solution, {test, causes, heavy_tails}, options, result.parameters);
+  result.adequacy = JudgeAdequacy(problem, solution, {test, causes}, options, result.parameters);
   const std::optional<Finding> slow = FindSlowResiduals(result, thresholds);
   Append(result.findings, slow);
-  const bool is_doubtful =
-      IsDoubtful(test, thresholds) || is_limited || slow || AreHeavy(heavy_tails, thresholds);
+  const bool is_doubtful = IsDoubtful(test, thresholds) || is_limited || slow;
   result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
@@ -151,19 +141,6 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
                     result.parameters);
   result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
-}
-
-/// Takes Tc off the parameters that a limit of the search or the choice of a law leaves open, where
-/// its interval covers what a loop that slides has carried: neither moves that.
-void KeepMeasuredSlipForce(FitResult& result) {
-  if (!CoversMeasuredGap(result)) return;
-  for (Finding& finding : result.findings) {
-    constexpr std::array<std::string_view, 3> kOfModel = {"search_limit", "law_undecided",
-                                                          "other_law_fits_better"};
-    const bool is_of_model =
-        std::ranges::find(kOfModel, std::string_view(finding.code)) != kOfModel.end();
-    if (is_of_model) std::erase(finding.parameters, "slip_force");
-  }
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -241,13 +218,6 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   const Problem& problem = fitted.problem;
   result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
   if (!result.mindlin_test) return;
-  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
-    result.parameters = WidenByRanges(problem, ProfileShape(fitted, options, attempt.buffers),
-                                      fitted.estimates.quantile(), std::move(result.parameters));
-    Include(
-        result.parameters[kShape],
-        {.source = IntervalSource::kProfile, .lower = kMindlinExponent, .upper = kMindlinExponent});
-  }
   if (const auto rig =
           TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers)) {
     result.mindlin_test->rig_stiffness = rig->rig_stiffness;
@@ -263,39 +233,12 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   }
 }
 
-/// Extends intervals to the other initial state and to another minimum, which the record does not
-/// exclude.
-void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const SolvedFit& solved,
-                 FitResult& result) {
-  const auto& [problem, solution, noise, estimates] = fitted;
-  const double peak_force = result.PeakForce();
-  const auto cover = [&](const Rival& other, FindingCode code) {
-    const std::vector<std::string> apart =
-        CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
-                   attempt.buffers.response, result.parameters);
-    if (!apart.empty()) result.findings.push_back({.code = code, .parameters = apart});
-  };
-  if (solved.rival) {
-    cover({solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState},
-          FindingCode("initial_state_undecided"));
-  }
-  if (solved.is_weighted) return;  // other starts led to another problem
-  for (const Descent& descent : solved.descents) {
-    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
-    cover({problem, descent.solution, IntervalSource::kOtherMinimum},
-          FindingCode("several_minima"));
-    break;  // one says it
-  }
-}
-
 /// Compares Masing's law with Dahl's own.
 void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
   const std::optional<LawChoice> choice =
       CompareLaws(fitted.problem, fitted.solution, result, attempt.options, attempt.buffers);
   result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
-  result.parameters[kSlipForce] = CoverOtherLaw(result);
-  KeepMeasuredSlipForce(result);
 }
 
 }  // namespace
@@ -319,12 +262,10 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, estimates, result);
   WidenByProfiles(fitted, options, buffers, result);
   if (is_tested) TestShape(attempt, fitted, result);
-  if (is_judged) CoverRivals(attempt, fitted, solved, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
-    KeepMeasuredSlipForce(result);
   }
   result.parameters[kStiffness] = CoverSlipFactor(
       problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
@@ -335,7 +276,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     if (!options.initial_state && options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
-    Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, thresholds));
     Append(result.findings, FindFewPlaces(problem, thresholds));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
@@ -347,12 +287,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   Append(result.findings, FindContradictedPrior(result, thresholds));
   result.findings = WithoutNeedless(result.parameters, std::move(result.findings));
-  if (is_tested && options.regions) {
-    result.regions.emplace();
-    if (!IsInadequate(result, thresholds)) {
-      result.regions = FindConfidenceRegions(fitted, options, buffers);
-    }
-  }
   if (is_judged && IsInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result), thresholds);
   }

@@ -96,9 +96,7 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
 
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
 /// several records also some as virgin and some as steady, where all as one does not fit.
-/// @param rival  written: the other initial state, where the criterion hardly prefers either
-Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents,
-                       std::optional<Candidate>& rival) {
+Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   std::array<Solution, 3>& solutions = attempt.buffers.states;
   const auto make = [&](const RecordStates& state, Solution& solution) {
@@ -111,15 +109,15 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents,
                                double look = std::numeric_limits<double>::infinity()) {
     return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
   };
-  const auto descend = [&](Candidate& candidate, std::vector<Descent>* recorded) {
+  const auto descend = [&](Candidate& candidate) {
     AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
-    Descend(candidate, options, attempt.buffers, recorded);
-    SearchBesideMinimum(candidate, options, attempt.buffers, recorded);
+    Descend(candidate, options, attempt.buffers);
+    SearchBesideMinimum(candidate, options, attempt.buffers);
   };
   if (const std::optional<RecordStates> given = GivenState(attempt)) {
     Candidate candidate = make(*given, solutions[0]);
     find_starts(candidate);
-    descend(candidate, descents);
+    descend(candidate);
     return candidate;
   }
   Candidate virgin = make(InitialState::kVirgin, solutions[0]);
@@ -133,21 +131,17 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents,
   constexpr double kClearlyWorse = 4.0;
   const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
   if (is_one && steady_cost > kClearlyWorse * virgin_cost) {
-    descend(virgin, descents);
+    descend(virgin);
     if (virgin.solution->converged) return virgin;
   } else if (is_one && virgin_cost > kClearlyWorse * steady_cost) {
-    descend(steady, descents);
+    descend(steady);
     if (steady.solution->converged) return steady;
   }
-  std::vector<Descent> virgin_descents;
-  std::vector<Descent> steady_descents;
-  descend(virgin, descents != nullptr ? &virgin_descents : nullptr);
-  descend(steady, descents != nullptr ? &steady_descents : nullptr);
+  descend(virgin);
+  descend(steady);
   const Candidate& better =
       virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
   bool is_virgin = true;
-  rival.reset();
-  bool is_close = false;
   std::optional<Candidate> mixed;
   if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
     const Evidence evidence(attempt.data.counted,
@@ -158,25 +152,12 @@ Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents,
                            candidate.problem.parameters.free().size());
     };
     is_virgin = criterion(virgin) < criterion(steady);
-    is_close = PastIsUndecided(criterion(virgin) - criterion(steady), options.thresholds) &&
-               virgin.solution->converged && steady.solution->converged;
     if (!is_one) {
       mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion, solutions[2]);
     }
   }
-  if (mixed) {
-    if (descents != nullptr) {
-      *descents = {{.start = mixed->solution->theta,
-                    .start_cost = mixed->solution->sum_of_squares,
-                    .solution = *mixed->solution}};
-    }
-    return std::move(*mixed);
-  }
-  if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
-  Candidate& chosen = is_virgin ? virgin : steady;
-  Candidate& other = is_virgin ? steady : virgin;
-  if (is_close) rival.emplace(std::move(other));
-  return std::move(chosen);
+  if (mixed) return std::move(*mixed);
+  return std::move(is_virgin ? virgin : steady);
 }
 
 /// True if the noise of the records is not one, where it is not known.
@@ -190,13 +171,6 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
   std::pmr::vector<double> residual(problem.size(), attempt.memory);
   EvaluateResidual(problem, candidate.solution->theta, attempt.buffers.response, residual);
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
-}
-
-/// Solves a candidate whose weights or samples have changed, from where it is.
-void SolveAgain(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
-  buffers.solver.Bind(candidate.problem, buffers.response);
-  const std::vector<double> start = candidate.solution->theta;
-  buffers.solver.Solve(start, SolverOptionsOf(options), *candidate.solution);
 }
 
 /// Fits at turning points between samples where the record needs it and allows it.
@@ -222,10 +196,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
   ScaledRecords& data = attempt.data;
-  std::vector<Descent> descents;
-  std::vector<Descent>* const recorded = attempt.depth >= Depth::kIntervals ? &descents : nullptr;
-  std::optional<Candidate> rival;
-  SolvedFit solved(FitBestState(attempt, recorded, rival), attempt);
+  SolvedFit solved(FitBestState(attempt), attempt);
   Candidate& best = solved.best;
   RequireToldAsymmetry(best.problem);
   const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
@@ -245,10 +216,8 @@ SolvedFit SolveFit(const Attempt& attempt) {
         ThinnedRecords weighted_thin(data, attempt.memory);
         const Attempt weighted{options,       attempt.depth, attempt.prepared, data,
                                weighted_thin, buffers,       attempt.memory};
-        descents.clear();
-        best = FitBestState(weighted, recorded, rival);
+        best = FitBestState(weighted);
         fit_with_weights(data);
-        if (rival && by_record) SolveAgain(*rival, options, buffers);
       }
     }
     if (is_plain) {
@@ -256,10 +225,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
       if (solved.turned) {
         best.problem.data = &solved.turned->records->data;
         *best.solution = solved.turned->solution;
-        if (rival) {
-          rival->problem.data = best.problem.data;
-          SolveAgain(*rival, options, buffers);
-        }
         // The weights come from the residuals of the fit whose turning points are the motion's.
         if (by_record) fit_with_weights(solved.turned->records->data);
       }
@@ -273,8 +238,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
                               best.problem.parameters.free());
     }
   }
-  solved.rival = std::move(rival);
-  solved.descents = std::move(descents);
   return solved;
 }
 

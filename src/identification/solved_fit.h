@@ -33,9 +33,7 @@ struct SolvedFit {
   SolvedFit(Candidate found, const Attempt& attempt)
       : best(std::move(found)), displacement_errors(attempt.prepared, attempt.data) {}
 
-  Candidate best;                       ///< best of the initial states that were tried
-  std::optional<Candidate> rival = {};  ///< the other initial state, where it is as likely
-  std::vector<Descent> descents = {};   ///< from all starts of `best`; from Depth::kIntervals on
+  Candidate best;  ///< best of the initial states that were tried
   DisplacementErrors displacement_errors;
   Noise noise = {};
   bool is_weighted = false;  ///< samples do not all weigh the same

@@ -107,13 +107,6 @@ std::string UnknownPast(const Finding&, const FitResult&, const Units&) {
          "--initial-state virgin";
 }
 
-std::string InitialStateUndecided(const Finding&, const FitResult& fit, const Units&) {
-  return fmt::format(
-      "{} assumed; the intervals cover a {} one too",
-      fit.initial_state == models::InitialState::kVirgin ? "unloaded contact" : "cycled contact",
-      fit.initial_state == models::InitialState::kVirgin ? "cycled" : "virgin");
-}
-
 std::string OtherLawFitsBetter(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format("{} fits better: --model {}",
                      finding.kind == "dahl" ? "Dahl's own law" : "Masing's law", finding.kind);
@@ -161,9 +154,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"no_closed_cycle", "no cycle is closed: record one and a half cycles or more"},
     {"load_followed", nullptr, LoadFollowed},
     {"load_not_followed", nullptr, LoadNotFollowed},
-    {"noise_in_displacement",
-     "the displacement is the noisier channel: if the machine imposes the force, --noise-in "
-     "displacement"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination", nullptr, UndeterminedCombination},
@@ -178,8 +168,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"search_limit", nullptr, SearchLimit},
     {"few_places", nullptr, FewPlaces},
     {"unknown_past", nullptr, UnknownPast},
-    {"initial_state_undecided", nullptr, InitialStateUndecided},
-    {"several_minima", "two solutions fit: the intervals cover both"},
     {"shape_or_rig", nullptr, ShapeOrRig},
     {"rig_not_tried", "a compliant rig, which cannot be fitted here, would look the same"},
     {"prior_contradicted", nullptr, PriorContradicted},

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "identification/inference/departures.h"
-#include "identification/inference/heavy_tails.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/terms.h"
@@ -69,7 +68,7 @@ Json FindingsTable() {
   return rows;
 }
 
-/// Causes in the order of the library: omitted terms, then heavy tails.
+/// Causes, omitted terms in the order of the library.
 Json CausesTable() {
   Json rows = Json::array();
   for (const identification::Departure& row : identification::Departures()) {
@@ -79,11 +78,6 @@ Json CausesTable() {
                     {"meaning", row.meaning},
                     {"option", row.group}});
   }
-  rows.push_back({{"code", identification::kHeavyTails},
-                  {"unit", "-"},
-                  {"unit_by_sample", ""},
-                  {"meaning", identification::kHeavyTailsMeaning},
-                  {"option", ""}});
   return rows;
 }
 

@@ -215,42 +215,6 @@ TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
   EXPECT_NEAR(offset.value, 3.0, 1e-7);
 }
 
-TEST(FitOptions, GivenStartIsWhereEveryReportedStartBegins) {
-  FitOptions options;
-  options.start = {{"sigma", 3e7}, {"alpha", 0.9}};
-  const FitResult fit = FitOne(Loop(), options);
-  ASSERT_FALSE(fit.starts.empty());
-  for (const StartReport& start : fit.starts) {
-    EXPECT_NEAR(start.start.tangential_stiffness, 3e7, 1e-6);
-    EXPECT_EQ(start.start.shape_exponent, 0.9);
-  }
-  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-}
-
-TEST(FitOptions, NumberOfStartsIsKeptAndEachSaysWhatItReached) {
-  for (const std::size_t starts : {std::size_t{1}, std::size_t{3}}) {
-    FitOptions options;
-    options.starts = starts;
-    const FitResult fit = FitOne(Loop(), options);
-    ASSERT_EQ(fit.starts.size(), starts);
-    double best = HUGE_VAL;
-    for (const StartReport& start : fit.starts) {
-      EXPECT_LE(start.final_rms, start.initial_rms);
-      best = std::min(best, start.final_rms);
-    }
-    // The result's residuals are taken in newtons, the starts' in units of the data: rounding
-    // apart.
-    constexpr double kRounding = 1e-14;  // of Tc, some tens of ε
-    EXPECT_LE(fit.residuals.rms, best + kRounding * kLaw.slip_force);
-  }
-}
-
-TEST(FitOptions, AsManyStartsAreMadeAsAreAskedFor) {
-  FitOptions options;
-  options.starts = 60;
-  EXPECT_EQ(FitOne(Loop(), options).starts.size(), 60U);
-}
-
 TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
   FitOptions options;
   options.max_iterations = 1;

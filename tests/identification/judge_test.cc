@@ -140,15 +140,15 @@ TEST(WithoutNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
   const std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
   const Finding wide{.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "wide"};
   const Finding rig{.code = "shape_or_rig", .parameters = {"sigma", "alpha"}};
-  const Finding state{.code = "initial_state_undecided", .parameters = {"alpha"}};
+  const Finding law{.code = "law_undecided", .parameters = {"alpha"}};
   const Finding of_other{.code = "few_places", .parameters = {"sigma"}};
   EXPECT_THAT(KeptOf(estimates, {wide}), ElementsAre("alpha_not_identifiable"));
   EXPECT_THAT(KeptOf(estimates, {wide, rig}), ElementsAre("shape_or_rig"));
   EXPECT_THAT(KeptOf(estimates, {rig, wide}), ElementsAre("shape_or_rig")) << "in either order";
   EXPECT_THAT(KeptOf(estimates, {wide, of_other}),
               ElementsAre("alpha_not_identifiable", "few_places"));
-  EXPECT_THAT(KeptOf(estimates, {state, wide}),
-              ElementsAre("initial_state_undecided", "alpha_not_identifiable"))
+  EXPECT_THAT(KeptOf(estimates, {law, wide}),
+              ElementsAre("law_undecided", "alpha_not_identifiable"))
       << "which calls α identifiable";
 }
 

@@ -14,7 +14,7 @@
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
 
-// These tests concern priors on parameters, joint regions of two of them, and the log-likelihood
+// These tests concern priors on parameters and the log-likelihood
 // that a sampler takes.
 namespace mindahl::identification::prior_test {
 namespace {
@@ -132,46 +132,6 @@ TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   options.fixed["alpha"] = 0.3;
   options.priors = {{"alpha", {0.3, 0.1}}};
   EXPECT_THAT(refusal(options), HasSubstr("a prior of alpha has no effect"));
-}
-
-/// Every boundary point, fitted again from nothing with both parameters held: 2 ln Λ is that of
-/// χ²(2) at 95 %, as the noise is known.
-TEST(ConfidenceRegion, HasTheCriticalLikelihoodAllAroundIt) {
-  constexpr double kCritical = 5.991464547107979;  // −2·ln 0.05
-  constexpr double kOfRoot = 0.02;                 // roots are found to 1 %
-  const Record record = TimedLoop(0.7, 0.01);
-  FitOptions options = Options();
-  options.force_noise = 0.01 * kLaw.slip_force;
-  options.regions = true;
-  const FitResult fit = FitOne(record, options);
-  ASSERT_TRUE(fit.regions);
-  ASSERT_EQ(fit.regions->size(), 2U);
-  const double noise = *options.force_noise;
-  const auto squares = [&](const FitResult& result) {
-    return result.rms * result.rms * static_cast<double>(record.size());
-  };
-  for (const ConfidenceRegion& region : *fit.regions) {
-    EXPECT_TRUE(region.closed);
-    EXPECT_TRUE(region.Contains(fit.Find(region.parameters[0])->value, fit.law.shape_exponent));
-    for (std::size_t k = 0; k < region.boundary.size(); k += 7) {
-      FitOptions held = options;
-      held.regions = false;
-      held.fixed[region.parameters[0]] = region.boundary[k][0];
-      held.fixed[region.parameters[1]] = region.boundary[k][1];
-      const double ratio = (squares(FitOne(record, held)) - squares(fit)) / (noise * noise);
-      EXPECT_NEAR(ratio / kCritical, 1.0, kOfRoot) << region.parameters[0] << ' ' << k;
-    }
-  }
-}
-
-TEST(ConfidenceRegion, ContainsWhatIsWithinItsBoundaryOnly) {
-  // An arrowhead: (0.9, 0.5) lies in its bounding box, and between its barbs.
-  const ConfidenceRegion region{.parameters = {"sigma", "alpha"},
-                                .boundary = {{0, 0.5}, {1, 0}, {0.5, 0.5}, {1, 1}}};
-  EXPECT_TRUE(region.Contains(0.3, 0.5));
-  EXPECT_TRUE(region.Contains(0.8, 0.15));
-  EXPECT_FALSE(region.Contains(0.9, 0.5));
-  EXPECT_FALSE(region.Contains(-0.1, 0.5));
 }
 
 /// At the fit −½Σ(r/s)² of its own residuals, and less than that everywhere else.

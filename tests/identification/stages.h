@@ -61,7 +61,7 @@ class Stages {
     candidate.solution = &solution;
     identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
                                  buffers, Memory());
-    identification::Descend(candidate, options, buffers, nullptr);
+    identification::Descend(candidate, options, buffers);
     return solution;
   }
 

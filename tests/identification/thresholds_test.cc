@@ -404,16 +404,6 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          return !LoadIsFollowed(t, kBelow * 0.01) && LoadIsFollowed(t, kAbove * 0.01);
        }},
-      {"visible_noise",
-       [](const Thresholds& t) {
-         return !NoiseIsInDisplacement(kBelow * 0.002, 0.0, t) &&
-                NoiseIsInDisplacement(kAbove * 0.002, 0.0, t);
-       }},
-      {"noisier_displacement",
-       [](const Thresholds& t) {
-         return !NoiseIsInDisplacement(kBelow * 0.05, 0.01, t) &&
-                NoiseIsInDisplacement(kAbove * 0.05, 0.01, t);
-       }},
       {"prior_distance",
        [](const Thresholds& t) {
          return !PriorIsContradicted(t, kBelow * 3.0) && PriorIsContradicted(t, kAbove * 3.0);

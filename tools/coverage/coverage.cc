@@ -501,19 +501,6 @@ std::vector<Scenario> Scenarios() {
        .highest_coverage = 1.0,
        .prior = "alpha",
        .prior_uncertainty = 0.05},
-      {.name = "regions: white 1 %, lambda 1.2",
-       .lowest_coverage = kWhiteLow,
-       .highest_coverage = kWhiteHigh,
-       .counts_regions = true},
-      {.name = "regions: white 1 %, lambda 0.6",
-       .lambda = 0.6,
-       .lowest_coverage = kPartialSlipLow,
-       .highest_coverage = 1.0,
-       .counts_regions = true},
-      {.name = "regions: AR(1) 0.9, 1 %, 10 cycles",
-       .cycles = 10,
-       .noise = Noise::kAutoregressive,
-       .counts_regions = true},
       {.name = "imposed force to 0.95 Tc, displacement noise 1 %",
        .noise = Noise::kAnswer,
        .displacement_noise = 0.01,
@@ -597,7 +584,6 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();
   const std::vector<Record> clean = CleanRecords(scenario);
   FitOptions options = OptionsOf(scenario);
-  options.regions = scenario.counts_regions;
 
   // The bound of Cramér and Rao for white noise of what is fitted: the parabola at the truth.
   std::array<double, Coverage::kParameters> bound{};
@@ -640,13 +626,6 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
     const identification::FitResult fit = identification::Fit(records, of_loop);
     const bool is_adequate = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
     coverage.doubted += is_adequate ? 0.0 : 1 / static_cast<double>(loops);
-    for (const identification::ConfidenceRegion& region :
-         fit.regions.value_or(std::vector<identification::ConfidenceRegion>())) {
-      const bool is_of_slip = region.parameters[0] == "slip_force";
-      const double first = is_of_slip ? law.slip_force : law.tangential_stiffness;
-      if (!region.Contains(first, law.shape_exponent)) continue;
-      coverage.regions_covered.at(is_of_slip ? 1 : 0) += 1 / static_cast<double>(loops);
-    }
     coverage.rejected += fit.adequacy.p_value < 0.05 ? 1 / static_cast<double>(loops) : 0.0;
     for (std::size_t k = 0; k < parameters; ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(names[k]);

@@ -62,7 +62,6 @@ struct Scenario {
   double rig = 0.0;                 ///< stiffness in series over σ, which is fitted; 0: rigid
   std::string prior = {};           ///< parameter whose prior is drawn about the truth
   double prior_uncertainty = 0.0;   ///< standard, of that over the true value
-  bool counts_regions = false;      ///< also of joint confidence regions
   double asymmetry = 0.0;   ///< of the slip forces in the two senses, for which the fit has a term
   double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
   double peak_share = 0.0;  ///< T*/Tc where the force is imposed, in the place of λ
@@ -94,7 +93,6 @@ struct Coverage {
       error_ratio{};                             ///< root mean square stated error over the scatter
   std::array<double, kParameters> efficiency{};  ///< Cramér–Rao bound over the scatter, squared
   std::array<double, kParameters> bias{};        ///< mean error over the scatter
-  std::array<double, 2> regions_covered{};  ///< of σ and α, and of Tc and α, where they are counted
   double doubted = 0.0;   ///< fraction of the fits whose model is not called adequate
   double rejected = 0.0;  ///< fraction of those whose chance that noise looks so is below 5 %
 };

@@ -56,14 +56,6 @@ void PrintRow(const Scenario& scenario, const Coverage& coverage) {
   };
   print(scenario.name, 0, 3);
   if (coverage.parameters > 3) print(fmt::format("… its {}", scenario.FourthParameter()), 3, 4);
-  if (scenario.counts_regions) {
-    constexpr std::array kNames = {"σ and α", "Tc and α"};
-    for (std::size_t k = 0; k < kNames.size(); ++k) {
-      fmt::print("| … its region of {} | {:.1f} % |", kNames[k], 100 * coverage.regions_covered[k]);
-      for (int i = 0; i < 13; ++i) fmt::print(" |");
-      fmt::print("\n");
-    }
-  }
   std::fflush(stdout);
 }
 
@@ -103,9 +95,6 @@ int main(int argc, char** argv) {
     std::vector<double> shares(
         coverage.covered.begin(),
         coverage.covered.begin() + static_cast<std::ptrdiff_t>(coverage.parameters));
-    if (scenario.counts_regions) {
-      shares.insert(shares.end(), coverage.regions_covered.begin(), coverage.regions_covered.end());
-    }
     for (const double share : shares) {
       kept = kept && share >= scenario.lowest_coverage - slack &&
              share <= scenario.highest_coverage + slack;

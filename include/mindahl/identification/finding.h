@@ -48,7 +48,6 @@ inline constexpr auto kFindings = [] {
       {.code = "no_closed_cycle", .severity = kNote},
       {.code = "load_followed", .severity = kNote},
       {.code = "load_not_followed"},
-      {.code = "noise_in_displacement", .severity = kNote},
       // about the identifiability of the parameters
       {"undetermined_parameter", kNotIdentifiable},
       {"undetermined_combination", kNotIdentifiable},
@@ -63,8 +62,6 @@ inline constexpr auto kFindings = [] {
       {"search_limit", kNotIdentifiable},
       {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
-      {"initial_state_undecided", kIdentifiable, kWarning, true},
-      {"several_minima", kIdentifiable, kNote},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
       {.code = "prior_contradicted"},

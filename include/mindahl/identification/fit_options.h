@@ -85,10 +85,6 @@ struct FitOptions {
   /// … or it has made this many steps: then the result is not converged.
   int max_iterations = 500;
 
-  /// Adds the joint confidence regions of σ and α and of Tc and α, from Depth::kFull on: some 300
-  /// searches.
-  bool regions = false;
-
   /// Starting points refined on all samples, best first: up to four of a look at the plane of σ/Tc
   /// and α, and beyond them drawn at random.
   std::size_t starts = 1;

@@ -36,19 +36,6 @@ struct LikelihoodProfile {
   std::vector<ProfilePoint> points;  ///< in order of slip force
 };
 
-/// Joint confidence region of two parameters, all others fitted again at every point of its
-/// boundary: 2 ln Λ = 2·F(2, ν), against the noise that the intervals have. It does not include
-/// the model discrepancy.
-struct ConfidenceRegion {
-  std::array<std::string, 2> parameters;        ///< names of the two
-  std::vector<std::array<double, 2>> boundary;  ///< [their units], once around the best fit
-  /// True if the likelihood reaches the critical value in every direction, or α = 0 before it.
-  bool closed = true;
-
-  /// True if a point [their units] lies within the boundary.
-  [[nodiscard]] bool Contains(double first, double second) const;
-};
-
 /// States whether a record follows Masing's law (Mindlin's, Full-Dahl) or Dahl's own. For the same
 /// loop σ and Tc of the two laws differ by factors of up to 2^α and 2.
 struct LawChoice {
@@ -96,8 +83,6 @@ enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 enum class IntervalSource {
   kParabola,      ///< curvature of the likelihood at its maximum
   kProfile,       ///< the likelihood itself, where the parabola is not accurate enough
-  kInitialState,  ///< the other initial state, which the record does not exclude
-  kOtherMinimum,  ///< another minimum of the sum of squares, which the noise does not exclude
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
   kPlateau,       ///< half gap of the loop, measured without a model
   kSmallShape,    ///< an α above the bound 0, where the search stopped
@@ -158,16 +143,6 @@ struct MindlinTest {
   /// ΔAICc: then the record does not distinguish a contact of another shape from Mindlin's in a
   /// compliant rig. Computed where α = 1/3 is rejected, α is smaller and no rig is fitted.
   std::optional<double> rig_stiffness;
-};
-
-/// A starting point and what the solver reached from it.
-struct StartReport {
-  bool drawn = false;  ///< drawn at random, not from the scan of the plane
-  models::BranchLaw start;
-  double initial_rms = 0.0;  ///< [N or m]
-  models::BranchLaw reached;
-  double final_rms = 0.0;  ///< [N or m]
-  bool converged = false;
 };
 
 /// Holds Tc and σ as one record of a load series determines them at its load; the shape and all
@@ -239,9 +214,6 @@ struct FitResult {
   std::optional<LawChoice> law_choice;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
-  /// Regions of σ and α and of Tc and α, with FitOptions::regions and from Depth::kFull on, if both
-  /// parameters are inside their bounds and the model is not inadequate.
-  std::optional<std::vector<ConfidenceRegion>> regions;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
@@ -250,7 +222,6 @@ struct FitResult {
   /// noise is known; empty stands for those of the residuals.
   std::optional<double> error_degrees_of_freedom;
   Adequacy adequacy;  ///< from depth kIntervals on
-  std::vector<StartReport> starts;
   std::vector<RecordFit> records;
   std::vector<Finding> findings;
 

@@ -57,8 +57,6 @@ struct Thresholds {
   double seen_loop = 0.1;
   double load_difference = 0.01;
   double load_variation = 0.01;
-  double visible_noise = 0.002;
-  double noisier_displacement = 5.0;
   double never_slips = 0.01;
   double prior_distance = 3.0;
 };

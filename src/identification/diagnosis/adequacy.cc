@@ -76,10 +76,6 @@ std::string_view AcceptedGroup(const Problem& problem, const FitOptions& options
   return !is_there && IsAccepted(problem, term) ? group : std::string_view();
 }
 
-bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds) {
-  return tails && tails->p_value < thresholds.cause && tails->delta_aicc < 0;
-}
-
 namespace {
 
 /// Returns the chance that noise alone makes what all omitted terms, or the best, explain.
@@ -223,22 +219,6 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
 }
 
-/// Adds heavy tails that noise alone does not make to the causes.
-void AddHeavyTails(const std::optional<HeavyTails>& tails, const FitOptions& options,
-                   Adequacy& adequacy) {
-  const Thresholds& thresholds = options.thresholds;
-  if (AreHeavy(tails, thresholds)) {
-    adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
-    adequacy.causes.push_back({.code = kHeavyTails,
-                               .delta_aicc = tails->delta_aicc,
-                               .explains = tails->explains,
-                               .size = tails->fraction,
-                               .unit = "-",
-                               .term = {}});
-  }
-  Order(adequacy.causes, thresholds);
-}
-
 /// Drops the causes that explain less than half of what is left beside terms that are fitted: of
 /// what several things make together none is to be blamed.
 void DropLesserCauses(std::vector<Cause>& causes) {
@@ -252,7 +232,7 @@ void DropLesserCauses(std::vector<Cause>& causes) {
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
                        const AdequacyEvidence& evidence, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates) {
-  const auto& [test, causes, heavy_tails] = evidence;
+  const auto& [test, causes] = evidence;
   const Thresholds& thresholds = options.thresholds;
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
@@ -281,7 +261,6 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
-  AddHeavyTails(heavy_tails, options, adequacy);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }

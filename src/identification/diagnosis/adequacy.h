@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "identification/inference/column_test.h"
-#include "identification/inference/heavy_tails.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
@@ -36,17 +35,13 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 /// Holds what a fit's adequacy is judged by.
 struct AdequacyEvidence {
   const AdequacyTest& test;
-  std::span<const DepartureFit> causes;          ///< result of CausesOf()
-  const std::optional<HeavyTails>& heavy_tails;  ///< result of FindHeavyTails()
+  std::span<const DepartureFit> causes;  ///< result of CausesOf()
 };
 
 /// True if a column follows the force of the fitted model: its factor would take a part of Tc.
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force);
 
-/// True if noise hardly makes these tails.
-bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds);
-
-/// Returns the misfit, its chance and its causes: those of both kinds that noise alone does not
+/// Returns the misfit, its chance and its causes: those that noise alone does not
 /// make, the best first, without those that another beats clearly; of causes that explain nearly as
 /// much as the best those that were measured, or can be tried, come first.
 /// @param estimates  of the reported parameters, with the intervals that the model itself gives

@@ -351,24 +351,6 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   return parameters;
 }
 
-bool CoversMeasuredGap(const FitResult& result) {
-  return result.Find("slip_force")->includes_discrepancy &&
-         loop::Slides(result.WidestRecord().facts);
-}
-
-ParameterEstimate CoverOtherLaw(const FitResult& result) {
-  ParameterEstimate slip_force = *result.Find("slip_force");
-  const std::optional<LawChoice>& choice = result.law_choice;
-  const std::optional<double> half_gap = MeasuredHalfGap(result);
-  if (!choice || choice->preferred == result.model || !half_gap || !CoversMeasuredGap(result)) {
-    return slip_force;
-  }
-  const double other = choice->law.slip_force;
-  if (RanAway(other, *half_gap)) return slip_force;
-  Include(slip_force, {.source = IntervalSource::kDiscrepancy, .lower = other, .upper = other});
-  return slip_force;
-}
-
 ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
                                     const FitResult& result) {
   const auto& [problem, solution, noise, estimates] = fitted;

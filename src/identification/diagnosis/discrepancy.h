@@ -62,14 +62,6 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
                                     std::span<const ParameterEstimate> plain,
                                     const Thresholds& thresholds, const FitResult& result);
 
-/// True if the interval of Tc covers what a loop that slides has carried.
-bool CoversMeasuredGap(const FitResult& result);
-
-/// Returns the estimate of Tc, which includes that of the other law, Masing's or Dahl's own, where
-/// the record does not prefer the fitted one. It is not included if it is more than a quarter off
-/// the half gap of a loop that slides.
-ParameterEstimate CoverOtherLaw(const FitResult& result);
-
 /// Returns the estimates with their repeat_error: the standard error where the model is adequate,
 /// else of ErrorsBetweenCycles().
 ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,

@@ -12,7 +12,6 @@
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -158,41 +157,6 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   return Finding{.code = "energy_contradiction",
                  .parameters = WithoutEffective(result, {"sigma", "alpha", "slip_force"}),
                  .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
-}
-
-bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
-                           const Thresholds& thresholds) {
-  return share_of_displacement > thresholds.visible_noise &&
-         share_of_displacement > thresholds.noisier_displacement * share_of_force;
-}
-
-std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& records,
-                                               const FitResult& result,
-                                               const Thresholds& thresholds) {
-  if (result.response != loop::Channel::kForce || result.is_load_series()) return std::nullopt;
-  // Energy ratio of the loop that just reaches slip, docs/theory.md §8.
-  const double alpha = result.law.shape_exponent;
-  const double ratio_at_slip = alpha < 1 ? alpha / (2 - alpha) : 1.0;
-  const bool stays_below_slip = std::ranges::all_of(result.records, [&](const RecordFit& record) {
-    return record.facts.closed && record.facts.energy_ratio < ratio_at_slip;
-  });
-  if (!stays_below_slip) return std::nullopt;
-  double of_displacement = 0.0;
-  double of_force = 0.0;
-  for (const loop::PreparedRecord& record : records.records) {
-    const loop::RecordView readings = record.readings();
-    const loop::LoopMeasures& measures = record.measures;
-    if (record.encoder_step > 0 || !(measures.amplitude > 0 && measures.peak_force > 0)) {
-      return std::nullopt;
-    }
-    const double noise = loop::EstimateDisplacementNoise(readings.displacement);
-    of_displacement = std::max(of_displacement, noise / measures.amplitude);
-    of_force =
-        std::max(of_force, loop::EstimateDisplacementNoise(readings.force) / measures.peak_force);
-  }
-  if (!NoiseIsInDisplacement(of_displacement, of_force, thresholds)) return std::nullopt;
-  return Finding{.code = "noise_in_displacement",
-                 .numbers = {{"of_displacement", of_displacement}, {"of_force", of_force}}};
 }
 
 bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {

@@ -8,7 +8,7 @@
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/loop/preparation.h"
+#include "mindahl/loop/record.h"
 
 /// Derives the findings on the records themselves, and on a model that they contradict, as data:
 /// pure functions of a result.
@@ -19,17 +19,6 @@ namespace mindahl::identification {
 /// a record count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
                                    loop::Channel excitation = loop::Channel::kDisplacement);
-
-/// True if the noise is in the displacement, by the channels' noise over X and over T*.
-bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
-                           const Thresholds& thresholds);
-
-/// A fit of the force to a record whose noise is in the displacement, by the white noise of both
-/// channels, and whose contact stays below slip, by the loop's energy ratio: the displacement is
-/// what could be fitted. Nothing of an encoder's readings, whose errors are no noise.
-std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& records,
-                                               const FitResult& result,
-                                               const Thresholds& thresholds);
 
 /// Energy of the widest steady cycles that count against that of the fitted law at their amplitude,
 /// where no viscous force takes part of it.

@@ -138,19 +138,6 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
-std::optional<std::array<Eigen::Matrix2d, 2>> Estimates::CovariancesOf(
-    std::array<std::size_t, 2> pair) const {
-  const LocalUncertainty& local = Conditional();
-  std::array<Eigen::Index, 2> places{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::size_t j = local.PlaceOf(pair[i]);
-    if (j == local.columns.size() || !local.determined[j]) return std::nullopt;
-    places[i] = static_cast<Eigen::Index>(j);
-  }
-  return std::array<Eigen::Matrix2d, 2>{variance_ * local.factor(places, places),
-                                        white_variance_ * local.white_factor(places, places)};
-}
-
 double Estimates::WhiteShare(std::size_t parameter) const {
   const std::size_t j = full_.PlaceOf(parameter);
   if (j == full_.columns.size() || !full_.determined[j]) return 1.0;
@@ -159,44 +146,6 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
   return white_variance_ * full_.white_factor(place, place) /
          (variance_ * full_.factor(place, place));
-}
-
-std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
-                                    const Thresholds& thresholds, double peak_force,
-                                    Response& response, std::span<ParameterEstimate> estimates) {
-  const Estimates others(rival.problem, rival.solution, noise, {}, thresholds, response);
-  std::vector<std::string> apart;
-  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
-    ParameterEstimate& estimate = estimates[p];
-    const Parameter& parameter = rival.problem.parameters[p];
-    if (parameter.fixed) continue;
-    ParameterEstimate other = estimate;
-    other.value = parameter.ToValue(rival.solution.theta[p]);
-    others.Fill(p, other);
-    // An end that is open in either fit is reported elsewhere.
-    const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
-                          (other.value < *estimate.lower95 || other.value > *estimate.upper95);
-    if (is_apart) apart.push_back(estimate.name);
-    if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    Include(estimate, {.source = rival.source, .lower = other.lower95, .upper = other.upper95});
-  }
-  response.Bind(problem);
-  return apart;
-}
-
-bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
-                      const Noise& noise, std::span<const ParameterEstimate> estimates) {
-  const double quantile = NormalQuantile(noise.confidence);
-  if (!other.converged || !std::isfinite(other.sum_of_squares)) return false;
-  const double independent = noise.effective_samples() / static_cast<double>(noise.samples);
-  const double ratio = independent * (other.sum_of_squares - best.sum_of_squares) / noise.variance;
-  if (!(ratio < quantile * quantile)) return false;
-  return std::ranges::any_of(std::array{kStiffness, kShape, kSlipForce}, [&](std::size_t p) {
-    const ParameterEstimate& estimate = estimates[p];
-    if (problem.parameters[p].fixed || !estimate.lower95 || !estimate.upper95) return false;
-    const double value = problem.parameters[p].ToValue(other.theta[p]);
-    return value < *estimate.lower95 || value > *estimate.upper95;
-  });
 }
 
 ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds) {

@@ -44,10 +44,6 @@ class Estimates {
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this fraction a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
-  /// Covariance of θ of two parameters, and what white residuals would make it, {all, white}; empty
-  /// where either is held, at a bound or undetermined.
-  [[nodiscard]] std::optional<std::array<Eigen::Matrix2d, 2>> CovariancesOf(
-      std::array<std::size_t, 2> pair) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Returns the half width of an interval of confidence() in standard errors.
@@ -87,26 +83,6 @@ struct FittedProblem {
 ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
 
 /// Intervals that cover what another reading of the record would have for the parameters.
-
-/// Holds a competing solution for a record, and the reason why intervals extend to it.
-struct Rival {
-  const Problem& problem;
-  const Solution& solution;
-  IntervalSource source;
-};
-
-/// Extends intervals to σ, α and Tc of a competing solution, as of the other initial state; an end
-/// that is open there is open then. Leaves the response bound to `problem`.
-/// @param peak_force  largest |force| of the record [N]: no slip force lies below it
-/// @returns the names of those that the competing solution has outside this one's interval
-std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
-                                    const Thresholds& thresholds, double peak_force,
-                                    Response& response, std::span<ParameterEstimate> estimates);
-
-/// True if a solution of the same problem lies outside an interval that is closed, of σ, α or Tc,
-/// and the noise does not exclude it: 2 ln Λ is below the quantile of χ² of the confidence.
-bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
-                      const Noise& noise, std::span<const ParameterEstimate> estimates);
 
 /// Returns Tc with its interval extended to half of the measured gap between the branches, where
 /// the shape of the loop is doubtful and the record slips.

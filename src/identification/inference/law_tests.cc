@@ -46,13 +46,6 @@ std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOpt
   return test;
 }
 
-bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha) {
-  constexpr double kOutside95 = 0.05;
-  if (!alpha.lower95 || !alpha.upper95) return false;
-  const bool is_excluded = kMindlinExponent < *alpha.lower95 || kMindlinExponent > *alpha.upper95;
-  return is_excluded && test.p_value > kOutside95;
-}
-
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
               const Thresholds& thresholds) {
   return test.p_value < thresholds.significance &&
@@ -77,7 +70,7 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   sprung.solution = &solution;
   FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
                std::pmr::get_default_resource());
-  Descend(sprung, with_rig, buffers, nullptr);
+  Descend(sprung, with_rig, buffers);
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss =
       EvidenceOfShape(fitted.noise, fitted.estimates)
@@ -237,13 +230,6 @@ std::optional<LawChoice> CompareLaws(const Problem& problem, const Solution& bes
   std::vector<RecordStates> states;
   if (!same_curve) states.push_back(problem.state);
   if (maybe_virgin) states.emplace_back(InitialState::kVirgin);
-  // A record that starts at an extreme passes for virgin as well, without a virgin branch.
-  const bool is_origin_given = std::ranges::any_of(options.fixed, [&](const auto& fixed) {
-    return fixed.first.starts_with(OriginTerm(problem.data->excitation));
-  });
-  if (problem.state.AreAll(InitialState::kVirgin) && is_open && !is_origin_given) {
-    states.emplace_back(InitialState::kSteady);
-  }
   const double samples_of_best =
       states.empty() ? 0.0 : EffectiveSamples(problem, best.theta, buffers.response);
   for (const RecordStates& state : states) {

@@ -18,9 +18,6 @@ inline constexpr double kMindlinExponent = 1.0 / 3;
 std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOptions& options,
                                        SearchBuffers& buffers);
 
-/// True if the likelihood allows α = 1/3, which the interval by its parabola excludes.
-bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
-
 /// Holds α = 1/3 in a compliant rig.
 struct RigAlternative {
   double rig_stiffness = 0.0;         // [N/m]

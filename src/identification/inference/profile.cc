@@ -1,12 +1,9 @@
 #include "identification/inference/profile.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -26,50 +23,36 @@ constexpr double kHopeless = 100.0;
 constexpr int kProfileBisections = 6;
 constexpr double kRigid = 1e3;
 
-/// The likelihood with parameters held, the others fitted again. The solver is its own.
-class HeldParameters {
+/// The likelihood with one parameter held, the others fitted again. The solver is its own.
+class HeldParameter {
  public:
-  /// @param white_share  of the samples, what autocorrelation leaves
-  HeldParameters(const FittedProblem& fitted, std::span<const std::size_t> parameters,
-                 double white_share, const SolverOptions& options, SearchBuffers& buffers)
+  HeldParameter(const FittedProblem& fitted, std::size_t parameter, const SolverOptions& options,
+                SearchBuffers& buffers)
       : problem_(fitted.problem),
-        parameters_(parameters.begin(), parameters.end()),
+        parameter_(parameter),
         best_(fitted.solution),
         variance_(fitted.noise.variance),
-        evidence_(fitted.noise.samples, static_cast<double>(fitted.noise.samples) * white_share),
+        evidence_(fitted.noise.samples, static_cast<double>(fitted.noise.samples) *
+                                            fitted.estimates.WhiteShare(parameter)),
         options_(options),
         solver_(buffers.solver) {
-    for (const std::size_t p : parameters) problem_.parameters.Fix(p, best_.theta[p]);
+    problem_.parameters.Fix(parameter, best_.theta[parameter]);
     solver_.Bind(problem_, buffers.response);
   }
-  HeldParameters(const FittedProblem& fitted, std::size_t parameter, const SolverOptions& options,
-                 SearchBuffers& buffers)
-      : HeldParameters(fitted, {&parameter, 1}, fitted.estimates.WhiteShare(parameter), options,
-                       buffers) {}
-  HeldParameters(const HeldParameters&) = delete;
-  HeldParameters& operator=(const HeldParameters&) = delete;
+  HeldParameter(const HeldParameter&) = delete;
+  HeldParameter& operator=(const HeldParameter&) = delete;
 
-  /// @returns F of the best fit against that with the parameters at their θ of the start, which is
-  ///   in solution()
-  double At(const std::vector<double>& start) {
-    for (const std::size_t p : parameters_) solver_.HoldAt(p, start[p]);
-    return Ratio(start);
-  }
-  /// The same of one parameter, at θ.
+  /// @returns F of the best fit against that with the parameter at θ, which is in solution()
   double At(double theta, const std::vector<double>& start) {
-    solver_.HoldAt(parameters_.front(), theta);
-    return Ratio(start);
+    solver_.HoldAt(parameter_, theta);
+    solver_.Solve(start, options_, solution_);
+    return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
   }
   [[nodiscard]] const Solution& solution() const { return solution_; }
 
  private:
-  double Ratio(const std::vector<double>& start) {
-    solver_.Solve(start, options_, solution_);
-    return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
-  }
-
   Problem problem_;
-  std::vector<std::size_t> parameters_;
+  std::size_t parameter_;
   const Solution& best_;
   double variance_;
   Evidence evidence_;
@@ -125,7 +108,7 @@ std::array<double, 2> RatiosAtEnds(const FittedProblem& fitted, const FitOptions
   search.predicts_last = true;
   const double variance = fitted.noise.variance;
   search.last_step = last_gain * variance / (fitted.solution.sum_of_squares + critical * variance);
-  HeldParameters held(fitted, kSlipForce, search, buffers);
+  HeldParameter held(fitted, kSlipForce, search, buffers);
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
   const auto ratio_at = [&](double step) {
     const std::vector<double> start = estimates.Beside(kSlipForce, step);
@@ -167,7 +150,7 @@ SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions&
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = problem.parameters.free().size() > kMany;
-  HeldParameters held(fitted, kSlipForce, search, buffers);
+  HeldParameter held(fitted, kSlipForce, search, buffers);
   LikelihoodProfile& likelihood = profile.likelihood;
   likelihood.critical = critical;
   likelihood.points.push_back({.law = LawOf(problem.parameters, best.theta)});
@@ -244,32 +227,10 @@ bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options
   if (half <= options.thresholds.rigid_error && is_inside && !only_rounding) {
     return false;
   }
-  HeldParameters held(fitted, kStiffness, SolverOptionsOf(options), buffers);
+  HeldParameter held(fitted, kStiffness, SolverOptionsOf(options), buffers);
   std::vector<double> start = best.theta;
   start[kStiffness] += std::log(kRigid);
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
-}
-
-ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
-                            SearchBuffers& buffers) {
-  const Problem& problem = fitted.problem;
-  const Solution& best = fitted.solution;
-  const Estimates& estimates = fitted.estimates;
-  constexpr double kStep = 0.05;
-  ProfiledRanges ranges = RangesAt(best);
-  const Parameter& shape = problem.parameters[kShape];
-  const double critical = estimates.quantile() * estimates.quantile();
-  HeldParameters held(fitted, kShape, SolverOptionsOf(options), buffers);
-  for (const double step : {-kStep, kStep}) {
-    std::vector<double> start = best.theta;
-    while (start[kShape] + step >= shape.lower && start[kShape] + step <= shape.upper) {
-      start[kShape] += step;
-      if (!(held.At(start[kShape], start) < critical)) break;
-      Include(ranges, held.solution().theta);
-      start = held.solution().theta;
-    }
-  }
-  return ranges;
 }
 
 std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
@@ -284,7 +245,7 @@ std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
   constexpr double kFirst = 1.0 / 256;
   constexpr int kBetween = 3;  // bisections between the last that is allowed and the next
   const double critical = estimates.quantile() * estimates.quantile();
-  HeldParameters held(fitted, kShape, SolverOptionsOf(options), buffers);
+  HeldParameter held(fitted, kShape, SolverOptionsOf(options), buffers);
   ProfiledRanges ranges = RangesAt(best);
   std::vector<double> from = best.theta;
   const auto is_allowed = [&](double alpha) {
@@ -354,7 +315,7 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
 /// θ where the likelihood of a parameter reaches the critical one on one side of the best fit; the
 /// bound where it does not before; nothing where it does not for a factor of a thousand.
 /// @param towards  −1 or 1
-std::optional<double> LikelihoodEnd(HeldParameters& held, const FittedProblem& fitted,
+std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fitted,
                                     std::size_t parameter, double towards) {
   const Estimates& estimates = fitted.estimates;
   const double farthest = std::log(kRigid);
@@ -376,77 +337,6 @@ std::optional<double> LikelihoodEnd(HeldParameters& held, const FittedProblem& f
   return is_bound ? std::optional(limit) : std::nullopt;
 }
 
-/// The region of two parameters; nothing where the parabola has no ellipse.
-std::optional<ConfidenceRegion> RegionOf(std::array<std::size_t, 2> pair,
-                                         const FittedProblem& fitted, const FitOptions& options,
-                                         SearchBuffers& buffers) {
-  constexpr int kRays = 36;
-  constexpr double kFarthest = 100.0;  // times as far as the parabola says
-  const auto& [problem, best, noise, estimates] = fitted;
-  const auto covariances = estimates.CovariancesOf(pair);
-  if (!covariances) return std::nullopt;
-  const auto& [covariance, white] = *covariances;
-  const Eigen::LLT<Eigen::Matrix2d> root(covariance);
-  if (root.info() != Eigen::Success || !(white.determinant() > 0)) return std::nullopt;
-  const Eigen::Matrix2d white_information = white.inverse();
-  const double critical =
-      2 * FQuantile(2.0, noise.degrees_of_freedom(problem.parameters.free().size()),
-                    1 - estimates.confidence());
-  HeldParameters held(fitted, pair, /*white_share=*/1.0, SolverOptionsOf(options), buffers);
-  ConfidenceRegion region{
-      .parameters = {problem.parameters.NameOf(pair[0]), problem.parameters.NameOf(pair[1])},
-      .boundary = {}};
-  const Eigen::Vector2d from(best.theta[pair[0]], best.theta[pair[1]]);
-  // α of a coordinate α/Tc: along the valley of a loop far from slip it grows as Tc does.
-  const auto theta_at = [&](const Eigen::Vector2d& step) -> Eigen::Vector2d {
-    Eigen::Vector2d theta = from + step;
-    if (pair[0] == kSlipForce) theta[1] *= std::exp(step[0]);
-    return theta;
-  };
-  Eigen::Matrix2d to_theta = Eigen::Matrix2d::Identity();
-  if (pair[0] == kSlipForce) to_theta(1, 0) = from[1];
-  const Eigen::Matrix2d to_step = to_theta.inverse();
-  const auto is_within = [&](const Eigen::Vector2d& theta) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Parameter& parameter = problem.parameters[pair[i]];
-      const double value = theta[static_cast<Eigen::Index>(i)];
-      if (value < parameter.lower || value > parameter.upper) return false;
-    }
-    return std::abs(theta[0] - from[0]) < std::log(kRigid);
-  };
-  std::vector<double> start = best.theta;
-  for (int k = 0; k < kRays; ++k) {
-    const double angle = 2 * std::numbers::pi * k / kRays;
-    const Eigen::Vector2d in_theta =
-        root.matrixL() * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    const Eigen::Vector2d ray = to_step * in_theta;
-    // In whitened coordinates the ray has length one.
-    const double share = 1 / in_theta.dot(white_information * in_theta);
-    double limit = kFarthest * std::sqrt(critical);
-    double beyond = limit;
-    if (!is_within(theta_at(limit * ray))) {
-      limit = 0.0;
-      for (int i = 0; i < std::numeric_limits<double>::digits; ++i) {
-        const double middle = limit / 2 + beyond / 2;
-        (is_within(theta_at(middle * ray)) ? limit : beyond) = middle;
-      }
-    }
-    const std::optional<double> step =
-        CriticalStep(std::min(std::sqrt(critical), limit), limit, [&](double at) {
-          const Eigen::Vector2d theta = theta_at(at * ray);
-          for (std::size_t i = 0; i < 2; ++i) start[pair[i]] = theta[static_cast<Eigen::Index>(i)];
-          const double found = std::sqrt(share * held.At(start) / critical);
-          if (held.solution().converged) start = held.solution().theta;
-          return found;
-        });
-    const Eigen::Vector2d end = theta_at(step.value_or(limit) * ray);
-    const Parameter& shape = problem.parameters[pair[1]];
-    if (!step && SideOf(shape, end[1]) != BoundSide::kLower) region.closed = false;
-    region.boundary.push_back({problem.parameters[pair[0]].ToValue(end[0]), shape.ToValue(end[1])});
-  }
-  return region;
-}
-
 }  // namespace
 
 ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOptions& options,
@@ -459,7 +349,7 @@ ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOption
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kRig);
   if (!std::isfinite(half)) return parameters;
   {
-    HeldParameters held(fitted, kRig, SolverOptionsOf(options), buffers);
+    HeldParameter held(fitted, kRig, SolverOptionsOf(options), buffers);
     const double critical = estimates.quantile() * estimates.quantile();
     const bool is_short = half < kParabolic;
     const bool is_parabola =
@@ -477,7 +367,7 @@ ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOption
     }
     ParameterEstimate& estimate = parameters[p];
     if (!estimate.lower95 || !estimate.upper95) continue;
-    HeldParameters held(fitted, p, SolverOptionsOf(options), buffers);
+    HeldParameter held(fitted, p, SolverOptionsOf(options), buffers);
     IntervalPart part{.source = IntervalSource::kProfile};
     const auto value_of = [&](std::optional<double> theta) {
       return theta ? std::optional(problem.parameters[p].ToValue(*theta)) : std::nullopt;
@@ -488,18 +378,6 @@ ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOption
     if (!part.lower || !part.upper) estimate.standard_error.reset();
   }
   return parameters;
-}
-
-std::vector<ConfidenceRegion> FindConfidenceRegions(const FittedProblem& fitted,
-                                                    const FitOptions& options,
-                                                    SearchBuffers& buffers) {
-  std::vector<ConfidenceRegion> regions;
-  for (const std::size_t p : {kStiffness, kSlipForce}) {
-    if (auto region = RegionOf({p, kShape}, fitted, options, buffers)) {
-      regions.push_back(std::move(*region));
-    }
-  }
-  return regions;
 }
 
 ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,

@@ -61,12 +61,6 @@ SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions&
 bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options,
                           SearchBuffers& buffers);
 
-/// The likelihood along α, from the estimate outwards. Where few samples lie on the bend of the
-/// branches σ and α are nearly confounded, and a fit is anywhere in a flat valley,
-/// at whose floor's end the parabola sees a steep wall.
-ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
-                            SearchBuffers& buffers);
-
 /// Profiles σ, α and Tc along the likelihood from the bound α = 0 upwards, each with half the
 /// interval that it has with α held; empty where α does not lie at that bound. There the parabola
 /// holds α, but a small α moves σ: at the same secant of a loop of T* the tangent σ is larger by
@@ -80,14 +74,6 @@ std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
 /// F is the critical one, to a hundredth; one that is not reached is open.
 ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOptions& options,
                                     SearchBuffers& buffers, ParameterEstimates parameters);
-
-/// Finds the joint confidence regions of σ and α and of Tc and α that have one: along rays from the
-/// best fit in the coordinates that make the parabola's ellipse a circle, the two parameters held
-/// and the others fitted again, the distance at which 2 ln Λ is the critical one. With Tc the
-/// second coordinate is α/Tc, which a loop far from slip determines.
-std::vector<ConfidenceRegion> FindConfidenceRegions(const FittedProblem& fitted,
-                                                    const FitOptions& options,
-                                                    SearchBuffers& buffers);
 
 /// Includes them in the intervals.
 ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,

@@ -137,44 +137,7 @@ std::vector<double> BestLook(std::span<const double> theta, std::size_t lag,
   return best;
 }
 
-/// Mean duration [s, or samples without a time] of the strokes until the force, of the model, has
-/// come to nine tenths of its largest along them.
-double KneeDuration(const Problem& problem, const Solution& solution, Response& response) {
-  constexpr double kSlides = 0.9;
-  std::vector<double> force(problem.size());
-  response.Bind(problem);
-  response.Evaluate(PointAt(problem, solution.theta), force);
-  double peak = 0.0;
-  for (const double value : force) peak = std::max(peak, std::abs(value));
-  double duration = 0.0;
-  double strokes = 0.0;
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    const bool timed = !record.velocity.empty();
-    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
-      const std::size_t turn = record.reversals[k];
-      const std::size_t end =
-          k + 1 < record.reversals.size() ? record.reversals[k + 1] : record.size() - 1;
-      const double sense = record.displacement[end] > record.displacement[turn] ? 1.0 : -1.0;
-      std::size_t i = turn;
-      while (i < end && sense * force[begin + i] < kSlides * peak) ++i;
-      duration += timed ? (record.time[i] - record.time[turn]) * record.units.half_duration
-                        : static_cast<double>(i - turn);
-      ++strokes;
-    }
-    begin += record.size();
-  }
-  return strokes > 0 ? duration / strokes : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
-
-void DenyLagBeyondKnee(const Problem& problem, const Solution& solution, Response& response,
-                       AdequacyTest& test) {
-  const auto lag = FindFit(test, "channel_lag");
-  if (lag == test.fits.end() || problem.data->is_forced()) return;
-  if (std::abs(lag->size) > KneeDuration(problem, solution, response)) test.fits.erase(lag);
-}
 
 void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
             SearchBuffers& buffers, AdequacyTest& test) {

@@ -28,10 +28,4 @@ void TryBacklash(const Problem& problem, const Solution& solution,
 void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
             SearchBuffers& buffers, AdequacyTest& test);
 
-/// Takes a lag from what was tried that lasts longer than the stick after a reversal, by the model:
-/// a contact that is read so late would keep its old force for as long. What moves a knee by more
-/// than its own width is a force of the speed.
-void DenyLagBeyondKnee(const Problem& problem, const Solution& solution, Response& response,
-                       AdequacyTest& test);
-
 }  // namespace mindahl::identification

@@ -142,7 +142,7 @@ constexpr std::array kTable = {
                  "within half a stroke the force passes through the whole law: noise of that "
                  "length cannot be distinguished from a misfit"},
     ThresholdRow{"rival_past", &Thresholds::rival_past, "ΔAICc",
-                 "intervals include both initial states, virgin and steady, if they differ by less",
+                 "one record of several is virgin, or steady, unlike the others if it gains more",
                  "evidence of e⁵ = 150 to 1: the two differ in a few samples only, where a single "
                  "odd reading decides"},
     ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
@@ -175,14 +175,6 @@ constexpr std::array kTable = {
                  "the law follows a load that varies by more: the amplitude of a sine with its "
                  "standard deviation, without the white noise of its readings",
                  "the force differs by as much where the contact slips"},
-    ThresholdRow{"visible_noise", &Thresholds::visible_noise, "of X",
-                 "the two channels' noise is compared if the displacement's is larger",
-                 "the third differences of a clean sine of 31 samples a cycle are as large"},
-    ThresholdRow{"noisier_displacement", &Thresholds::noisier_displacement, "times the force's",
-                 "the displacement is the channel to fit if its noise over X is so many times that "
-                 "of the force over T*",
-                 "along the loop's diagonal the force then makes 1/(1 + 5²) = 4 % of the "
-                 "residuals' variance"},
     ThresholdRow{
         "never_slips", &Thresholds::never_slips, "of Tc",
         "a steady loop that leaves more of the slip force unreached determines no asymmetry",

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -87,7 +86,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
     if (terms.size() <= kMostNested) {
       AddStartsOfSmallerModels(smaller, thinned, options, buffers, memory);
     }
-    Descend(smaller, options, buffers, nullptr);
+    Descend(smaller, options, buffers);
     if (!std::isfinite(solution.sum_of_squares)) continue;
     candidate.starts.push_back({.theta = {solution.theta.begin(), solution.theta.end(), memory},
                                 .cost = solution.sum_of_squares});
@@ -105,23 +104,12 @@ bool IsAmongKinks(const Parameters& parameters, const Solution& solution) {
 /// Searches of one problem, of which the lowest end is kept.
 class Rivals {
  public:
-  Rivals(const FitOptions& options, SearchBuffers& buffers, Solution& best,
-         std::vector<Descent>* descents)
-      : options_(options), buffers_(buffers), best_(best), descents_(descents) {}
+  Rivals(const FitOptions& options, SearchBuffers& buffers, Solution& best)
+      : options_(options), buffers_(buffers), best_(best) {}
 
-  /// @param drawn  of a start; no value: from next to a minimum that was found before
-  void From(std::span<const double> theta, std::optional<bool> drawn = {}) {
+  void From(std::span<const double> theta) {
     Solution& scratch = buffers_.scratch;
     buffers_.solver.Solve(theta, SolverOptionsOf(options_), scratch);
-    if (descents_ != nullptr) {
-      Descent& descent = descents_->emplace_back();
-      descent.start.assign(theta.begin(), theta.end());
-      std::vector<double> start = descent.start;
-      descent.start_cost = buffers_.solver.CostAt(start);
-      descent.drawn = drawn.value_or(false);
-      descent.is_rival = !drawn;
-      descent.solution = scratch;
-    }
     if (scratch.sum_of_squares < best_.sum_of_squares) std::swap(best_, scratch);
   }
 
@@ -131,7 +119,6 @@ class Rivals {
   const FitOptions& options_;
   SearchBuffers& buffers_;
   Solution& best_;
-  std::vector<Descent>* descents_;
 };
 
 /// Searches from next to a minimum: with slip that begins sooner or later, and with a smoother law.
@@ -177,8 +164,7 @@ void SearchOtherRigs(Rivals& rivals) {
 
 }  // namespace
 
-void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
-             std::vector<Descent>* descents) {
+void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
   Solution& best = *candidate.solution;
   best.sum_of_squares = std::numeric_limits<double>::infinity();
   best.converged = false;
@@ -186,15 +172,14 @@ void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buf
   best.report.message = "no starting point has the force's sign";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
-  Rivals rivals(options, buffers, best, descents);
-  for (const StartingPoint& start : candidate.starts) rivals.From(start.theta, start.drawn);
+  Rivals rivals(options, buffers, best);
+  for (const StartingPoint& start : candidate.starts) rivals.From(start.theta);
 }
 
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
-                         std::vector<Descent>* descents) {
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
   Solution& best = *candidate.solution;
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
-  Rivals rivals(options, buffers, best, descents);
+  Rivals rivals(options, buffers, best);
   const Parameters& parameters = candidate.problem.parameters;
   const Parameter& rig = parameters[kRig];
   if (!rig.absent && !rig.fixed && !rig.has_prior()) SearchOtherRigs(rivals);

@@ -20,15 +20,6 @@ struct SearchBuffers {
   std::array<Solution, 3> smaller;  // of models with one term less, and those that they contain
 };
 
-/// Holds the end of the descent from one starting point.
-struct Descent {
-  std::vector<double> start;  // θ
-  double start_cost = 0.0;    // on all samples
-  bool drawn = false;
-  bool is_rival = false;  // from next to a minimum that was found before
-  Solution solution;
-};
-
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
   Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
@@ -66,16 +57,12 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
                               std::pmr::memory_resource* memory);
 
 /// Solves from each starting point and keeps the best solution.
-/// @param descents  every start is recorded here, unless null
-void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
-             std::vector<Descent>* descents);
+void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
 
 /// Solves once more from next to the best solution where there may be lower minima, and keeps the
 /// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
 /// where the rig takes another part of the compliance. Where a start is given it is the only one.
-/// @param descents  likewise
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
-                         std::vector<Descent>* descents);
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
 
 /// Constants of the losses, each 95 % efficient for normal noise (Huber 1981; Holland & Welsch
 /// 1977).

@@ -435,8 +435,7 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
     plane.At(look);
     if (!std::isfinite(look.cost)) continue;
     const std::span<const double> theta = plane.theta();
-    starts.push_back(
-        {.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost, .drawn = true});
+    starts.push_back({.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost});
   }
   return starts;
 }

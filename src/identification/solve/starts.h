@@ -15,7 +15,6 @@ struct StartingPoint {
   std::pmr::vector<double> theta;  // all parameters
   double cost = 0.0;               // on the thinned record
   double look = 0.0;               // of the best look there
-  bool drawn = false;              // at random, not from the look
 };
 
 /// True if α is held at 0: the likelihood has a kink wherever a sample begins to slip, and minima
