@@ -241,7 +241,7 @@ void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& r
   const Problem& problem = fitted.problem;
   result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
   if (!result.mindlin_test) return;
-  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
+  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"), options.confidence)) {
     result.parameters = WidenByRanges(problem, ProfileShape(fitted, options, attempt.buffers),
                                       fitted.estimates.quantile(), std::move(result.parameters));
     Include(

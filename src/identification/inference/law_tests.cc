@@ -46,11 +46,11 @@ std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOpt
   return test;
 }
 
-bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha) {
-  constexpr double kOutside95 = 0.05;
+bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha,
+                         double confidence) {
   if (!alpha.lower95 || !alpha.upper95) return false;
   const bool is_excluded = kMindlinExponent < *alpha.lower95 || kMindlinExponent > *alpha.upper95;
-  return is_excluded && test.p_value > kOutside95;
+  return is_excluded && test.p_value > 1 - confidence;
 }
 
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,

@@ -19,7 +19,8 @@ std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOpt
                                        SearchBuffers& buffers);
 
 /// True if the likelihood allows α = 1/3, which the interval by its parabola excludes.
-bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
+bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha,
+                         double confidence);
 
 /// Holds α = 1/3 in a compliant rig.
 struct RigAlternative {
