@@ -47,7 +47,7 @@ fit tribometer_rig $tribometer --time-window 20:60 --model mindlin --rig-stiffne
 fit tribometer_load $tribometer --load-window 4.98:5.1
 fit tribometer_auto $tribometer --time-window 20:60 --model auto
 
-columns=(--displacement 5 --displacement-unit mm --force 7 --force-unit N --time 1 --time-unit ms)
+columns=(--displacement "5 [mm]" --force "7 [N]" --time "1 [ms]")
 fit oring seals/O-ring257_3bar.csv "${columns[@]}"
 fit nap seals/NAP310_5bar.csv "${columns[@]}"
 fit circle seals/Circle_1bar.csv "${columns[@]}"

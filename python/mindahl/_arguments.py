@@ -109,13 +109,15 @@ def priors_of(values: Optional[Mapping[str, Any]]) -> dict[str, _mindahl.Uncerta
     return priors
 
 
-def column_name(name: str, value: Any) -> str:
-    """A column by its name, or by its number counted from 1."""
+def column_text(name: str, value: Any, unit: Optional[str] = None) -> str:
+    """A column by its name or sum, or by its number counted from 1, with its unit."""
     if value is None:
-        return ""
-    if isinstance(value, str):
-        return value
-    return str(count(name, value, 1))
+        column = ""
+    elif isinstance(value, str):
+        column = value
+    else:
+        column = str(count(name, value, 1))
+    return f"{column} [{unit}]" if unit else column
 
 
 def path_text(path: Union[str, os.PathLike[str]]) -> str:

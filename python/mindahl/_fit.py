@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _mindahl
-from ._arguments import (Uncertain, array, assignments, column_name, contact_options, count, counts,
+from ._arguments import (Uncertain, array, assignments, column_text, contact_options, count, counts,
                          fitted_or_number, interval, mapping, names_of, number, on_off,
                          optional_number, pair, path_text, priors_of, uncertain)
 from ._contact import report_of
@@ -72,10 +72,7 @@ def fit(
     normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
-    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
-    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
-    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
-    normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
+    encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True,
     rig_stiffness: Optional[Union[Asked, tuple[float, float]]] = None,
@@ -112,8 +109,7 @@ def fit(
             displacement, force, time and normal_load_column choose others by name or number.
         fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
-    displacement_gain, displacement_zero and those of force, time and normal_load: the quantity in
-        its unit is gain*(number - zero), as of a column in volts. encoding: of files, as iconv
+    encoding: of files, as iconv
         names it. join: a list is one record in pieces, as of a logger that begins a file with
         every stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
@@ -223,7 +219,7 @@ def sweep(
     name = path_text(source) if is_path(source) else "sweep"
     answer = _mindahl.sweep(
         request, kind, name, names, arrays,
-        _mindahl.ColumnChoice(column_name("response", roles["response"]), units["response"] or ""),
+        column_text("response", roles["response"], units["response"]),
         optional_number("response_noise", response_noise))
     return report_of(answer, "sweep", ("parameters",))
 
@@ -251,9 +247,8 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
         given, request.covariate_columns(), count("max_rows", given["max_rows"], 1),
         None if most is None else count("max_memory", most, 1))
     request.columns = _mindahl.RecordColumns(
-        _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
-        _mindahl.ColumnChoice(unit=given["time_unit"] or ""),
-        _mindahl.ColumnChoice(unit=given["normal_load_unit"] or ""), [])
+        "", "", column_text("time", None, given["time_unit"]),
+        column_text("normal_load_column", None, given["normal_load_unit"]), [])
     return request, arguments
 
 

@@ -12,14 +12,10 @@ class InputError(ValueError): ...
 
 def with_keywords(message: str) -> str: ...
 
-class ColumnChoice:
-    def __init__(self, column: str = ..., unit: str = ..., gain: Optional[float] = ...,
-                 zero: float = ...) -> None: ...
-
 class RecordColumns:
-    def __init__(self, displacement: ColumnChoice, force: ColumnChoice, time: ColumnChoice,
-                 normal_load: ColumnChoice, covariates: Sequence[str],
-                 encoding: str = ...) -> None: ...
+    sample_rate: Optional[float]
+    def __init__(self, displacement: str, force: str, time: str, normal_load: str,
+                 covariates: Sequence[str], encoding: str = ...) -> None: ...
 
 class Record:
     @property
@@ -126,7 +122,7 @@ class Likelihood:
 
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
 def sweep(request: FitRequest, kind: str, name: str, names: Sequence[str],
-          arrays: Sequence[Floats], response: ColumnChoice,
+          arrays: Sequence[Floats], response: str,
           response_noise: Optional[float]) -> Answer: ...
 def terms() -> list[tuple[str, str]]: ...
 

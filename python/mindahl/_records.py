@@ -9,14 +9,11 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_name, is_array, is_frame, is_quantity, path_text, several,
+from ._arguments import (array, column_text, is_array, is_frame, is_quantity, path_text, several,
                          with_unit)
 from ._mindahl import Record
 
 Column = Union[str, int]
-Calibration = Mapping[str, tuple[Optional[float], float]]
-"""Gain and zero of a column, by its role."""
-
 # Units in which a quantity is read, by its role.
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",),
          "normal_load_column": ("N",)}
@@ -26,28 +23,18 @@ def columns_of(
     displacement: Optional[Column], force: Optional[Column], time: Optional[Column],
     normal_load_column: Optional[Column], displacement_unit: Optional[str],
     force_unit: Optional[str], time_unit: Optional[str], normal_load_unit: Optional[str],
-    covariates: Sequence[str] = (), calibration: Optional[Calibration] = None, encoding: str = "",
+    covariates: Sequence[str] = (), encoding: str = "",
 ) -> _mindahl.RecordColumns:
-    def choice(name: str, column: Optional[Column], unit: Optional[str]) -> _mindahl.ColumnChoice:
-        gain, zero = (calibration or {}).get(name, (None, 0.0))
-        return _mindahl.ColumnChoice(column_name(name, column), unit or "", gain, zero)
-
     return _mindahl.RecordColumns(
-        choice("displacement", displacement, displacement_unit),
-        choice("force", force, force_unit), choice("time", time, time_unit),
-        choice("normal_load_column", normal_load_column, normal_load_unit), list(covariates),
+        column_text("displacement", displacement, displacement_unit),
+        column_text("force", force, force_unit), column_text("time", time, time_unit),
+        column_text("normal_load_column", normal_load_column, normal_load_unit), list(covariates),
         encoding)
-
-
-def calibration_of(given: Mapping[str, Any]) -> Calibration:
-    """Gains and zeros among the arguments of a function that reads a record."""
-    return {role: (given.get(f"{name}_gain"), given.get(f"{name}_zero", 0.0))
-            for role, name in zip(UNITS, ("displacement", "force", "time", "normal_load"))}
 
 
 def record_options(given: Mapping[str, Any]) -> _mindahl.RecordColumns:
     """What the arguments of read_csv() say of the columns."""
-    return columns_of(calibration=calibration_of(given), **{name: given[name] for name in (
+    return columns_of(**{name: given[name] for name in (
         *UNITS, "displacement_unit", "force_unit", "time_unit", "normal_load_unit", "covariates",
         "encoding")})
 
@@ -57,22 +44,17 @@ def read_csv(
     force: Optional[Column] = None, time: Optional[Column] = None,
     normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
     force_unit: Optional[str] = None, time_unit: Optional[str] = None,
-    normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (),
-    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
-    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
-    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
-    normal_load_zero: float = 0.0, encoding: str = "",
+    normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (), encoding: str = "",
 ) -> Record:
     """Reads a hysteresis record from a CSV file as the program does.
 
     path: the file; delimiter, decimal mark, header and units are found by themselves.
-    displacement, force, time, normal_load_column: column by header name or number counted from 1;
-        by default recognised names, else columns 1 and 2.
+    displacement, force, time, normal_load_column: column by header name or number counted from 1,
+        or a sum with factors and an offset, "cell1+cell2", "raw*0.0123-4.5 [N]"; by default found
+        from names, units and numbers.
     displacement_unit, force_unit, time_unit, normal_load_unit: symbols such as "um" and "kN"; by
         default the header's, else m, N and s with a note.
     covariates: further columns, by name or number, kept in units of their own.
-    force_gain, force_zero and the like: calibration of a column in volts; the force in its unit is
-        gain*(number - zero).
     encoding: as iconv names it; by default UTF-8, or found from the first bytes.
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
@@ -89,8 +71,6 @@ class RecordArguments:
         self.units = {name: given.get(name) for name in (
             "displacement_unit", "force_unit", "time_unit", "normal_load_unit")}
         self.covariates = list(covariates)
-        self.calibration = {role: values for role, values in calibration_of(given).items()
-                            if values != (None, 0.0)}
         self.encoding = given.get("encoding", "")
         self.max_rows = max_rows
         """Of the files that are still to be read, all together."""
@@ -104,7 +84,7 @@ class RecordArguments:
                 raise ValueError(f"{role}: must be the name or the number of a column here, where "
                                  "the columns are in a file or a frame")
         return columns_of(**self.roles, **self.units, covariates=self.covariates,
-                          calibration=self.calibration, encoding=self.encoding)
+                          encoding=self.encoding)
 
     def refuse_choices(self, what: str) -> None:
         given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
@@ -159,8 +139,7 @@ class RecordArguments:
                 raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
                                  f"{len(arrays[0])}: give as many of both")
         return _mindahl.record_of_columns(
-            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates,
-                                            calibration=self.calibration, encoding=""))
+            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates))
 
 
 def is_path(value: Any) -> bool:

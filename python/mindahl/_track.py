@@ -96,10 +96,7 @@ def track(
     normal_load: Optional[float] = None, normal_load_column: Any = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
-    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
-    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
-    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
-    normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
+    encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
@@ -117,7 +114,7 @@ def track(
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
-    source, force, displacement, time, normal_load_column, units, gains, zeros and encoding: as of
+    source, force, displacement, time, normal_load_column, units and encoding: as of
         fit(). A file is read piece by piece, in constant memory; a list of sources
         is one test in this order, and no cycle extends over two sources unless join is
         True.

@@ -143,7 +143,7 @@ Answer Validate(std::size_t cases, std::uint64_t seed) {
 /// @param table  names and values of the columns; empty: the request's file is read
 Answer Sweep(const request::FitRequest& request, const std::string& kind, const std::string& name,
              const std::vector<std::string>& names, const std::vector<Array>& arrays,
-             const io::ColumnChoice& response, std::optional<double> response_noise) {
+             const std::string& response, std::optional<double> response_noise) {
   std::vector<io::NamedColumn> table = ColumnsOfArrays(names, arrays);
   bool converged = false;
   Answer answer = AnswerOf([&](const request::Tell& note) {
@@ -304,7 +304,7 @@ void AddAnswers(py::module_& module) {
       "read_displacement_path",
       [](const std::string& path, const std::string& unit) {
         const std::vector<double> samples =
-            io::ReadDisplacementPath(path, {.column = "", .unit = unit});
+            io::ReadDisplacementPath(path, unit.empty() ? "" : "[" + unit + "]");
         return Array(static_cast<py::ssize_t>(samples.size()), samples.data());
       },
       py::arg("path"), py::arg("unit"));

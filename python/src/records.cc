@@ -12,7 +12,6 @@
 namespace mindahl::python {
 
 namespace py = pybind11;
-using io::ColumnChoice;
 using io::RecordColumns;
 
 std::vector<io::NamedColumn> ColumnsOfArrays(const std::vector<std::string>& names,
@@ -61,7 +60,7 @@ py::dict ColumnsUsed(const NamedRecord& record) {
     if (!column) return;
     py::dict described;
     described["name"] = column->name;
-    described["number"] = column->number;
+    described["index"] = column->index;
     described["unit"] = column->unit;
     columns[role] = described;
   };
@@ -80,23 +79,20 @@ py::object RecordColumn(const py::object& self) {
 }  // namespace
 
 void AddRecords(py::module_& module) {
-  py::class_<ColumnChoice>(module, "ColumnChoice")
-      .def(py::init(
-               [](std::string column, std::string unit, std::optional<double> gain, double zero) {
-                 return ColumnChoice{std::move(column), std::move(unit), gain, zero};
-               }),
-           py::arg("column") = "", py::arg("unit") = "", py::arg("gain") = py::none(),
-           py::arg("zero") = 0.0);
   py::class_<RecordColumns>(module, "RecordColumns")
-      .def(py::init([](ColumnChoice displacement, ColumnChoice force, ColumnChoice time,
-                       ColumnChoice normal_load, std::vector<std::string> covariates,
+      .def(py::init([](std::string displacement, std::string force, std::string time,
+                       std::string normal_load, std::vector<std::string> covariates,
                        std::string encoding) {
-             return RecordColumns{std::move(displacement), std::move(force),
-                                  std::move(time),         std::move(normal_load),
-                                  std::move(covariates),   std::move(encoding)};
+             return RecordColumns{.displacement = std::move(displacement),
+                                  .force = std::move(force),
+                                  .time = std::move(time),
+                                  .normal_load = std::move(normal_load),
+                                  .covariates = std::move(covariates),
+                                  .encoding = std::move(encoding)};
            }),
            py::arg("displacement"), py::arg("force"), py::arg("time"), py::arg("normal_load"),
-           py::arg("covariates"), py::arg("encoding") = "");
+           py::arg("covariates"), py::arg("encoding") = "")
+      .def_readwrite("sample_rate", &RecordColumns::sample_rate);
   py::class_<NamedRecord>(module, "Record",
                           "A hysteresis record in SI units, as it was read; arrays are read-only.")
       .def_readonly("name", &NamedRecord::name, "what messages and reports call it")
@@ -110,7 +106,7 @@ void AddRecords(py::module_& module) {
       .def_property_readonly("covariates", &CovariatesOf,
                              "other columns by name, in units of their own")
       .def_property_readonly("columns", &ColumnsUsed,
-                             "which column each quantity was read from: name, number, unit")
+                             "which column each quantity was read from: name, index, unit")
       .def_property_readonly(
           "is_torsional", [](const NamedRecord& record) { return record.file.is_torsional; },
           "a torque against an angle?")

@@ -35,7 +35,7 @@ struct FitCommandOptions {
   std::string report_path;
   bool has_details = false;
   std::string sweep;  // "" for a record
-  io::ColumnChoice response;
+  std::string response;
   std::optional<double> response_noise;
 };
 
@@ -67,9 +67,8 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
 
 void RequireSweepOptions(const CLI::App& command) {
   constexpr auto kOfSweeps = std::to_array<std::string_view>(
-      {"strict", "help", "sweep", "json", "response", "response-unit", "response-noise",
-       "displacement", "force", "displacement-unit", "force-unit", "encoding", "displacement-gain",
-       "displacement-zero", "force-gain", "force-zero", "fix", "model", "confidence"});
+      {"strict", "help", "sweep", "json", "response", "response-noise", "displacement", "force",
+       "encoding", "fix", "model", "confidence"});
   for (const OptionState& option : OptionsOf(command)) {
     const bool is_of_sweeps = std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end();
     if (!option.is_given || is_of_sweeps) continue;
@@ -91,8 +90,7 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
   if (!options.sweep.empty()) return RunSweep(options, command, console);
-  if (!options.response.column.empty() || !options.response.unit.empty() ||
-      options.response_noise) {
+  if (!options.response.empty() || options.response_noise) {
     throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
   }
   const FitRequest& request = options.request;
@@ -136,13 +134,12 @@ void AddFitCommand(CLI::App& app, Console& console) {
            "as lock-in rigs report: secant, of the loop from end to\nend, or tangent, of a small "
            "oscillation about a force that was reached")
       .OneOf({"secant", "tangent"});
-  sweeps.Add("--response", options->response.column,
-             "column of the stiffness or compliance; default a recognised name;\n--displacement or "
-             "--force names the column of the amplitude",
-             "COL");
-  sweeps.Add("--response-unit", options->response.unit,
-             "unit of the response, as N/um or um/N; default the header's, else N/m\nor m/N",
-             "UNIT");
+  sweeps.Add(
+      "--response", options->response,
+      "column of the stiffness or compliance, with its unit if the header has\nnone, "
+      "\"2 [N/um]\"; default a recognised name; --displacement or --force\nnames the column of "
+      "the amplitude",
+      "COL");
   sweeps.Add("--response-noise", options->response_noise,
              "known standard deviation of a response [N/m] or [m/N]", "S");
   const OptionGroup group(command, "Results");

@@ -222,41 +222,22 @@ void AddJoin(CLI::App& command, FitRequest& options) {
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const OptionGroup group(command, std::string(kColumnGroup));
-  const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    group.Add(name, choice.column, description, "COL");
-  };
-  const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    group.Add(name, choice.unit, description, "UNIT");
-  };
-  column("--displacement", columns.displacement,
-         "displacement column by header name or 1-based number; default a\nrecognised name, else "
-         "column 1");
-  column("--force", columns.force,
-         "force column, likewise; default a recognised name, else column 2");
-  column("--time", columns.time, "time column; optional");
-  column("--normal-load-column", columns.normal_load, "normal load column; optional");
-  unit("--displacement-unit", columns.displacement,
-       "m, cm, mm, um, nm, in, ft, mil; of an angle rad, mrad, deg, rev;\n"
-       "default the header's, else m");
-  unit("--force-unit", columns.force,
-       "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m',\n"
-       "'uN m', 'kN m', 'N mm', 'lbf in', 'lbf ft'; else the header's or N");
-  unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
-  unit("--normal-load-unit", columns.normal_load,
-       "unit of the normal load, a force of --force-unit");
-  const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
-                               const std::string& description) {
-    group.Add(name + "-gain", choice.gain,
-              "gain [unit of the " + description + "/number]: the " + description +
-                  " is\nG*(number - zero) in " + name +
-                  "-unit, else in\nthe header's unit where that is one, else in SI",
-              "G");
-    group.Add(name + "-zero", choice.zero, "number [-] in the column that stands for zero", "Z");
-  };
-  calibration("--displacement", columns.displacement, "displacement");
-  calibration("--force", columns.force, "force");
-  calibration("--time", columns.time, "time");
-  calibration("--normal-load", columns.normal_load, "normal load");
+  group.Add(
+      "--displacement", columns.displacement,
+      "displacement column: header name or number from 1, with its unit if\nthe header has "
+      "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
+      "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; found from names,\nunits and numbers by default; m, cm, mm, um, nm, in, or "
+      "rad, deg",
+      "COL");
+  group.Add("--force", columns.force,
+            "force column, likewise: \"cell1+cell2\"; N, mN, uN, kN, lbf, kgf; of a\ntorque 'N m', "
+            "'N mm'",
+            "COL");
+  group.Add("--time", columns.time, "time column, likewise; optional", "COL");
+  group.Add("--normal-load-column", columns.normal_load, "normal load column, likewise; optional",
+            "COL");
+  group.Add("--sample-rate", columns.sample_rate, "samples a second [Hz], where there is no time",
+            "HZ");
   group.Add("--encoding", columns.encoding,
             "encoding of the files, as iconv names it [latin1, sjis, utf-16le];\ndefault UTF-8, or "
             "found from their first bytes",
@@ -264,24 +245,15 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
 }
 
 void RequireNoColumns(const io::RecordColumns& columns) {
-  const auto require = [](const io::ColumnChoice& choice, std::string_view option) {
-    const std::string_view given = choice.column.empty() ? choice.unit : choice.column;
-    if (choice.gain || choice.zero != 0) {
-      throw InputError(fmt::format("--{}-{}: there is no record to calibrate: give --record",
-                                   option, choice.gain ? "gain" : "zero"));
-    }
+  const auto require = [](const std::string& given, std::string_view option) {
     if (given.empty()) return;
-    throw InputError(fmt::format("--{}{} {}: there is no record to read a column of: give --record",
-                                 option,
-                                 choice.column.empty()     ? "-unit"
-                                 : option == "normal-load" ? "-column"
-                                                           : "",
-                                 given));
+    throw InputError(
+        fmt::format("{} {}: there is no record to read a column of: give --record", option, given));
   };
-  require(columns.displacement, "displacement");
-  require(columns.force, "force");
-  require(columns.time, "time");
-  require(columns.normal_load, "normal-load");
+  require(columns.displacement, "--displacement");
+  require(columns.force, "--force");
+  require(columns.time, "--time");
+  require(columns.normal_load, "--normal-load-column");
 }
 
 /// Breaks a list of names after every few of them.

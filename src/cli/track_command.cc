@@ -106,15 +106,6 @@ std::uint64_t SeedOf(const CLI::App& command) {
   return seed;
 }
 
-/// Refuses the unit of a column that the record does not have.
-void RequireUnitOf(std::string_view option, const io::ColumnChoice& choice,
-                   const std::optional<io::ChosenColumn>& column) {
-  if (choice.unit.empty() || column) return;
-  throw InputError(fmt::format(
-      "{} {}: the record has no such column, so this has no effect: name it with {}", option,
-      choice.unit, option == "--time-unit" ? "--time" : "--normal-load-column"));
-}
-
 class TrackRun {
  public:
   TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console,
@@ -171,10 +162,7 @@ class TrackRun {
 };
 
 void TrackRun::Begin(campaign::TrackOptions& made) {
-  const io::RecordFile& layout = run_.layout();
   TrackedTest& test = run_.test();
-  RequireUnitOf("--time-unit", options_.track.fit.columns.time, layout.time);
-  RequireUnitOf("--normal-load-unit", options_.track.fit.columns.normal_load, layout.normal_load);
   if (!run_.chosen_terms().empty()) messages_.Note(run_.chosen_terms());
   const double gate = *made.fit.preparation.reversal_gate;
   if (!run_.reading().gate_is_given && gate > 0) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,8 +38,8 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   request::TradeoffRequest asked = options.study;
   if (!options.path.empty()) {
     asked.path_name = options.path;
-    asked.displacement =
-        io::ReadDisplacementPath(options.path, {.column = "", .unit = options.path_unit});
+    asked.displacement = io::ReadDisplacementPath(
+        options.path, options.path_unit.empty() ? "" : fmt::format("[{}]", options.path_unit));
   }
   const Messages messages{console.err, "tradeoff"};
   std::optional<Progress> progress;

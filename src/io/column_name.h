@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "io/expression.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/record_reader.h"
@@ -29,6 +30,12 @@ std::string_view WithoutBrackets(std::string_view cell);
 /// True for a bracketed text and for the symbol of a unit usual in such files (mm, N, s, V,
 /// bar...).
 bool LooksLikeUnit(std::string_view cell);
+
+/// Holds what the user gives for each role.
+struct GivenColumns {
+  Expression displacement, force, time, normal_load;
+};
+GivenColumns ReadGivenColumns(const CsvTable& table, const RecordColumns& columns);
 
 /// RecordOf() of rows the order of whose times is for the caller to judge.
 RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns);

@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "io/column_name.h"
 #include "io/csv_tokenizer.h"
+#include "io/expression.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
@@ -68,24 +69,19 @@ struct Role {
   std::optional<Unit> (*find_unit)(std::string_view);
   std::string (*unit_symbols)();
   std::string_view si_unit;
-  std::string_view option;       ///< command-line option that names the column
-  std::string_view unit_option;  ///< likewise its unit
+  std::string_view option;  ///< command-line option that names the column
 };
 
 constexpr Role kDisplacement{
-    "displacement",   kDisplacementNames,   LengthUnit, LengthUnitSymbols, "m",
-    "--displacement", "--displacement-unit"};
-constexpr Role kForce{"force", kForceNames, ForceUnit,     ForceUnitSymbols,
-                      "N",     "--force",   "--force-unit"};
-constexpr Role kAngle{"displacement",   kDisplacementNames,   AngleUnit, AngleUnitSymbols, "rad",
-                      "--displacement", "--displacement-unit"};
-constexpr Role kTorque{"force", kForceNames, TorqueUnit,    TorqueUnitSymbols,
-                       "N m",   "--force",   "--force-unit"};
-constexpr Role kTime{"time", kTimeNames, TimeUnit, TimeUnitSymbols, "s", "--time", "--time-unit"};
-constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, "", "--covariate", ""};
-constexpr Role kNormalLoad{
-    "normal load", kNormalLoadNames,       ForceUnit,           ForceUnitSymbols,
-    "N",           "--normal-load-column", "--normal-load-unit"};
+    "displacement", kDisplacementNames, LengthUnit, LengthUnitSymbols, "m", "--displacement"};
+constexpr Role kForce{"force", kForceNames, ForceUnit, ForceUnitSymbols, "N", "--force"};
+constexpr Role kAngle{"displacement", kDisplacementNames, AngleUnit, AngleUnitSymbols,
+                      "rad",          "--displacement"};
+constexpr Role kTorque{"force", kForceNames, TorqueUnit, TorqueUnitSymbols, "N m", "--force"};
+constexpr Role kTime{"time", kTimeNames, TimeUnit, TimeUnitSymbols, "s", "--time"};
+constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, "", "--covariate"};
+constexpr Role kNormalLoad{"normal load", kNormalLoadNames,      ForceUnit, ForceUnitSymbols,
+                           "N",           "--normal-load-column"};
 
 std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
 std::string LengthOrAngleUnitSymbols() { return LengthUnitSymbols() + ", " + AngleUnitSymbols(); }
@@ -96,13 +92,13 @@ std::optional<Unit> LengthOrAngleUnit(std::string_view symbol) {
 
 /// A joint carries a torque, a twisted contact a normal load.
 constexpr Role kLoadOfTorsion{
-    "normal load", kNormalLoadNames,       ForceOrTorqueUnit,   ForceOrTorqueUnitSymbols,
-    "N",           "--normal-load-column", "--normal-load-unit"};
+    "normal load", kNormalLoadNames,      ForceOrTorqueUnit, ForceOrTorqueUnitSymbols,
+    "N",           "--normal-load-column"};
 
 /// Column of the motion that drives a simulated contact or joint.
 constexpr Role kDrive{
-    "displacement",   kDisplacementNames,   LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
-    "--displacement", "--displacement-unit"};
+    "displacement",  kDisplacementNames, LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
+    "--displacement"};
 
 /// Returns the unit of one quantity over another, "N/um".
 std::optional<Unit> RatioUnit(std::string_view symbol,
@@ -124,16 +120,14 @@ constexpr Role kStiffness{
     [](std::string_view symbol) { return RatioUnit(symbol, ForceUnit, LengthUnit); },
     [] { return std::string("a force over a length, as N/um"); },
     "N/m",
-    "--response",
-    "--response-unit"};
+    "--response"};
 constexpr Role kCompliance{
     "compliance",
     kResponseNames,
     [](std::string_view symbol) { return RatioUnit(symbol, LengthUnit, ForceUnit); },
     [] { return std::string("a length over a force, as um/N"); },
     "m/N",
-    "--response",
-    "--response-unit"};
+    "--response"};
 
 /// Lower case, with '_' and '-' as blanks; a name of one letter stays as it is.
 std::string Normalized(std::string_view name) {
@@ -178,6 +172,11 @@ class ColumnFinder {
                                    table_.file(), choice, role.name, table_.columns(),
                                    table_.columns() == 1 ? "" : "s"));
     }
+    if (const auto column = Named(choice, role)) return *column;
+    throw InputError(fmt::format("{}: {}", table_.file(), Unknown(choice, role)));
+  }
+
+  std::optional<std::size_t> Named(std::string_view choice, const Role& role) const {
     const std::string lower = LowerCase(choice);
     const auto full = [&](std::size_t column) -> std::string_view {
       return table_.names()[column];
@@ -194,8 +193,21 @@ class ColumnFinder {
       if (found.size() > 1) ThrowAmbiguous(role, found);
       if (found.size() == 1) return found.front();
     }
-    throw InputError(fmt::format("{}: no column is called '{}' (for the {}){} {}", table_.file(),
-                                 choice, role.name, DidYouMean(choice, Names()), Listing()));
+    return std::nullopt;
+  }
+
+  /// "no column is called 'z' (for the force): the columns are …".
+  [[nodiscard]] std::string Unknown(std::string_view choice, const Role& role) const {
+    return fmt::format("no column is called '{}' (for the {}){} {}", choice, role.name,
+                       DidYouMean(choice, Names()), Listing());
+  }
+
+  /// The columns that the user gives for a role.
+  [[nodiscard]] Expression Read(const std::string& text, const Role& role) const {
+    return ReadExpression(
+        text, table_.columns(), [&](std::string_view name) { return Named(name, role); },
+        fmt::format("{}: {} {}", table_.file(), role.option, text),
+        [&](std::string_view name) { return Unknown(name, role); });
   }
 
   /// The best match for a role among the columns that are not `taken`.
@@ -223,8 +235,9 @@ class ColumnFinder {
     const std::string of_row = UnitOfRow(column);
     if (!StatesOneUnit(column)) {
       throw InputError(fmt::format(
-          "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}{}", Header(),
-          Label(column), of_name, of_row, option.empty() ? "" : " with ", option));
+          "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}", Header(),
+          Label(column), of_name, of_row,
+          option.empty() ? "" : fmt::format(" with {} '{} [{}]'", option, column + 1, of_name)));
     }
     return of_name.empty() ? of_row : of_name;
   }
@@ -321,7 +334,7 @@ class ColumnReader {
       : table_(table), finder_(finder), notes_(notes) {}
 
   /// @throws InputError when the choice's unit, or else the header's, is not one for the role.
-  Unit FindUnit(const Role& role, std::size_t column, const ColumnChoice& choice) {
+  Unit FindUnit(const Role& role, std::size_t column, const Expression& choice) {
     const std::string& chosen = choice.unit;
     if (!chosen.empty()) {
       if (const auto unit = role.find_unit(chosen)) return *unit;
@@ -333,15 +346,15 @@ class ColumnReader {
                                    table_.file(), role.name, ForMessage(chosen),
                                    role.unit_symbols()));
     }
-    const std::string stated = finder_.HeaderUnit(column, role.unit_option);
+    const std::string stated = finder_.HeaderUnit(column, role.option);
     if (stated.empty()) {
-      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} sets another",
+      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
                                    table_.file(), role.name, finder_.Label(column), role.si_unit,
-                                   role.unit_option));
+                                   role.option, column + 1, role.si_unit));
       return {.symbol = std::string(role.si_unit)};
     }
     if (const auto unit = role.find_unit(stated)) return *unit;
-    if (choice.gain) return {.symbol = std::string(role.si_unit)};
+    if (choice.is_scaled) return {.symbol = std::string(role.si_unit)};
     if (IsPressureUnit(stated)) {
       throw InputError(PressureText(
           fmt::format("{}:{}: {}", finder_.Header(), column + 1, finder_.Label(column)), stated,
@@ -349,17 +362,17 @@ class ColumnReader {
     }
     throw InputError(
         fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
-                    "of {}, or choose the unit with {}",
+                    "of {}, or choose the unit with {} '{} [{}]'",
                     finder_.Header(), column + 1, ForMessage(stated), finder_.Label(column),
-                    role.name, role.unit_symbols(), role.unit_option));
+                    role.name, role.unit_symbols(), role.option, column + 1, role.si_unit));
   }
 
   /// True if the two are an angle and a torque: by their units, and by name where there is none.
   /// @throws InputError when only one of them is
-  bool IsTorsional(std::size_t displacement, const ColumnChoice& displacement_choice,
-                   std::size_t force, const ColumnChoice& force_choice) const {
-    const auto stated = [&](const Role& role, std::size_t column, const ColumnChoice& choice) {
-      return choice.unit.empty() ? finder_.HeaderUnit(column, role.unit_option) : choice.unit;
+  bool IsTorsional(std::size_t displacement, const Expression& displacement_choice,
+                   std::size_t force, const Expression& force_choice) const {
+    const auto stated = [&](const Role& role, std::size_t column, const Expression& choice) {
+      return choice.unit.empty() ? finder_.HeaderUnit(column, role.option) : choice.unit;
     };
     const std::string displacement_unit = stated(kDisplacement, displacement, displacement_choice);
     const std::string force_unit = stated(kForce, force, force_choice);
@@ -371,40 +384,43 @@ class ColumnReader {
     if ((is_angle && is_force) || (is_torque && is_length)) {
       throw InputError(fmt::format(
           "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
-          "choose other columns, or units with --displacement-unit and --force-unit",
+          "choose other columns, or give their units, as in --force '{} [N]'",
           table_.file(), finder_.Label(displacement),
-          displacement_unit.empty() ? "rad" : displacement_unit, finder_.Label(force), force_unit));
+          displacement_unit.empty() ? "rad" : displacement_unit, finder_.Label(force), force_unit,
+          force + 1));
     }
     return is_angle || is_torque;
   }
 
-  std::vector<double> Read(const Role& role, std::size_t column, Unit unit,
-                           const ColumnChoice& choice) {
-    const std::span<const double> numbers = table_.Numbers(column);
-    std::vector<double> values(numbers.size());
-    if (choice.gain || choice.zero != 0) {
-      notes_.push_back(fmt::format("{}: {} [{}] is {}·({} − {})", table_.file(), role.name,
-                                   unit.symbol, choice.gain.value_or(1.0), finder_.Label(column),
-                                   choice.zero));
-    }
-    unit.numerator *= choice.gain.value_or(1.0);
-    for (std::size_t row = 0; row < numbers.size(); ++row) {
-      values[row] = unit.ToSi(numbers[row] - choice.zero);
+  std::vector<double> Read(const Role& role, std::size_t column, const Unit& unit,
+                           const Expression& choice) {
+    std::vector<double> values(table_.rows(), choice.offset);
+    const auto add = [&](std::size_t of_column, double weight) {
+      const std::span<const double> numbers = table_.Numbers(of_column);
+      for (std::size_t row = 0; row < values.size(); ++row) values[row] += weight * numbers[row];
+    };
+    if (choice.terms.empty()) add(column, 1.0);
+    for (const Expression::Term& term : choice.terms) add(term.column, term.weight);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      const double value = values[row];
+      values[row] = unit.ToSi(value);
       if (!std::isfinite(values[row])) {
         throw InputError(fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 {}",
                                      table_.file(), table_.lines()[row], column + 1, role.name,
-                                     numbers[row], unit.symbol, role.si_unit));
+                                     value, unit.symbol, role.si_unit));
       }
     }
     return values;
   }
 
-  ChosenColumn Describe(std::size_t column, const Unit& unit, const ColumnChoice& choice) const {
-    return {.name = table_.names().empty() ? "" : table_.names()[column],
-            .number = column + 1,
-            .unit = unit.symbol,
-            .gain = choice.gain.value_or(1.0),
-            .zero = choice.zero};
+  ChosenColumn Describe(std::size_t column, const Unit& unit, const Expression& choice,
+                        const std::string& text) const {
+    const bool is_sum = choice.is_scaled || choice.terms.size() > 1;
+    return {.name = is_sum                   ? text
+                    : table_.names().empty() ? ""
+                                             : table_.names()[column],
+            .index = column + 1,
+            .unit = unit.symbol};
   }
 
  private:
@@ -459,7 +475,7 @@ class RoleAssigner {
   RoleAssigner(const CsvTable& table, const ColumnFinder& finder, std::vector<std::string>& notes)
       : table_(table), finder_(finder), notes_(notes), taken_(table.columns(), false) {}
 
-  Assignment Assign(const RecordColumns& columns) {
+  Assignment Assign(const GivenColumns& columns, const std::vector<std::string>& covariates) {
     std::optional<std::size_t> displacement = TakeChosen(kDisplacement, columns.displacement);
     std::optional<std::size_t> force = TakeChosen(kForce, columns.force);
     std::optional<std::size_t> time = TakeChosen(kTime, columns.time);
@@ -468,7 +484,7 @@ class RoleAssigner {
     TakeRecognized(kForce, force);
     TakeRecognized(kTime, time);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
-    for (const std::string& covariate : columns.covariates) {
+    for (const std::string& covariate : covariates) {
       taken_[finder_.Chosen(covariate, kCovariate)] = true;
     }
     TakeRecognized(kNormalLoad, normal_load);
@@ -486,16 +502,17 @@ class RoleAssigner {
   }
 
  private:
-  std::optional<std::size_t> TakeChosen(const Role& role, const ColumnChoice& choice) {
-    if (choice.column.empty()) return std::nullopt;
-    const std::size_t column = finder_.Chosen(choice.column, role);
-    if (taken_[column]) {
-      throw InputError(
-          fmt::format("{}: {} is chosen for the {} and for another quantity: choose two columns",
-                      table_.file(), finder_.Label(column), role.name));
+  std::optional<std::size_t> TakeChosen(const Role& role, const Expression& choice) {
+    for (const Expression::Term& term : choice.terms) {
+      if (taken_[term.column]) {
+        throw InputError(
+            fmt::format("{}: {} is chosen for the {} and for another quantity: choose two columns",
+                        table_.file(), finder_.Label(term.column), role.name));
+      }
+      taken_[term.column] = true;
     }
-    taken_[column] = true;
-    return column;
+    if (choice.terms.empty()) return std::nullopt;
+    return choice.terms.front().column;
   }
 
   void TakeRecognized(const Role& role, std::optional<std::size_t>& column) {
@@ -565,10 +582,10 @@ class RoleAssigner {
 
 /// Returns why a column that nobody asked for cannot be used; "" when it can.
 std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const Role& role,
-                        std::size_t column, const ColumnChoice& choice) {
+                        std::size_t column, const Expression& choice) {
   if (!table.HasNumbers(column)) return "holds no numbers";
-  if (choice.gain) return "";
-  const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column, role.unit_option) : "";
+  if (choice.is_scaled) return "";
+  const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column, role.option) : "";
   if (IsPressureUnit(stated)) return fmt::format("is a pressure, in {}", stated);
   if (!stated.empty() && !role.find_unit(stated)) {
     return fmt::format("has the unit '{}', not one of {}", stated, role.unit_symbols());
@@ -622,13 +639,13 @@ class CovariateReader {
 
  private:
   [[nodiscard]] bool IsRead(std::size_t column) const {
-    return std::ranges::find(file_.covariates, column + 1, &ChosenColumn::number) !=
+    return std::ranges::find(file_.covariates, column + 1, &ChosenColumn::index) !=
            file_.covariates.end();
   }
 
   void Add(std::size_t column, const std::string& name, std::span<const double> numbers) {
-    const std::string unit = finder_.HeaderUnit(column, kCovariate.unit_option);
-    file_.covariates.push_back({.name = name, .number = column + 1, .unit = unit});
+    const std::string unit = finder_.HeaderUnit(column, kCovariate.option);
+    file_.covariates.push_back({.name = name, .index = column + 1, .unit = unit});
     file_.record.covariates.push_back(
         {.name = name, .unit = unit, .values = {numbers.begin(), numbers.end()}});
   }
@@ -639,21 +656,15 @@ class CovariateReader {
   RecordFile& file_;
 };
 
-Role WithUnitOption(Role role, std::string_view option) {
-  role.unit_option = option;
-  return role;
-}
-
-constexpr std::string_view kUnitOfPath = "--path-unit";
-
 /// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
 /// recognised. Taking SI for granted is the documented default here.
 std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
-                                   const ColumnChoice& choice) {
+                                   const std::string& text) {
   const ColumnFinder finder(table);
+  const Expression choice = finder.Read(text, role);
   std::size_t column = 0;
-  if (!choice.column.empty()) {
-    column = finder.Chosen(choice.column, role);
+  if (!choice.terms.empty()) {
+    column = choice.terms.front().column;
   } else {
     const std::vector<bool> none_taken(table.columns(), false);
     const bool first_is_time = finder.Recognized(kTime, none_taken) == std::size_t{0};
@@ -727,21 +738,15 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
   return joined;
 }
 
-void RequireCalibration(const Role& role, const ColumnChoice& choice) {
-  if (std::isfinite(choice.gain.value_or(1.0)) && choice.gain != 0.0 &&
-      std::isfinite(choice.zero)) {
-    return;
-  }
-  throw InputError(
-      fmt::format("the gain {} and zero {} of the {} are invalid: must be finite, the gain not 0",
-                  choice.gain.value_or(1.0), choice.zero, role.name));
+GivenColumns ReadGivenColumns(const CsvTable& table, const RecordColumns& columns) {
+  const ColumnFinder finder(table);
+  return {.displacement = finder.Read(columns.displacement, kDisplacement),
+          .force = finder.Read(columns.force, kForce),
+          .time = finder.Read(columns.time, kTime),
+          .normal_load = finder.Read(columns.normal_load, kNormalLoad)};
 }
 
 RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
-  RequireCalibration(kDisplacement, columns.displacement);
-  RequireCalibration(kForce, columns.force);
-  RequireCalibration(kTime, columns.time);
-  RequireCalibration(kNormalLoad, columns.normal_load);
   const ColumnFinder finder(table);
   RecordFile file;
   file.notes = table.notes();
@@ -749,24 +754,26 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
     file.notes.push_back(fmt::format("{}: {} row{} above the header skipped", finder.Header(),
                                      table.preamble_rows(), table.preamble_rows() == 1 ? "" : "s"));
   }
-  const Assignment assigned = RoleAssigner(table, finder, file.notes).Assign(columns);
+  const GivenColumns given = ReadGivenColumns(table, columns);
+  const Assignment assigned =
+      RoleAssigner(table, finder, file.notes).Assign(given, columns.covariates);
   ColumnReader reader(table, finder, file.notes);
 
-  const auto read = [&](const Role& role, std::size_t column, const ColumnChoice& choice,
-                        std::vector<double>& values) {
+  const auto read = [&](const Role& role, std::size_t column, const Expression& choice,
+                        const std::string& text, std::vector<double>& values) {
     const Unit unit = reader.FindUnit(role, column, choice);
     values = reader.Read(role, column, unit, choice);
-    return reader.Describe(column, unit, choice);
+    return reader.Describe(column, unit, choice, text);
   };
   const auto read_optional = [&](const Role& role, std::optional<std::size_t> column,
-                                 const ColumnChoice& choice,
+                                 const Expression& choice, const std::string& text,
                                  std::vector<double>& values) -> std::optional<ChosenColumn> {
-    if (!column && (choice.gain || choice.zero != 0)) {
-      throw InputError(fmt::format("{}: there is no column of the {} to calibrate: name it with {}",
-                                   table.file(), role.name, role.option));
+    if (!column && !choice.unit.empty()) {
+      throw InputError(fmt::format("{}: {} {}: no column is recognised as the {}: name it",
+                                   table.file(), role.option, text, role.name));
     }
     if (!column) return std::nullopt;
-    if (choice.column.empty()) {
+    if (choice.terms.empty()) {
       const std::string fault = WhyUnusable(table, finder, role, *column, choice);
       if (!fault.empty()) {
         file.notes.push_back(fmt::format("{}: {} {} {}: left out", table.file(), role.name,
@@ -774,30 +781,46 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
         return std::nullopt;
       }
     }
-    return read(role, *column, choice, values);
+    return read(role, *column, choice, text, values);
   };
   loop::Record& record = file.record;
   file.lines = table.lines();
-  file.is_torsional = reader.IsTorsional(assigned.displacement, columns.displacement,
-                                         assigned.force, columns.force);
+  file.is_torsional =
+      reader.IsTorsional(assigned.displacement, given.displacement, assigned.force, given.force);
   file.displacement = read(file.is_torsional ? kAngle : kDisplacement, assigned.displacement,
-                           columns.displacement, record.displacement);
-  file.force =
-      read(file.is_torsional ? kTorque : kForce, assigned.force, columns.force, record.force);
+                           given.displacement, columns.displacement, record.displacement);
+  file.force = read(file.is_torsional ? kTorque : kForce, assigned.force, given.force,
+                    columns.force, record.force);
   std::optional<std::vector<double>> clock;
   if (assigned.time) clock = table.Times(*assigned.time);
   if (clock) {
     record.time = std::move(*clock);
-    file.time = reader.Describe(*assigned.time, {.symbol = "s"}, {});
+    file.time = reader.Describe(*assigned.time, {.symbol = "s"}, {}, "");
     file.time->is_clock = true;
     file.notes.push_back(fmt::format(
         "{}: time {} holds times of day: taken as seconds since midnight of the first one's day",
         table.file(), finder.Label(*assigned.time)));
   } else {
-    file.time = read_optional(kTime, assigned.time, columns.time, record.time);
+    file.time = read_optional(kTime, assigned.time, given.time, columns.time, record.time);
   }
-  file.normal_load = read_optional(file.is_torsional ? kLoadOfTorsion : kNormalLoad,
-                                   assigned.normal_load, columns.normal_load, record.normal_load);
+  if (columns.sample_rate) {
+    if (!(*columns.sample_rate > 0) || !std::isfinite(*columns.sample_rate)) {
+      throw InputError(
+          fmt::format("--sample-rate {}: must be finite and > 0 Hz", *columns.sample_rate));
+    }
+    if (!columns.time.empty()) {
+      throw InputError(
+          fmt::format("{}: --time and --sample-rate exclude each other", table.file()));
+    }
+    file.time.reset();
+    record.time.resize(table.rows());
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      record.time[row] = static_cast<double>(row) / *columns.sample_rate;
+    }
+  }
+  file.normal_load =
+      read_optional(file.is_torsional ? kLoadOfTorsion : kNormalLoad, assigned.normal_load,
+                    given.normal_load, columns.normal_load, record.normal_load);
   if (table.MayHaveCommasForThousands(assigned.displacement) &&
       table.MayHaveCommasForThousands(assigned.force)) {
     file.notes.push_back(fmt::format(
@@ -828,12 +851,12 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   RecordFile file = RecordOfRows(table, columns);
   if (!file.time) return file;
   const std::span<const double> times =
-      file.time->is_clock ? file.record.time : table.NumbersOrNan(file.time->number - 1);
+      file.time->is_clock ? file.record.time : table.NumbersOrNan(file.time->index - 1);
   for (std::size_t row = 1; row < times.size(); ++row) {
     const std::string fault = DescribeTimeFault(times[row], times[row - 1], file.time->unit);
     if (fault.empty()) continue;
     throw InputError(
-        fmt::format("{}:{}:{}: {}", table.file(), file.lines[row], file.time->number, fault));
+        fmt::format("{}:{}:{}: {}", table.file(), file.lines[row], file.time->index, fault));
   }
   return file;
 }
@@ -844,12 +867,12 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 }
 
 SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
-                    const ColumnChoice& response) {
+                    const std::string& response) {
   return SweepOf(ReadCsvTable(path, {}, columns.encoding), columns, response);
 }
 
 SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
-                  const ColumnChoice& response) {
+                  const std::string& response) {
   std::vector<std::string> names;
   for (const std::string& name : table.names()) names.push_back(WithoutAmplitude(name));
   const ColumnFinder finder(table, names);
@@ -857,17 +880,21 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   sweep.notes = table.notes();
   sweep.lines = table.lines();
   std::vector<bool> taken(table.columns(), false);
-  const auto find = [&](const Role& role, const ColumnChoice& choice) {
-    const std::optional<std::size_t> column =
-        choice.column.empty() ? finder.Recognized(role, taken) : finder.Chosen(choice.column, role);
+  const Expression given_response = finder.Read(response, kStiffness);
+  const Expression given_displacement = finder.Read(columns.displacement, kDisplacement);
+  const Expression given_force = finder.Read(columns.force, kForce);
+  const auto find = [&](const Role& role, const Expression& choice) {
+    const std::optional<std::size_t> column = choice.terms.empty()
+                                                  ? finder.Recognized(role, taken)
+                                                  : std::optional(choice.terms.front().column);
     if (column) taken[*column] = true;
     return column;
   };
-  const std::optional<std::size_t> responses = find(kStiffness, response);
+  const std::optional<std::size_t> responses = find(kStiffness, given_response);
   std::optional<std::size_t> displacement;
   std::optional<std::size_t> force;
-  if (columns.force.column.empty()) displacement = find(kDisplacement, columns.displacement);
-  if (columns.displacement.column.empty()) force = find(kForce, columns.force);
+  if (given_force.terms.empty()) displacement = find(kDisplacement, given_displacement);
+  if (given_displacement.terms.empty()) force = find(kForce, given_force);
   if (!responses) {
     throw InputError(
         fmt::format("{}: no column of a stiffness or compliance is recognised: name it "
@@ -882,17 +909,18 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   sweep.over_force = force.has_value();
   ColumnReader reader(table, finder, sweep.notes);
   const Role& role = sweep.over_force ? kForce : kDisplacement;
-  const ColumnChoice& choice = sweep.over_force ? columns.force : columns.displacement;
+  const Expression& choice = sweep.over_force ? given_force : given_displacement;
   const std::size_t amplitudes = sweep.over_force ? *force : *displacement;
   sweep.amplitude =
       reader.Read(role, amplitudes, reader.FindUnit(role, amplitudes, choice), choice);
-  const std::string stated =
-      response.unit.empty() ? finder.HeaderUnit(*responses, kStiffness.unit_option) : response.unit;
+  const std::string stated = given_response.unit.empty()
+                                 ? finder.HeaderUnit(*responses, kStiffness.option)
+                                 : given_response.unit;
   sweep.is_compliance = stated.empty() ? finder.NameOf(*responses).starts_with("compliance")
                                        : RatioUnit(stated, LengthUnit, ForceUnit).has_value();
   const Role& kind = sweep.is_compliance ? kCompliance : kStiffness;
-  sweep.response =
-      reader.Read(kind, *responses, reader.FindUnit(kind, *responses, response), response);
+  sweep.response = reader.Read(kind, *responses, reader.FindUnit(kind, *responses, given_response),
+                               given_response);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (const auto& [values, column] :
          {std::pair{&sweep.amplitude, amplitudes}, std::pair{&sweep.response, *responses}}) {
@@ -906,21 +934,21 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
 }
 
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
-                                         const ColumnChoice& displacement) {
+                                         const std::string& displacement) {
   const CsvTable table = ReadCsvTable(path);
-  return ReadPathColumn(table, WithUnitOption(kDrive, kUnitOfPath), displacement);
+  return ReadPathColumn(table, kDrive, displacement);
 }
 
-LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
-                          const ColumnChoice& normal_load) {
+LoadedPath ReadLoadedPath(const std::filesystem::path& path, const std::string& displacement,
+                          const std::string& normal_load) {
   const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, WithUnitOption(kDrive, kUnitOfPath), displacement),
+  return {ReadPathColumn(table, kDrive, displacement),
           ReadPathColumn(table, kLoadOfTorsion, normal_load)};
 }
 
-ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force) {
+ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force) {
   const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, WithUnitOption(kForce, "--force-path-unit"), force), table.lines()};
+  return {ReadPathColumn(table, kForce, force), table.lines()};
 }
 
 }  // namespace mindahl::io

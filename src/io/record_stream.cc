@@ -46,8 +46,8 @@ std::string_view TakeLine(std::string_view& text) {
 struct RecordStream::State {
   struct StreamedColumn {
     std::size_t column;  // from 0
+    Expression sum;      // of the columns that are wanted, by their place among these
     Unit unit;
-    double zero;
     std::vector<double> Samples::*values;
     std::string_view name;
   };
@@ -69,6 +69,7 @@ struct RecordStream::State {
   BrokenRows broken;
   RecordFile layout;
   std::vector<StreamedColumn> channels;
+  std::vector<double> cells;                       // of the row, those that are wanted
   NumberRowReader rows{Delimiter::kComma, 0, {}};  // of no columns until the layout is known
   std::string_view first;                          // rows of the first piece
   std::size_t line = 0;                            // last that was read
@@ -96,29 +97,36 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
   const CsvTable table = ParseCsvTable(WholeRows(text.substr(0, judged), found), name);
   layout = RecordOfRows(table, columns);
   if (!pieces.note().empty()) layout.notes.insert(layout.notes.begin(), pieces.note());
-  const auto add = [&](const ChosenColumn& column, std::optional<Unit> unit,
+  const GivenColumns given = ReadGivenColumns(table, columns);
+  std::vector<std::size_t> wanted;
+  const auto add = [&](const ChosenColumn& column, const std::optional<Unit>& unit, Expression sum,
                        std::vector<double> Samples::*values, std::string_view what) {
-    unit->numerator *= column.gain;
-    channels.push_back({column.number - 1, *unit, column.zero, values, what});
+    if (sum.terms.empty()) sum.terms = {{column.index - 1, 1.0}};
+    for (Expression::Term& term : sum.terms) {
+      auto place = std::ranges::find(wanted, term.column);
+      if (place == wanted.end()) place = wanted.insert(wanted.end(), term.column);
+      term.column = static_cast<std::size_t>(place - wanted.begin());
+    }
+    channels.push_back({column.index - 1, std::move(sum), *unit, values, what});
   };
   add(layout.displacement,
       layout.is_torsional ? AngleUnit(layout.displacement.unit)
                           : LengthUnit(layout.displacement.unit),
-      &Samples::displacement, "displacement");
+      given.displacement, &Samples::displacement, "displacement");
   add(layout.force,
       layout.is_torsional ? TorqueUnit(layout.force.unit) : ForceUnit(layout.force.unit),
-      &Samples::force, "force");
-  if (layout.time) add(*layout.time, TimeUnit(layout.time->unit), &Samples::time, "time");
-  if (layout.normal_load) {
-    add(*layout.normal_load, ForceOrTorqueUnit(layout.normal_load->unit), &Samples::normal_load,
-        "normal load");
+      given.force, &Samples::force, "force");
+  if (layout.time) {
+    add(*layout.time, TimeUnit(layout.time->unit), given.time, &Samples::time, "time");
   }
-  std::vector<std::size_t> wanted;
-  wanted.reserve(channels.size());
-  for (const StreamedColumn& channel : channels) wanted.push_back(channel.column);
+  if (layout.normal_load) {
+    add(*layout.normal_load, ForceOrTorqueUnit(layout.normal_load->unit), given.normal_load,
+        &Samples::normal_load, "normal load");
+  }
+  cells.resize(wanted.size());
   const bool has_clock = layout.time && layout.time->is_clock;
   rows = NumberRowReader(found.delimiter, table.columns(), std::move(wanted),
-                         has_clock ? std::optional(layout.time->number - 1) : std::nullopt);
+                         has_clock ? std::optional(layout.time->index - 1) : std::nullopt);
   layout.record = {};
   layout.lines.clear();
   layout.covariates.clear();
@@ -165,11 +173,10 @@ bool RecordStream::State::Next(Samples& samples) {
 void RecordStream::State::Read(std::string_view text, Samples& samples) {
   std::array<double, 4> values{};  // of displacement, force, time and normal load
   constexpr std::size_t kTimeChannel = 2;
-  const std::span<double> wanted(values.data(), channels.size());
   while (!text.empty() && refusal.empty()) {
     const std::string_view row = TakeLine(text);
     ++line;
-    switch (rows.Read(row, line, wanted)) {
+    switch (rows.Read(row, line, cells)) {
       case NumberRowReader::Row::kNone:
         continue;
       case NumberRowReader::Row::kBroken:
@@ -188,6 +195,11 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
       MindFooter();
       if (!refusal.empty()) return;
     }
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const Expression& sum = channels[k].sum;
+      values[k] = sum.offset;
+      for (const Expression::Term& term : sum.terms) values[k] += term.weight * cells[term.column];
+    }
     if (layout.time) {
       const double above = std::exchange(time, values[kTimeChannel]);
       const std::string fault = DescribeTimeFault(time, above, layout.time->unit);
@@ -198,7 +210,7 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
     }
     bool is_finite = true;
     for (std::size_t k = 0; k < channels.size(); ++k) {
-      const double value = channels[k].unit.ToSi(values[k] - channels[k].zero);
+      const double value = channels[k].unit.ToSi(values[k]);
       if (is_finite && !std::isfinite(value)) {
         MindBrokenRow(line, channels[k].column,
                       fmt::format("{} = {} {} is too large: must be below 1.8e308 in SI units",

@@ -117,10 +117,10 @@ class Writer {
     const io::RecordFile& first = report_.records.front();
     std::vector<std::string> columns;
     const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
-      if (column.number == 0) return;
+      if (column.index == 0) return;
       std::string text = role;
       if (!column.name.empty()) text += fmt::format(" '{}'", column.name);
-      text += fmt::format(" ({}{})", column.number, remark);
+      text += fmt::format(" ({}{})", column.index, remark);
       if (column.name.find(column.unit) == std::string::npos && !column.unit.empty()) {
         text += " in " + column.unit;
       }

@@ -41,8 +41,8 @@ std::string WhyNotJudged(const Report&) {
 // --- input
 
 Json ColumnJson(const io::ChosenColumn* column) {
-  if (column == nullptr || column->number == 0) return nullptr;
-  return {{"name", column->name}, {"index", column->number}, {"unit", column->unit}};
+  if (column == nullptr || column->index == 0) return nullptr;
+  return {{"name", column->name}, {"index", column->index}, {"unit", column->unit}};
 }
 
 Json Columns(const Report& report) {

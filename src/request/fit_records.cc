@@ -41,8 +41,8 @@ std::size_t LineOf(const RecordFile& input, std::size_t sample) {
 /// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
 std::string PlaceOf(const std::string& file, const RecordFile& input,
                     const io::ChosenColumn& column, std::size_t sample) {
-  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.number);
-  return fmt::format("{}:{}:{}", file, input.lines[sample], column.number);
+  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.index);
+  return fmt::format("{}:{}:{}", file, input.lines[sample], column.index);
 }
 
 /// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
@@ -124,21 +124,8 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
       *request.reversal_gate, is_forced ? "force" : "motion", widest, unit, unit));
 }
 
-/// A unit of what no file has would be taken without a word; and a joint fit is of one kind.
+/// A joint fit is of one kind.
 void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  const auto require = [&](std::string_view option, const io::ColumnChoice& choice,
-                           std::string_view column_option, std::string_view what,
-                           std::optional<io::ChosenColumn> RecordFile::*column) {
-    const bool is_there = std::ranges::any_of(
-        inputs, [column](const RecordFile& input) { return (input.*column).has_value(); });
-    if (choice.unit.empty() || is_there) return;
-    throw InputError(
-        fmt::format("{} {}: {} has no column of the {}, so this has no effect: name it with {}",
-                    option, choice.unit, request.files.front(), what, column_option));
-  };
-  require("--time-unit", request.columns.time, "--time", "time", &RecordFile::time);
-  require("--normal-load-unit", request.columns.normal_load, "--normal-load-column", "normal load",
-          &RecordFile::normal_load);
   for (std::size_t r = 1; r < inputs.size(); ++r) {
     if (inputs[r].is_torsional == inputs.front().is_torsional) continue;
     throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",

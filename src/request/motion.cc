@@ -37,14 +37,19 @@ std::vector<double> CountRows(std::size_t rows) {
   return time;
 }
 
+/// The unit as the text of a column has it.
+std::string UnitAlone(const std::string& unit) {
+  return unit.empty() ? "" : fmt::format(" [{}]", unit);
+}
+
 ImposedMotion MotionFromFile(const DriveRequest& request) {
   ImposedMotion motion;
-  const io::ColumnChoice displacement{.column = "", .unit = request.path_unit};
+  const std::string displacement = UnitAlone(request.path_unit);
   if (request.load_column.empty()) {
     motion.displacement = io::ReadDisplacementPath(request.path, displacement);
   } else {
-    io::LoadedPath loaded = io::ReadLoadedPath(
-        request.path, displacement, {.column = request.load_column, .unit = request.load_unit});
+    io::LoadedPath loaded = io::ReadLoadedPath(request.path, displacement,
+                                               request.load_column + UnitAlone(request.load_unit));
     motion.displacement = std::move(loaded.displacement);
     motion.normal_load = std::move(loaded.normal_load);
   }
@@ -83,8 +88,7 @@ ImposedMotion MotionFromWaveform(const DriveRequest& request, const models::Bran
 }  // namespace
 
 ImposedForce ReadImposedForce(const DriveRequest& request, const models::BranchLaw& law) {
-  io::ForcePath path =
-      io::ReadForcePath(request.force_path, {.column = "", .unit = request.force_path_unit});
+  io::ForcePath path = io::ReadForcePath(request.force_path, UnitAlone(request.force_path_unit));
   for (std::size_t i = 0; i < path.force.size(); ++i) {
     if (std::abs(path.force[i]) < law.slip_force) continue;
     throw InputError(fmt::format(

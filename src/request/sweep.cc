@@ -69,7 +69,7 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
 }
 
 FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
-                         const io::ColumnChoice& response, std::optional<double> response_noise,
+                         const std::string& response, std::optional<double> response_noise,
                          const Tell& note) {
   if (request.files.size() != 1) {
     throw InputError("--sweep: takes one file: fit each by itself");

@@ -91,9 +91,7 @@ TEST(Advice, IsNeverRefusedHoweverFarItIsFollowed) {
 }
 
 TEST(Advice, OfMeasuredRecordsIsNeverRefused) {
-  const Words columns = {"--displacement", "5", "--displacement-unit", "mm",
-                         "--force",        "7", "--force-unit",        "N",
-                         "--time",         "1", "--time-unit",         "ms"};
+  const Words columns = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
   for (const char* seal : {"Circle_1bar", "KDN_5bar", "Kidney_lc_7bar"}) {
     const std::string file = testing::MeasuredPath("seals/" + std::string(seal) + ".csv");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
@@ -110,9 +108,7 @@ TEST(FirstCause, OfMeasuredRecordsMatchesTheirDescription) {
     const char* cause;  // the first
     Words options;
   };
-  const Words seal = {"--displacement", "5", "--displacement-unit", "mm",
-                      "--force",        "7", "--force-unit",        "N",
-                      "--time",         "1", "--time-unit",         "ms"};
+  const Words seal = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
   for (const Measured& measured :
        {Measured{"band_brake/dataset-1_0.5Hz70lbtension.csv", "backlash", {}},
         Measured{"band_brake/dataset-2_0.25Hz30lbtension1.5amplitude.csv", "backlash", {}},

@@ -85,7 +85,7 @@ const std::vector<Rule> kRules = {
     {"track", {"--alpha", "--broken-rows", "--model", "--loss"}, And(kNoNumber, {"-1", "0", ""})},
     {"track", {"--viscous", "--lag"}, {"nan", "inf", "text", "1:", "1,5", "1e999", ""}},
     {"track", {"--separate", "--resume", "--overwrite"}, {"5", "nan", "text"}},
-    {"track", {"--normal-load-unit"}, {"text", "nan", "N", "kN"}},
+    {"track", {"--normal-load-column"}, {"[text]", "[nan]", "[N]", "9"}},
     {"batch", {"--threads", "--starts", "--max-rows"}, kWhole},
     {"batch", {"--viscous", "--lag"}, {"nan", "inf", "text", "1:", "1,5", "1e999", ""}},
     {"batch", {"--normal-load", "--force-noise"}, kPositive},

@@ -156,8 +156,8 @@ TEST_F(SimulatedFile, IsRecoveredWithUnitsAndColumnsFromTheOptions) {
     text += "1\t" + Digits(std::stod(row[2]) / 4.4482216152605) + "\t" +
             Digits(std::stod(row[1]) / 0.0254) + "\n";
   }
-  ExpectRecovered({directory_.Write("loop.txt", text).string(), "--displacement", "3",
-                   "--displacement-unit", "in", "--force", "2", "--force-unit", "lbf"});
+  ExpectRecovered({directory_.Write("loop.txt", text).string(), "--displacement", "3 [in]",
+                   "--force", "2 [lbf]"});
 }
 
 TEST(FitCommand, ContactComesFromItsDefinitions) {

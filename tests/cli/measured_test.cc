@@ -113,9 +113,7 @@ TEST_F(MeasuredRecord, TribometerIsTrimmedToItsFullLoad) {
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
 }
 
-const Words kSealColumns = {"--displacement", "5", "--displacement-unit", "mm",
-                            "--force",        "7", "--force-unit",        "N",
-                            "--time",         "1", "--time-unit",         "ms"};
+const Words kSealColumns = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
 
 TEST_F(MeasuredRecord, SealThatRunsInAllTheTimeIsLeftWhole) {
   constexpr const char* kFile = "seals/rerun_2_O-ring257_5bar.csv";
@@ -182,9 +180,7 @@ TEST_F(MeasuredRecord, BandBrakeWithBacklashLeavesTheResidualThatNoModelFollows)
 }
 
 TEST_F(MeasuredRecord, SealsAndDampersThatSlideHaveASlipForceThatContainsTheirGap) {
-  const Words seal = {"--displacement", "5", "--displacement-unit", "mm",
-                      "--force",        "7", "--force-unit",        "N",
-                      "--time",         "1", "--time-unit",         "ms"};
+  const Words seal = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
   const std::vector<std::pair<std::string, Words>> records = {
       {"seals/rerun_1_O-ring257_5bar.csv", seal},
       {"seals/Circle_2bar.csv", seal},

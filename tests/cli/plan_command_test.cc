@@ -65,8 +65,7 @@ TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
             std::to_string(1e6 * std::stod(cells[1])) + "\n";
   }
   const std::string file = directory.Write("columns.csv", text).string();
-  const Words columns = {"--displacement", "3", "--displacement-unit", "um",
-                         "--force",        "2", "--force-unit",        "mN"};
+  const Words columns = {"--displacement", "3 [um]", "--force", "2 [mN]"};
   for (const char* command : {"plan", "recommend"}) {
     SCOPED_TRACE(command);
     const auto run = [&](const std::string& record, Words more) {
@@ -79,16 +78,16 @@ TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
     };
     EXPECT_NEAR(run(file, columns) / run(clean, {}), 1.0, 1e-4) << "six digits of the file";
   }
-  const Outcome assumed = RunCommand({"plan", "--record", file, "--displacement", "3", "--force",
-                                      "2", "--force-unit", "mN", "--amplitude", "1"});
+  const Outcome assumed = RunCommand(
+      {"plan", "--record", file, "--displacement", "3", "--force", "2 [mN]", "--amplitude", "1"});
   EXPECT_THAT(assumed.err, HasSubstr("plan: note: "));
   for (const Words& words : {Words{"plan", "--sigma", "4e7", "--slip-force", "40"},
                              Words{"recommend", "--sigma", "4e7", "--slip-force", "40"}}) {
     Words all = words;
-    all.insert(all.end(), {"--force-unit", "kN"});
+    all.insert(all.end(), {"--force", "[kN]"});
     const Outcome refused = RunCommand(all);
     EXPECT_EQ(refused.status, kBadInput);
-    EXPECT_THAT(refused.err, HasSubstr("--force-unit kN"));
+    EXPECT_THAT(refused.err, HasSubstr("--force [kN]"));
   }
 }
 

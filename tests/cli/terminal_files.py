@@ -29,7 +29,7 @@ COMPLETIONS = [
     ("mindahl ", "fit simulate validate contact convert tradeoff recommend plan track batch"),
     ("mindahl con", "contact convert"),
     ("mindahl --v", "--version"),
-    ("mindahl fit --displacement-", "--displacement-unit --displacement-gain --displacement-zero --displacement-noise"),
+    ("mindahl fit --displacement-", "--displacement-noise"),
     ("mindahl fit --model ", "mindlin-dahl mindlin jenkins dahl auto"),
     ("mindahl fit --model mind", "mindlin-dahl mindlin"),
     ("mindahl fit --model = mind", "mindlin-dahl mindlin"),

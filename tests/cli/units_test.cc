@@ -42,9 +42,9 @@ TEST(Units, OfATableOfCyclesAreThoseOfItsHeader) {
   const auto track = [&](const std::string& name, const UnitScale& scale) {
     const std::string table = (directory.path() / name).string();
     const Outcome run =
-        RunCommand({"track", testing::SampleRecord(), "--output", table, "--displacement-gain",
-                    Text(scale.length), "--force-gain", Text(scale.force), "--time-gain",
-                    Text(scale.time), "--normal-load", Text(25 * scale.force)});
+        RunCommand({"track", testing::SampleRecord(), "--output", table, "--displacement",
+                    "displacement*" + Text(scale.length), "--force", "force*" + Text(scale.force),
+                    "--time", "time*" + Text(scale.time), "--normal-load", Text(25 * scale.force)});
     EXPECT_EQ(run.status, 0) << run.err;
     std::ifstream file(table);
     return testing::Lines({std::istreambuf_iterator<char>(file), {}});

@@ -78,7 +78,7 @@ const std::vector<Words> kOptionsOfSweep = {{},
                                             {"--displacement", "1"},
                                             {"--force", "1"},
                                             {"--response", "2"},
-                                            {"--response-unit", "um/N"}};
+                                            {"--response", "[um/N]"}};
 
 /// Appends the options that a byte stands for.
 void AddOptions(Words& words, const std::vector<Words>& more, Bytes& bytes) {

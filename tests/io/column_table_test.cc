@@ -25,7 +25,7 @@ TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
       {{"F (kN)", {1, 2, 3}}, {"temp", {20, 21, 22}}, {"x [um]", {0, 1, 0}}}, "frame"));
   EXPECT_EQ(file.record.force, (Numbers{1000, 2000, 3000}));
   EXPECT_EQ(file.record.displacement, (Numbers{0, 1e-6, 0}));
-  EXPECT_EQ(file.displacement.number, 3U);
+  EXPECT_EQ(file.displacement.index, 3U);
   ASSERT_EQ(file.record.covariates.size(), 1U);
   EXPECT_EQ(file.record.covariates.front().name, "temp");
   EXPECT_EQ(file.lines, (std::vector<std::size_t>{1, 2, 3}));

@@ -139,30 +139,17 @@ TEST_F(LoggerFile, IsReadInTheEncodingThatIsGiven) {
 
 // --- Calibration and units ----------------------------------------------------------------------
 
-TEST_F(LoggerFile, IsCalibratedByGainAndZero) {
+TEST_F(LoggerFile, IsCalibratedByFactorAndOffset) {
   RecordColumns columns;
-  columns.force.gain = 98.0665;
-  columns.force.zero = 2.5;
-  columns.displacement.gain = -2.0;
+  columns.force = "F*98.0665-245.16625";
+  columns.displacement = "-2*x";
   const RecordFile file = Read("x [mm],F [V]\n1,2.5\n3,3.5\n", columns);
-  EXPECT_THAT(file.record.force, ElementsAre(0.0, 98.0665));
+  EXPECT_THAT(file.record.force, ElementsAre(::testing::DoubleNear(0, 1e-12), DoubleEq(98.0665)));
   EXPECT_THAT(file.record.displacement, ElementsAre(DoubleEq(-2e-3), DoubleEq(-6e-3)))
       << "in the header's unit, which is one of a displacement";
-  EXPECT_THAT(file.notes, Contains(HasSubstr("98.0665·('F [V]' (column 2) − 2.5)")));
-  columns.force.unit = "kN";
+  columns.force += " [kN]";
   EXPECT_THAT(Read("x [mm],F [V]\n1,2.5\n3,3.5\n", columns).record.force,
-              ElementsAre(0.0, DoubleEq(98066.5)));
-}
-
-TEST_F(LoggerFile, RefusesACalibrationThatIsNoneOrOfNoColumn) {
-  const std::filesystem::path path = directory_.Write("log.txt", "x [mm],F [N]\n1,2\n3,4\n");
-  RecordColumns columns;
-  columns.force.gain = 0.0;
-  EXPECT_THAT(MessageOf([&] { ReadRecord(path, columns); }), HasSubstr("the gain not 0"));
-  columns.force.gain = 1.0;
-  columns.time.gain = 2.0;
-  EXPECT_THAT(MessageOf([&] { ReadRecord(path, columns); }),
-              HasSubstr("no column of the time to calibrate: name it with --time"));
+              ElementsAre(::testing::DoubleNear(0, 1e-9), DoubleEq(98066.5)));
 }
 
 TEST_F(LoggerFile, MayBeInGramsAndInches) {
@@ -316,8 +303,8 @@ TEST(MeasuredLogger, IsReadAsItIs) {
       testing::MeasuredPath("mr_damper_utfsm/logger_raw_ME2mm5Hz.txt");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   RecordColumns columns;
-  columns.displacement.column = "CHANNEL0";
-  columns.force.column = "CHANNEL1";
+  columns.displacement = "CHANNEL0";
+  columns.force = "CHANNEL1";
   const RecordFile file = ReadRecord(path, columns);
   ASSERT_EQ(file.record.size(), 7420U);
   EXPECT_EQ(file.lines.front(), 8U);

@@ -12,9 +12,16 @@ namespace {
 using Strings = std::vector<std::string>;
 using Numbers = std::vector<double>;
 
-RecordColumns Choose(ColumnChoice displacement, ColumnChoice force = {}, ColumnChoice time = {},
-                     ColumnChoice normal_load = {}) {
-  return {displacement, force, time, normal_load};
+struct Choice {
+  std::string column, unit;
+  [[nodiscard]] std::string Text() const {
+    return unit.empty() ? column : column + "[" + unit + "]";
+  }
+};
+
+RecordColumns Choose(const Choice& displacement, const Choice& force = {}, const Choice& time = {},
+                     const Choice& normal_load = {}) {
+  return {displacement.Text(), force.Text(), time.Text(), normal_load.Text()};
 }
 
 RecordFile Read(const std::string& text, const RecordColumns& columns = {}) {
@@ -80,10 +87,10 @@ class RecognizedHeader : public ::testing::TestWithParam<Header> {};
 TEST_P(RecognizedHeader, GivesEachQuantityItsColumn) {
   const Header& header = GetParam();
   const RecordFile file = Read(header.names + "\n1.5,2.5,3.5,4.5\n");
-  EXPECT_EQ(file.displacement.number, header.displacement);
-  EXPECT_EQ(file.force.number, header.force);
-  EXPECT_EQ(file.time ? file.time->number : 0, header.time);
-  EXPECT_EQ(file.normal_load ? file.normal_load->number : 0, header.normal_load);
+  EXPECT_EQ(file.displacement.index, header.displacement);
+  EXPECT_EQ(file.force.index, header.force);
+  EXPECT_EQ(file.time ? file.time->index : 0, header.time);
+  EXPECT_EQ(file.normal_load ? file.normal_load->index : 0, header.normal_load);
   EXPECT_EQ(file.record.time.empty(), header.time == 0);
   EXPECT_EQ(file.record.normal_load.empty(), header.normal_load == 0);
 }
@@ -107,14 +114,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RecordReader, TakesTheOnlyColumnLeftForTheForce) {
   const RecordFile file = Read("load,extension\n1.5,2.5\n");
-  EXPECT_EQ(file.displacement.number, 2u);
-  EXPECT_EQ(file.force.number, 1u);
+  EXPECT_EQ(file.displacement.index, 2u);
+  EXPECT_EQ(file.force.index, 1u);
 }
 
 TEST(RecordReader, FindsChosenColumnByNumberNameCaseAndNameWithoutUnit) {
   const std::string text = "Pad [mm],pad,Cell [N],four\n1.5,2.5,3.5,4.5\n";
   const auto force_column = [&](const std::string& name) {
-    return Read(text, Choose({"4", "m"}, {name, "N"})).force.number;
+    return Read(text, Choose({"4", "m"}, {name, "N"})).force.index;
   };
   EXPECT_EQ(force_column("3"), 3u);
   EXPECT_EQ(force_column("pad"), 2u);
@@ -123,13 +130,13 @@ TEST(RecordReader, FindsChosenColumnByNumberNameCaseAndNameWithoutUnit) {
 }
 
 TEST(RecordReader, PrefersExactNameToAnotherCase) {
-  EXPECT_EQ(Read("f,F,x\n1.5,2.5,3.5\n", Choose({}, {"F", ""})).force.number, 2u);
+  EXPECT_EQ(Read("f,F,x\n1.5,2.5,3.5\n", Choose({}, {"F", ""})).force.index, 2u);
 }
 
 TEST(RecordReader, PutsTheOtherByPositionWhenOneIsChosenInFileWithoutHeader) {
   const RecordFile file = Read("1.5,2.5,3.5\n", Choose({"3", "mm"}));
-  EXPECT_EQ(file.displacement.number, 3u);
-  EXPECT_EQ(file.force.number, 2u);
+  EXPECT_EQ(file.displacement.index, 3u);
+  EXPECT_EQ(file.force.index, 2u);
 }
 
 TEST(RecordReader, ReadsTimeAndNormalLoadThatAreAskedFor) {
@@ -200,9 +207,9 @@ TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
 TEST(RecordReader, TakesSiWithNoteWhenNoUnitIsNamed) {
   EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
             (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m; "
-                     "--displacement-unit sets another",
+                     "--displacement '1 [m]' says so",
                      "loop.csv: force 'F' (column 2) names no unit: taken as N; "
-                     "--force-unit sets another"}));
+                     "--force '2 [N]' says so"}));
 }
 
 TEST(RecordReader, NotesColumnsTakenByPosition) {
@@ -237,15 +244,17 @@ INSTANTIATE_TEST_SUITE_P(
     , RecordFault,
     ::testing::Values(
         Fault{"UnknownName", "t,x,F\n1,2,3\n", Choose({"y", ""}),
-              "loop.csv: no column is called 'y' (for the displacement): the columns are 't' (1), "
+              "loop.csv: --displacement y: no column is called 'y' (for the displacement): the "
+              "columns are 't' (1), "
               "'x' (2), 'F' (3)"},
         Fault{"NameInFileWithoutHeader", "1,2,3\n", Choose({"y", ""}),
-              "loop.csv: no column is called 'y' (for the displacement): the file names none of "
+              "loop.csv: --displacement y: no column is called 'y' (for the displacement): the "
+              "file names none of "
               "its 3 columns: choose by number"},
         Fault{"NumberTooLarge", "t,x,F\n1,2,3\n", Choose({}, {"4", ""}),
-              "loop.csv: there is no column 4 for the force: the file has 3 columns"},
+              "loop.csv: --force 4: there is no column 4: the file has 3 columns"},
         Fault{"NumberZero", "t,x,F\n1,2,3\n", Choose({}, {"0", ""}),
-              "loop.csv: there is no column 0 for the force: the file has 3 columns"},
+              "loop.csv: --force 0: there is no column 0: the file has 3 columns"},
         Fault{"SameColumnTwice", "t,x,F\n1,2,3\n", Choose({"x", ""}, {"2", ""}),
               "loop.csv: 'x' (column 2) is chosen for the force and for another quantity: choose "
               "two columns"},
@@ -275,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(
             "UnknownUnitInHeader", "\nt,x [m],F [V]\n1,2,3\n", Choose({}),
             "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be "
             "one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, or choose the unit with "
-            "--force-unit"},
+            "--force '3 [N]'"},
         Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
               "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
               "another column; pressure times area is an additional force, for which there is "
@@ -285,12 +294,13 @@ INSTANTIATE_TEST_SUITE_P(
               "column; pressure times area is an additional force, for which there is --covariate"},
         Fault{"TorqueAgainstALength", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
               "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not match: "
-              "a torque needs an angle, a force a length; choose other columns, or units with "
-              "--displacement-unit and --force-unit"},
+              "a torque needs an angle, a force a length; choose other columns, or give their "
+              "units, as "
+              "in --force '3 [N]'"},
         Fault{"ForceAgainstAnAngle", "angle,F\n1,2\n", Choose({}, {"", "kN"}),
               "loop.csv: 'angle' (column 1) in rad and 'F' (column 2) in kN do not match: a torque "
-              "needs an angle, a force a length; choose other columns, or units with "
-              "--displacement-unit and --force-unit"},
+              "needs an angle, a force a length; choose other columns, or give their units, as in "
+              "--force '2 [N]'"},
         Fault{"TimeWithoutAName", "# clock\n0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n", Choose({}),
               "loop.csv:2:1: column 1 only grows while column 2 goes to and fro, as a time does: "
               "name the column of the displacement with --displacement and that of the force with "
@@ -313,29 +323,29 @@ INSTANTIATE_TEST_SUITE_P(
             "UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
             "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
             "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
-            "--displacement-unit"},
+            "--displacement '1 [m]'"},
         Fault{
             "UnknownUnitBehindSlash", "x / m/s,F\n1,2\n", Choose({}),
             "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the "
             "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
-            "--displacement-unit"},
+            "--displacement '1 [m]'"},
         Fault{
             "UnknownUnitBehindComma", "\"x, furlong\",F\n1,2\n", Choose({}),
             "loop.csv:1:1: the unit 'furlong' of 'x, furlong' (column 1) is not known for the "
             "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
-            "--displacement-unit"},
+            "--displacement '1 [m]'"},
         Fault{
             "ForceUnitForDisplacement", "displacement_N,F\n1,2\n", Choose({}),
             "loop.csv:1:1: the unit 'N' of 'displacement_N' (column 1) is not known for the "
             "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
-            "--displacement-unit"},
+            "--displacement '1 [m]'"},
         Fault{"UnknownUnitOfTimeAskedFor", "time [h],x [m],F [N]\n1,2,3\n",
               Choose({}, {}, {"time", ""}),
               "loop.csv:1:1: the unit 'h' of 'time [h]' (column 1) is not known for the time: must "
-              "be one of s, ms, us, min, or choose the unit with --time-unit"},
+              "be one of s, ms, us, min, or choose the unit with --time '1 [s]'"},
         Fault{"TwoUnits", "x [mm],F\num,N\n1,2\n", Choose({}),
               "loop.csv:1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below it: "
-              "choose its unit with --displacement-unit"},
+              "choose its unit with --displacement '1 [mm]'"},
         Fault{"OverflowInSi", "x [m],F [kN]\n1,2\n1,1e307\n", Choose({}),
               "loop.csv:3:2: force = 1e+307 kN is too large: must be below 1.8e308 N"},
         Fault{"NotANumber", "x [m],F [N]\n1,2\n3,off\n", Choose({}),
@@ -379,7 +389,7 @@ TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
 }
 
 TEST(RecordReader, DoesNotTakeARadialForceForAnAngle) {
-  EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.number, 2u);
+  EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.index, 2u);
   EXPECT_EQ(Read("x,Fx_rad\n1,2\n", Choose({}, {"Fx_rad", ""})).force.unit, "N");
 }
 
@@ -389,7 +399,7 @@ TEST(RecordReader, KnowsTheLineOfEverySample) {
 
 // --- Displacement paths --------------------------------------------------------------------------
 
-Numbers ReadPath(const std::string& text, const ColumnChoice& choice = {}) {
+Numbers ReadPath(const std::string& text, const std::string& choice = {}) {
   const TemporaryDirectory directory;
   return ReadDisplacementPath(directory.Write("path.csv", text), choice);
 }
@@ -406,7 +416,7 @@ TEST(ForcePath, OfARecordWithTimeFirstIsItsForce) {
   const TemporaryDirectory directory;
   const auto file = directory.Write("f.csv", "t [s],x [m],F [N]\n0,5,7\n1,6,8\n");
   EXPECT_EQ(ReadForcePath(file).force, (Numbers{7, 8}));
-  EXPECT_EQ(ReadForcePath(file, {.column = "", .unit = "mN"}).force, (Numbers{0.007, 0.008}));
+  EXPECT_EQ(ReadForcePath(file, "[mN]").force, (Numbers{0.007, 0.008}));
 }
 
 // --- Columns beside the loop ---------------------------------------------------------------------
@@ -419,7 +429,7 @@ TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
   EXPECT_EQ(file.record.covariates[0].name, "p");
   EXPECT_EQ(file.record.covariates[0].unit, "bar");
   EXPECT_EQ(file.record.covariates[0].values, (Numbers{5, 6}));
-  EXPECT_EQ(file.covariates[0].number, 4U);
+  EXPECT_EQ(file.covariates[0].index, 4U);
   EXPECT_EQ(file.record.covariates[1].name, "3");
   EXPECT_EQ(file.record.covariates[1].values, (Numbers{1, 3}));
 }
@@ -479,7 +489,7 @@ TEST(DisplacementPath, ConvertsUnitOfHeader) {
 }
 
 TEST(DisplacementPath, ConvertsChosenColumnAndUnit) {
-  EXPECT_EQ(ReadPath("a,b\n1,3\n2,-7\n", {"b", "mm"}), (Numbers{3e-3, -7e-3}));
+  EXPECT_EQ(ReadPath("a,b\n1,3\n2,-7\n", "b [mm]"), (Numbers{3e-3, -7e-3}));
 }
 
 TEST(DisplacementPath, RefusesFirstColumnThatIsNoLength) {
@@ -495,8 +505,7 @@ TEST(DisplacementPath, PassesOverATimeToADisplacementOfARecognisedName) {
 TEST(LoadedPath, HasLoadAndDisplacementInTheirUnits) {
   const TemporaryDirectory directory;
   const LoadedPath path =
-      ReadLoadedPath(directory.Write("loop.csv", "x [um],normal [kN]\n1,2\n3,4\n"), {},
-                     {.column = "normal", .unit = ""});
+      ReadLoadedPath(directory.Write("loop.csv", "x [um],normal [kN]\n1,2\n3,4\n"), {}, "normal");
   EXPECT_EQ(path.displacement, (Numbers{1e-6, 3e-6}));
   EXPECT_EQ(path.normal_load, (Numbers{2e3, 4e3}));
 }

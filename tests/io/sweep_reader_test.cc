@@ -14,7 +14,7 @@ namespace {
 using Numbers = std::vector<double>;
 
 SweepFile Read(const std::string& text, const RecordColumns& columns = {},
-               const ColumnChoice& response = {}) {
+               const std::string& response = {}) {
   const TemporaryDirectory directory;
   return ReadSweep(directory.Write("sweep.csv", text), columns, response);
 }
@@ -38,12 +38,11 @@ TEST(ReadSweep, TakesALengthOverAForceForACompliance) {
 TEST(ReadSweep, GoesByTheNameWhereNoUnitIsStated) {
   EXPECT_TRUE(Read("force,compliance\n1,2\n").is_compliance);
   EXPECT_FALSE(Read("force,stiffness\n1,2\n").is_compliance);
-  EXPECT_TRUE(Read("force,stiffness\n1,2\n", {}, {.column = "", .unit = "m/N"}).is_compliance);
+  EXPECT_TRUE(Read("force,stiffness\n1,2\n", {}, "[m/N]").is_compliance);
 }
 
 TEST(ReadSweep, DoesNotTakeTheResponseForTheAmplitude) {
-  const SweepFile sweep =
-      Read("displacement [mm],force [N/mm]\n2,500\n", {}, {.column = "force", .unit = ""});
+  const SweepFile sweep = Read("displacement [mm],force [N/mm]\n2,500\n", {}, "force");
   EXPECT_EQ(sweep.amplitude, (Numbers{2e-3}));
   EXPECT_EQ(sweep.response, (Numbers{5e5}));
   EXPECT_FALSE(sweep.over_force);

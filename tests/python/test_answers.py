@@ -119,7 +119,7 @@ def sweep_file(directory, header):
     ({"kind": "tangent", "model": "mindlin", "response_noise": 1e5, "response": "stiffness",
       "force": 1, "force_unit": "N"},
      ["tangent", "--model", "mindlin", "--response-noise", "1e5", "--response", "stiffness",
-      "--force", "1", "--force-unit", "N"]),
+      "--force", "1 [N]"]),
 ])
 def test_sweep_is_the_program_s(tmp_path, keywords, options):
     path, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")

@@ -111,9 +111,9 @@ def test_units_that_a_frame_does_not_name_are_warned_of_once(sphere):
             mindahl.fit(frame)
     said = [str(warning.message) for warning in caught]
     assert said == [
-        "record: displacement 'displacement' (column 1) names no unit: taken as m; displacement_unit "
-        "sets another",
-        "record: force 'force' (column 2) names no unit: taken as N; force_unit sets another"]
+        "record: displacement 'displacement' (column 1) names no unit: taken as m; displacement "
+        "'1 [m]' says so",
+        "record: force 'force' (column 2) names no unit: taken as N; force '2 [N]' says so"]
     assert {warning.category for warning in caught} == {mindahl.FitWarning}
     assert {warning.filename for warning in caught} == {__file__}
     with warnings.catch_warnings():
@@ -293,7 +293,7 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"covariate": "pressure"}, "pressure"),
     ({"displacement_unit": "furlong"}, "furlong"),
     ({"time": "t"}, "names a column, but the displacement is an array"),
-    ({"time_unit": "ms"}, "time_unit ms: record has no column of the time"),
+    ({"time_unit": "ms"}, "no column is recognised as the time"),
 ])
 def test_an_option_that_breaks_a_rule_is_named_as_its_keyword(sphere, keywords, message):
     _, displacement, force = sphere

@@ -144,7 +144,7 @@ def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
                                 force[part] / 8 + 0.5])
         np.savetxt(path, rows, delimiter=",", fmt="%.17g", header="time [s],x [m],F [V]", comments="")
         pieces.append(path)
-    found = mindahl.fit(pieces, join=True, force_gain=8.0, force_zero=0.5, initial_state="virgin")
+    found = mindahl.fit(pieces, join=True, force="F*8-4 [N]", initial_state="virgin")
     assert len(found.records) == 1
     for name in ("sigma", "alpha", "slip_force"):
         tolerance = 1e-3 * expected.parameters[name].standard_error
@@ -153,5 +153,5 @@ def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
     path = tmp_path / "of_a_zero_alone.csv"
     np.savetxt(path, np.column_stack([time, displacement, force + 0.5]), delimiter=",", fmt="%.17g",
                header="time [s],x [m],F [N]", comments="")
-    zeroed = mindahl.fit(path, force_zero=0.5, initial_state="virgin")
+    zeroed = mindahl.fit(path, force="F-0.5", initial_state="virgin")
     np.testing.assert_allclose(zeroed.records[0].force, force, rtol=0, atol=1e-12 * np.ptp(force))

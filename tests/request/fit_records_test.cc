@@ -22,8 +22,8 @@ io::RecordFile LoopFile() {
                                        file.record.displacement);
   Generator generator(4);
   for (double& force : file.record.force) force += 0.1 * testing::Normal(generator);
-  file.displacement.number = 2;
-  file.force.number = 4;
+  file.displacement.index = 2;
+  file.force.index = 4;
   return file;
 }
 
@@ -121,16 +121,6 @@ TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {
   EXPECT_THAT(RefusalOf({LoopFile()}, request), StartsWith("--normal-load: 2 loads for 1 file:"));
   EXPECT_THAT(RefusalOf({LoopFile(), LoopFile(), LoopFile()}, request),
               StartsWith("--normal-load: 2 loads for 3 files:"));
-}
-
-TEST(FitRecords, RefusesAUnitOfAColumnThatNoFileHas) {
-  FitRequest request;
-  request.columns.time.unit = "ms";
-  EXPECT_THAT(RefusalOf({LoopFile()}, request),
-              StartsWith("--time-unit ms: a.csv has no column of the time"));
-  io::RecordFile timed = LoopFile();
-  timed.time.emplace().number = 1;
-  EXPECT_THAT(RefusalOf({LoopFile(), timed}, request), Not(HasSubstr("--time-unit")));
 }
 
 TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {

@@ -11,33 +11,37 @@
 
 namespace mindahl::io {
 
-/// Selects the column of a file that holds a quantity, and its unit.
-struct ColumnChoice {
-  std::string column;  ///< header name or 1-based number; "" = by recognised name
-  std::string unit;    ///< symbol of core/units.h; "" = the header's, else SI
-  /// Calibration: the quantity in its unit is gain·(number − zero). With one, a header's unit that
-  /// is none of the quantity's, such as V, is the numbers' own.
-  std::optional<double> gain = std::nullopt;
-  double zero = 0.0;
-};
-
+/// Selects the columns of a file, and how they are read. Each of displacement, force, time and
+/// normal load is a text: "" for the column that is recognised; a header name or a number from 1,
+/// "Fx" or "3"; with its unit, "3 [kN]", or that alone, "[kN]"; or a sum of columns with factors
+/// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's is taken, else
+/// SI.
 struct RecordColumns {
-  ColumnChoice displacement;
-  ColumnChoice force;
-  ColumnChoice time;
-  ColumnChoice normal_load;
+  std::string displacement;
+  std::string force;
+  std::string time;
+  std::string normal_load;
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
   std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
+  std::optional<double> sample_rate = {};    ///< [Hz], of a file without a time
+  /// Another file of the same test, whose columns follow those of the first, by time where both
+  /// have one, else row by row.
+  std::string with = {};
+  bool skip_broken_rows = false;  ///< rows that would be refused are left out
 };
 
 /// A column as it was read.
 struct ChosenColumn {
-  std::string name;        ///< header cell as written; "" in a file without names
-  std::size_t number = 0;  ///< 1-based
-  std::string unit;        ///< symbol the numbers were taken to be in
-  double gain = 1.0;       ///< the quantity in that unit is gain·(number − zero)
-  double zero = 0.0;
+  std::string name;       ///< header cell as written, or the sum; "" in a file without names
+  std::size_t index = 0;  ///< 1-based; of a sum the first
+  std::string unit;       ///< symbol the numbers were taken to be in
   bool is_clock = false;  ///< its cells are times of day
+};
+
+/// Rows that were left out, since a cell that is used is empty or holds no number.
+struct LeftOutRows {
+  std::size_t count = 0;
+  std::size_t first_line = 0;  ///< in the file, 1-based
 };
 
 /// Locates a record within a file that holds several constant loads.
@@ -60,7 +64,8 @@ struct RecordFile {
   std::optional<ChosenColumn> normal_load;
   /// Columns of the record's covariates, in their order: first those chosen, under those names.
   std::vector<ChosenColumn> covariates;
-  std::vector<std::string> notes;                 ///< assumptions of the reader, one sentence each
+  std::vector<std::string> notes;  ///< assumptions of the reader, one sentence each
+  LeftOutRows left_out = {};
   std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
 };
 
@@ -155,10 +160,9 @@ struct SweepFile {
 ///   unit is one of force over one of length ("N/um") or the other way round
 /// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
 SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
-                    const ColumnChoice& response);
+                    const std::string& response);
 /// The same of a table.
-SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
-                  const ColumnChoice& response);
+SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns, const std::string& response);
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.
@@ -166,7 +170,7 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
 ///   recognised name; unit as for ReadRecord()
 /// @throws InputError as ReadRecord()
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
-                                         const ColumnChoice& displacement = {});
+                                         const std::string& displacement = {});
 
 /// A path with the normal load at each of its rows.
 struct LoadedPath {
@@ -177,8 +181,8 @@ struct LoadedPath {
 /// Reads a path like ReadDisplacementPath(), with a normal load.
 /// @param normal_load  column by name or number; unit as for ReadRecord(), without one N
 /// @throws InputError as ReadRecord()
-LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
-                          const ColumnChoice& normal_load);
+LoadedPath ReadLoadedPath(const std::filesystem::path& path, const std::string& displacement,
+                          const std::string& normal_load);
 
 /// Forces to impose, one for each row, in order.
 struct ForcePath {
@@ -189,7 +193,7 @@ struct ForcePath {
 /// @param force  column, by default the first, or, where that is a time, the one of a recognised
 ///   name; unit as for ReadRecord()
 /// @throws InputError as ReadRecord()
-ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force = {});
+ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force = {});
 
 /// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
 /// note of how many.

@@ -33,7 +33,7 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
 /// Fits the request's one file, whose columns the request has too.
 /// @throws InputError likewise, and for more than one file
 FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
-                         const io::ColumnChoice& response, std::optional<double> response_noise,
+                         const std::string& response, std::optional<double> response_noise,
                          const Tell& note);
 
 /// Returns the JSON of schema mindahl.sweep/1, as `mindahl fit --sweep --json` writes it.
