@@ -84,9 +84,6 @@ void RegisterMethod(const Method& method, const FrictionModel& model, std::size_
       const FrictionModel& served = *FindFrictionModel(model);
       if (method.masing_only && served.memory != Memory::kReturnPoint) continue;
       RegisterMethod(method, served, method.default_steps);
-      if (method.default_steps == 1 && !method.steps.empty() && !method.adaptive) {
-        RegisterMethod(method, served, 8);
-      }
     }
   }
   return 0;

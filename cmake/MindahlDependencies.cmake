@@ -10,6 +10,11 @@ find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 # CLI11 is header-only and Debian ships its package config.
 find_package(CLI11 2.1 REQUIRED)
 
+# toml++ is used by its headers alone.
+find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+add_library(tomlplusplus::headers INTERFACE IMPORTED)
+target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
+
 # Mustache is a header without a package config.
 find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
 add_library(kainjow::mustache INTERFACE IMPORTED)

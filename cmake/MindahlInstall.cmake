@@ -1,4 +1,4 @@
-# Two components: `tool`, the program with its manual page and completions, and `development`, the
+# Two components: `tool`, the program with its manual pages, and `development`, the
 # library. Every module but the command line is installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -63,29 +63,27 @@ configure_file(cmake/mindahl.pc.in ${PROJECT_BINARY_DIR}/mindahl.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/mindahl.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
-# The manual page and the completions are made from the program's own help, so by a program that
-# runs here.
-find_package(Python3 QUIET COMPONENTS Interpreter)
-if(Python3_Interpreter_FOUND AND NOT CMAKE_CROSSCOMPILING)
-  set(terminal ${PROJECT_BINARY_DIR}/terminal)
-  set(terminal_files ${terminal}/mindahl.1 ${terminal}/mindahl.1.gz ${terminal}/mindahl.bash
-      ${terminal}/_mindahl)
-  add_custom_command(OUTPUT ${terminal_files}
-    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/terminal_files.py
-            --program $<TARGET_FILE:mindahl> --directory ${terminal}
-    DEPENDS mindahl ${PROJECT_SOURCE_DIR}/cmake/terminal_files.py
-            ${PROJECT_SOURCE_DIR}/cmake/command_help.py
-    COMMENT "Making the manual page and the completions" VERBATIM)
-  add_custom_target(terminal_files ALL DEPENDS ${terminal_files})
-  # Where zsh looks: Debian keeps packages' completions apart.
-  set(zsh_completions ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
-    set(zsh_completions ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-  endif()
-  install(FILES ${terminal}/mindahl.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
-  install(FILES ${terminal}/mindahl.bash RENAME mindahl
-          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
-  install(FILES ${terminal}/_mindahl DESTINATION ${zsh_completions} COMPONENT tool)
+# The manual pages, one a command, are made by help2man from the help of a program that runs here.
+find_program(HELP2MAN help2man)
+if(HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
+  set(pages "")
+  foreach(command "" fit simulate validate contact convert tradeoff plan track batch)
+    set(name mindahl)
+    set(help --help)
+    if(command)
+      set(name mindahl-${command})
+      set(help "${command} --help-all")
+    endif()
+    set(page ${PROJECT_BINARY_DIR}/manual/${name}.1)
+    add_custom_command(OUTPUT ${page}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/manual
+      COMMAND ${HELP2MAN} --no-info --help-option=${help} --version-string=${PROJECT_VERSION}
+              "--name=${PROJECT_DESCRIPTION}" --output=${page} $<TARGET_FILE:mindahl>
+      DEPENDS mindahl VERBATIM)
+    list(APPEND pages ${page})
+  endforeach()
+  add_custom_target(manual ALL DEPENDS ${pages})
+  install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
 endif()
 
 # The licence and what has changed, as every Debian package has them.

@@ -14,16 +14,16 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libkainjow-mustache-dev
+  libceres-dev libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libkainjow-mustache-dev
   libcsv-dev libboost-dev libssl-dev
-  librsvg2-bin jq python3
+  librsvg2-bin jq python3 help2man
 )
 node_packages=()
 for group in "$@"; do
   case $group in
     --tests)
       packages+=(
-        libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema man-db pkg-config
+        libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema pkg-config
         pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )

@@ -42,10 +42,10 @@ fit() {
 }
 
 tribometer=tribometer/test_data_2.txt
-fit tribometer $tribometer --time-window 20:60
-fit tribometer_rig $tribometer --time-window 20:60 --model mindlin --rig-stiffness fit
-fit tribometer_load $tribometer --load-window 4.98:5.1
-fit tribometer_auto $tribometer --time-window 20:60 --model auto
+fit tribometer $tribometer --select time=20:60
+fit tribometer_rig $tribometer --select time=20:60 --model mindlin --rig-stiffness fit
+fit tribometer_load $tribometer --select load=4.98:5.1
+fit tribometer_auto $tribometer --select time=20:60 --compare
 
 columns=(--displacement "5 [mm]" --force "7 [N]" --time "1 [ms]")
 fit oring seals/O-ring257_3bar.csv "${columns[@]}"
@@ -54,7 +54,7 @@ fit circle seals/Circle_1bar.csv "${columns[@]}"
 
 cycloidal=cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv
 fit cycloidal $cycloidal
-fit cycloidal_4Nm $cycloidal --time-window 8.13:12.18
-fit cycloidal_40Nm $cycloidal --time-window 20.32:40.37
+fit cycloidal_4Nm $cycloidal --select time=8.13:12.18
+fit cycloidal_40Nm $cycloidal --select time=20.32:40.37
 
 fit band_brake band_brake/dataset-1_0.5Hz70lbtension.csv

@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 from . import _mindahl
 from ._arguments import (Floats, Uncertain, array, contact_options, count, number,
-                         optional_number)
+                         optional_number, path_text)
 from ._result import FitWarning, Report
 
 
@@ -53,19 +53,20 @@ def contact(
 
 
 def convert(
-    *, sigma: float, slip_force: float, amplitude: float, to: str, alpha: float = 1 / 3,
-    from_: str = "masing", least_amplitude: Optional[float] = None,
-    largest_amplitude: Optional[float] = None, tolerance: float = 0.01, elements: int = 8,
-    beta: float = 0.5, normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
+    fit: Any = None, *, to: str, sigma: Optional[float] = None, slip_force: Optional[float] = None,
+    amplitude: Optional[float] = None, alpha: Optional[float] = None, from_: Optional[str] = None,
+    tolerance: float = 0.01, elements: int = 8, beta: float = 0.5,
+    normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
     viscous: float = 0.0,
 ) -> Conversion:
     """Converts a contact's steady loop to another law or program.
 
-    sigma [N/m], alpha [-], slip_force Tc [N]: parameters of the law from_, "masing" or "dahl".
+    fit: file of `mindahl fit --json`, whose law and amplitude are taken unless given here.
+    sigma [N/m], alpha [-] (1/3), slip_force Tc [N]: parameters of the law from_, "masing" (default)
+        or "dahl".
     amplitude: X [m] of the contact's steady loop.
     to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts", "yade",
         "mujoco", "mujoco-joint", "urdf" or "sdf".
-    least_amplitude, largest_amplitude [m]: range over which an inexact law is fitted; default X.
     tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
     normal_load [N]: for "lammps", "liggghts", "yade". contact_radius [m]: for "lammps".
     viscous [N s/m]: for "lugre" and the four laws of robots.
@@ -74,13 +75,11 @@ def convert(
     Raises ValueError naming the quantity, its value and the rule.
     """
     return Conversion(*_mindahl.convert(
-        sigma=number("sigma", sigma), alpha=number("alpha", alpha),
-        slip_force=number("slip_force", slip_force), amplitude=number("amplitude", amplitude),
-        from_law=from_, to=to, least_amplitude=optional_number("least_amplitude", least_amplitude),
-        largest_amplitude=optional_number("largest_amplitude", largest_amplitude),
-        tolerance=number("tolerance", tolerance),
-        elements=count("elements", elements, 1), beta=number("beta", beta),
-        normal_load=optional_number("normal_load", normal_load),
+        fit="" if fit is None else path_text(fit), sigma=optional_number("sigma", sigma),
+        alpha=optional_number("alpha", alpha), slip_force=optional_number("slip_force", slip_force),
+        amplitude=optional_number("amplitude", amplitude), from_law=from_ or "", to=to,
+        tolerance=number("tolerance", tolerance), elements=count("elements", elements, 1),
+        beta=number("beta", beta), normal_load=optional_number("normal_load", normal_load),
         contact_radius=optional_number("contact_radius", contact_radius),
         viscous=number("viscous", viscous)))
 

@@ -1,4 +1,4 @@
-"""mindahl.plan(), recommend(), tradeoff() and validate()."""
+"""mindahl.plan(), tradeoff() and validate()."""
 
 from __future__ import annotations
 
@@ -86,71 +86,21 @@ def _tolerance(name: str, value: Union[float, str]) -> float:
     return number(name, value)
 
 
-def recommend(
-    displacement: Any = None, *, record: Any = None, sigma: Optional[float] = None,
-    alpha: Optional[float] = None, slip_force: Optional[float] = None, waveform: str = "sine",
-    lambda_: Optional[float] = None, amplitude: Optional[float] = None, cycles: float = 1.0,
-    samples_per_cycle: int = 200, frequency: float = 1.0, growth: float = 10.0, seed: int = 1,
-    path_unit: Optional[str] = None, tolerance: Union[float, str] = 0.01,
-    cost: Optional[float] = None, criterion: str = "max", transient_cycles: int = 0,
-    **contact: Optional[Uncertain],
-) -> Report:
-    """Finds the cheapest model and method that meet a tolerance along a motion.
-
-    The contact: sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of
-        contact().
-    The motion: displacement, an array [m] or a file whose first column it is, in path_unit; or a
-        waveform with lambda_ (amplitude over the gross-slip displacement [-]) or amplitude [m] and
-        cycles, samples_per_cycle, frequency [Hz], growth, seed as of excitation().
-    tolerance: largest error by the criterion, 0.01 or "1%". cost: finds instead the most precise
-        that costs no more [ns/sample]. criterion: "max" or "rms" of the force, "energy".
-    transient_cycles: number of cycles at the start that do not count.
-    record: instead of all these, a file, data frame, Record or (displacement [m], force [N]); finds
-        the cheapest law that it does not distinguish from the best.
-    Returns the sections of `mindahl recommend --json`; .to_pandas() has a row a candidate, or a law;
-        .established is False if nothing meets the request, or no law describes the record.
-    Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
-    """
-    if record is not None:
-        if displacement is not None or any(
-                value is not None for value in (sigma, alpha, slip_force, lambda_, amplitude, cost)):
-            raise ValueError("record excludes contact and motion, which the record determines")
-        read, assumed = _one_record(record)
-        return report_of(_mindahl.recommend_for_record(read), "recommendation", ("laws",), assumed)
-    drive = _mindahl.DriveRequest()
-    drive.waveform = waveform
-    drive.lambda_ = optional_number("lambda_", lambda_)
-    drive.amplitude = optional_number("amplitude", amplitude)
-    drive.set_excitation(number("cycles", cycles), count("samples_per_cycle", samples_per_cycle, 4),
-                         number("frequency", frequency), number("growth", growth))
-    drive.seed = count("seed", seed, 0)
-    samples = np.empty(0)
-    if is_path(displacement):
-        drive.path = path_text(displacement)
-        drive.path_unit = path_unit or ""
-    elif displacement is not None:
-        samples = array("displacement", displacement)
-    return report_of(_mindahl.recommend(
-        law=law_of(sigma, alpha, slip_force, contact), drive=drive,
-        tolerance=_tolerance("tolerance", tolerance), cost=optional_number("cost", cost),
-        transient_cycles=count("transient_cycles", transient_cycles, 0), criterion=criterion,
-        displacement=samples), "recommendation", ("candidates",))
-
-
 def tradeoff(
     displacement: Any = None, *, excitation: Union[None, str, Sequence[str]] = None,
     path_unit: Optional[str] = None, sigma: Optional[float] = None, alpha: Optional[float] = None,
-    slip_force: Optional[float] = None, **contact: Optional[Uncertain],
+    slip_force: Optional[float] = None, tolerance: Union[float, str] = 0.01,
+    **contact: Optional[Uncertain],
 ) -> Report:
-    """Error against cost of every method and model, and the amplitudes at which each is good enough.
+    """Error against cost of every model and method, and the cheapest within a tolerance.
 
     excitation: "micro", "macro", "growing", "random", "nested", one or several; by default all.
     displacement: an array [m] instead, or a file whose first column it is, in path_unit.
     sigma [N/m], alpha [-] (1/3), slip_force Tc [N], or friction, normal_load, ... of contact(); by
         default the contact of Peyret et al. (2017).
-    Returns the sections of `mindahl tradeoff --json`; .to_pandas() has a row a point,
-        .to_pandas("model_regions") a row a region. Costs are counted operations, and times of this
-        run.
+    tolerance: largest error of the force over its peak, and of the dissipated energy, 0.01 or "1%".
+    Returns the sections of `mindahl tradeoff --json`; .to_pandas() has a row a point. Costs are by
+        what a method does along the motion, and times of this run.
     Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
     """
     samples = np.empty(0)
@@ -162,8 +112,8 @@ def tradeoff(
         raise ValueError("displacement excludes excitation: give one of the two")
     return report_of(_mindahl.tradeoff(
         law_of(sigma, alpha, slip_force, contact), names_of(excitation), samples,
-        path_text(displacement) if is_path(displacement) else "displacement"),
-        "tradeoff", ("excitations", "model_regions"))
+        path_text(displacement) if is_path(displacement) else "displacement",
+        _tolerance("tolerance", tolerance)), "tradeoff", ("excitations",))
 
 
 def validate(cases: int = 500, seed: int = 1) -> Report:

@@ -41,28 +41,20 @@ def request_of(given: Mapping[str, Any]) -> _mindahl.FitRequest:
         low, high = pair(f"bound[{parameter!r}]", value)
         request.set_bound(parameter, number(f"bound[{parameter!r}]", low),
                           number(f"bound[{parameter!r}]", high))
-    if given["terms"] is not None:
-        request.term_choice = ",".join(names_of(given["terms"]))
+    request.terms = names_of(given["terms"])
+    request.compare = given.get("compare", False)
     request.loss = given["loss"]
-    request.starts = count("starts", given["starts"], 1)
-    request.seed = count("seed", given["seed"], 0)
     request.confidence = number("confidence", given["confidence"])
     for name in ("force_noise", "displacement_noise", "reversal_gate"):
         setattr(request, name, optional_number(name, given[name]))
     request.join = given["join"]
-    for name, option in _mindahl.terms():
-        asked = given.get(option.removeprefix("--").replace("-", "_"))
-        if asked is None or asked is False:
-            continue
-        if option == "--slip-position" and isinstance(asked, str):
-            request.set_term(name, None, asked, None)
-        elif option == "--rig-stiffness" and isinstance(asked, tuple):
-            value, uncertainty = pair("rig_stiffness", asked)
-            request.set_term(name, number("rig_stiffness", value), "",
-                             number("rig_stiffness", uncertainty))
-        else:
-            value = None if asked is True else fitted_or_number(option, asked)
-            request.set_term(name, value, "", None)
+    rig = given["rig_stiffness"]
+    if isinstance(rig, tuple):
+        value, uncertainty = pair("rig_stiffness", rig)
+        request.set_rig_stiffness(number("rig_stiffness", value),
+                                  number("rig_stiffness", uncertainty))
+    elif rig is not None:
+        request.set_rig_stiffness(fitted_or_number("rig_stiffness", rig), None)
     return request
 
 
@@ -73,30 +65,24 @@ def fit(
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
     encoding: str = "", join: bool = False,
-    model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
+    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True,
     rig_stiffness: Optional[Union[Asked, tuple[float, float]]] = None,
-    plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    asymmetry: Optional[Asked] = None, drift: bool = False,
-    speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
-    slip_position: Optional[str] = None, slip_speed: Optional[Asked] = None,
-    slip_trend: Optional[Asked] = None,
-    ripple: Optional[Asked] = None, backlash: Optional[Asked] = None,
-    terms: Union[None, str, Sequence[str]] = None,
+    terms: Union[str, Sequence[str]] = "none", compare: bool = False,
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, prior: Optional[Mapping[str, Range]] = None,
     cycles: Optional[tuple[int, int]] = None,
-    samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
-    trim: str = "off", time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
-    starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    samples: Optional[tuple[int, int]] = None,
+    trim: Union[bool, str] = True, time_window: Optional[Range] = None,
+    load_window: Optional[Range] = None, loss: str = "none", confidence: float = 0.95,
     force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
     radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
     poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
     contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
-    max_rows: int = 20_000_000, max_memory: Optional[int] = None,
+    max_memory: Optional[int] = None,
 ) -> FitResult:
     """Fits sigma [N/m], alpha [-] and Tc [N] of a contact to its hysteresis loop.
 
@@ -116,41 +102,32 @@ def fit(
     columns: further arrays by name beside displacement and force, for covariate.
 
     The model
-        model: "mindlin-dahl", "mindlin" (alpha = 1/3), "dahl", "jenkins" (alpha = 0), "auto".
+        model: "auto", Masing's law or Dahl's own, whichever the record supports; "mindlin-dahl",
+            "dahl", "mindlin" (alpha = 1/3), "jenkins" (alpha = 0).
         initial_state: "auto", "virgin", "steady". force_sign: "auto", "same", "opposite".
         noise_in: the channel that has the noise and is fitted, "force", or "displacement" where the
             force is imposed and exact; residuals are then in [m].
         offsets: of force [N] and displacement [m], fitted unless False.
-        rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
-            slip_force·(1 ± asymmetry): a known value, or "fit"; for the rig also (K, U) to fit it about
-            K with standard uncertainty U.
-        speed_exponent [-]: m of a force C·sgn(v)|v|^m instead of the viscous one; inertia [kg];
-            ripple: period [m] of a force over the position; backlash: width [m] of a gap before
-            the contact that is crossed at zero force; likewise.
-        slip_speed [-]: exponent of a slip force that depends on the speed. slip_trend [-]: k of
-            one that changes with time, Tc(1 + k·τ), τ from -1 to 1 over the record.
-        slip_position: "linear" or "quadratic", a slip force that depends on position, differently
-            in the two directions.
-        plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
-        terms: "auto" adds those that the record requires, one at a time, as judged by held-out
-            cycles; "none"; or names of terms to fit. None: "auto" for a single record that the law
-            alone misses by more than 5 % of the half gap, if no other keyword gives a term.
+        rig_stiffness [N/m]: a known value, "fit", or (K, U) to fit it about K with standard
+            uncertainty U.
+        terms: names of terms that are fitted in addition to the law, as of `mindahl fit
+            --help-all`, or of columns; "auto" adds those that the record requires, as judged by
+            held-out cycles; "none".
+        compare: adds the table of all models, with and without a rig.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
-        fix, start: parameter to value; bound: parameter to (low, high); prior: parameter to
+        fix: parameter to value, which adds its term; start: likewise, to begin with; bound: parameter to (low, high); prior: parameter to
             (prior value, standard uncertainty); SI units.
 
     What counts
-        cycles, samples: (first, last), counted from 1. skip_cycles: number left out at the start.
-        trim: "off", or "auto" to leave out rests, ramps and running-in at the ends, with a note.
-        max_rows: files with more rows in total are refused. max_memory: so are files whose fit needs
-            more memory [bytes]; default: the limit of the process. Arrays in memory are not
-            counted.
+        cycles, samples: (first, last), counted from 1.
+        trim: leaves out what at the ends is not of the test, with a note.
+        max_memory: files whose fit needs more memory [bytes] are refused; default: the limit of the
+            process. Arrays in memory are not counted.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
         confidence: of every interval.
-        starts: number of starting points that are refined. seed: of those drawn at random.
 
     What is known of the contact, each a number or (number, standard uncertainty)
         normal_load [N], also a list, one a record; youngs_modulus_1 [Pa], poisson_1 [-], radius_1
@@ -235,8 +212,7 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
     request.set_samples(counts("samples", given["samples"]))
     request.set_time_window(interval("time_window", given["time_window"]))
     request.set_load_window(interval("load_window", given["load_window"]))
-    request.skip_cycles = count("skip_cycles", given["skip_cycles"], 0)
-    request.trim = given["trim"]
+    request.trim = on_off("trim", given["trim"])
     request.contact = contact_options(**{name: given[name] for name in _KNOWN})
     loads = given["normal_load"]
     if loads is not None:
@@ -244,7 +220,7 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
                                   for load in (loads if isinstance(loads, list) else [loads])])
     most = given["max_memory"]
     arguments = RecordArguments(
-        given, request.covariate_columns(), count("max_rows", given["max_rows"], 1),
+        given, request.covariate_columns(),
         None if most is None else count("max_memory", most, 1))
     request.columns = _mindahl.RecordColumns(
         "", "", column_text("time", None, given["time_unit"]),

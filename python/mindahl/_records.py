@@ -66,13 +66,12 @@ class RecordArguments:
     """How the arguments of fit() and track() that say what a record is are to be read."""
 
     def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = (),
-                 max_rows: Optional[int] = None, max_memory: Optional[int] = None) -> None:
+                 max_memory: Optional[int] = None) -> None:
         self.roles = {**{role: given.get(role) for role in UNITS}, "force": None}
         self.units = {name: given.get(name) for name in (
             "displacement_unit", "force_unit", "time_unit", "normal_load_unit")}
         self.covariates = list(covariates)
         self.encoding = given.get("encoding", "")
-        self.max_rows = max_rows
         """Of the files that are still to be read, all together."""
         self.max_memory = max_memory
         self.assumed: list[str] = []
@@ -211,11 +210,7 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         arguments.refuse_choices("a record that is read already")
         return source
     if is_path(source):
-        record = _mindahl.read_csv(path_text(source), arguments.columns(), arguments.max_rows,
-                                   arguments.max_memory)
-        if arguments.max_rows is not None:
-            arguments.max_rows = max(0, arguments.max_rows - len(record))
-        return record
+        return _mindahl.read_csv(path_text(source), arguments.columns(), arguments.max_memory)
     if is_frame(source):
         return arguments.of_frame(source, name)
     if hasattr(source, "data_vars"):

@@ -14,7 +14,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import count, optional_number, path_text, several
+from ._arguments import Uncertain, contact_options, count, path_text, several
 from ._fit import Asked, Range, request_of
 from ._records import RecordArguments, is_path, records_of
 from ._result import FitWarning, Table
@@ -24,13 +24,12 @@ class CycleTable(Table):
     """The answer of track(): one row a cycle, a NumPy array a column; unknown values are NaN.
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
-    changes: sentences on changes over the test beyond chance; empty if there are none.
+    headline: the whole test in one line.
+    changes: sentences on steps and trends beyond chance, at most ten; empty if there are none.
     energy_counts: number of fits that `accumulated_energy` counts with their own energy,
         "measured", with that of the fits before them, "replaced", or not at all, "left_out".
-    shared_alpha: with alpha="shared" its "value", "standard_error", "scatter" between "cycles" beyond
-        their errors and "p_value" of that; else None.
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
-        "stretches" that are straight and the "changes" between them.
+        "first", "last", "settled_at", "steps" and "trends".
     """
 
     def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str],
@@ -75,9 +74,8 @@ class CycleTable(Table):
         return dict(self._document["energy_counts"])
 
     @property
-    def shared_alpha(self) -> Optional[dict[str, float]]:
-        alpha = self._document["shared_alpha"]
-        return None if alpha is None else dict(alpha)
+    def headline(self) -> str:
+        return str(self._document["headline"])
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
@@ -93,24 +91,20 @@ class CycleTable(Table):
 
 def track(
     source: Any = None, force: Any = None, *, displacement: Any = None, time: Any = None,
-    normal_load: Optional[float] = None, normal_load_column: Any = None,
+    normal_load: Optional[Uncertain] = None, normal_load_column: Any = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
     encoding: str = "", join: bool = False,
-    model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
+    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
-    plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    drift: bool = False, speed_exponent: Optional[Asked] = None,
-    inertia: Optional[Asked] = None, slip_position: Optional[str] = None,
-    slip_speed: Optional[Asked] = None,
-    slip_trend: Optional[Asked] = None, ripple: Optional[Asked] = None,
-    backlash: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
+    terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
-    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", confidence: float = 0.95,
     force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
-    average: int = 1, every: int = 1, alpha: str = "cycle", broken_rows: str = "refuse", threads: Optional[int] = None,
+    average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
+    **known: Optional[Uncertain],
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
@@ -118,12 +112,12 @@ def track(
         fit(). A file is read piece by piece, in constant memory; a list of sources
         is one test in this order, and no cycle extends over two sources unless join is
         True.
-    normal_load: [N] of all cycles; by default the column's mean over each.
+    normal_load: [N] of all cycles; by default the column's mean over each. With compliance, or
+        youngs_modulus_1, poisson_1 and those of body 2, as of fit(), it has the contact radius.
     average: number of consecutive cycles that are fitted together. every: fits only every n-th.
-    alpha: "cycle", each its own; "shared", one for all cycles: the mean of a first pass by errors.
     broken_rows: of files, "refuse" or "skip". threads: number of workers; default one per core.
     terms: as in fit(); "auto" chooses by the first cycles of the first source, for all cycles.
-    The others: as of fit(), but that model="auto" and covariates are not for single cycles.
+    The others: as of fit(), but that covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
         rows that were skipped.
@@ -132,14 +126,11 @@ def track(
     """
     given = dict(locals())
     fit = request_of(given)
+    fit.contact = contact_options(normal_load=normal_load, **known)
     request = _mindahl.TrackRequest()
-    request.normal_load = optional_number("normal_load", normal_load)
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)
     request.threads = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
-    if alpha not in ("cycle", "shared"):
-        raise ValueError(f"alpha = {alpha!r} is invalid: must be 'cycle' or 'shared'")
-    request.shares_alpha = alpha == "shared"
     if broken_rows not in ("refuse", "skip"):
         raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
     arguments = RecordArguments(given)

@@ -14,7 +14,6 @@
 #include "mindahl/request/contact_request.h"
 #include "mindahl/request/conversion.h"
 #include "mindahl/request/plan.h"
-#include "mindahl/request/recommendation.h"
 #include "mindahl/request/sweep.h"
 #include "mindahl/request/tradeoff.h"
 #include "mindahl/request/validation.h"
@@ -25,10 +24,8 @@ namespace mindahl::python {
 namespace py = pybind11;
 using request::BatchEntry;
 using request::ConversionRequest;
-using request::DriveRequest;
 using request::LawRequest;
 using request::PlanRequest;
-using request::RecommendationRequest;
 using request::Strictness;
 using request::ToJson;
 using request::ToText;
@@ -76,7 +73,7 @@ std::pair<Answer, std::optional<std::vector<std::string>>> Convert(
   std::optional<std::vector<std::string>> lines;
   Answer answer = AnswerOf([&](const request::Tell&) {
     request::ConvertedContact converted = MakeConversion(request);
-    if (!IsDiscreteElementCode(converted.target.target) || request.normal.normal_load) {
+    if (!converted.target.Uses("mu") || request.normal.normal_load) {
       lines = InputLines(converted);
     }
     return converted;
@@ -101,22 +98,8 @@ void SetWanted(PlanRequest& request, const std::string& name, double value, bool
   request.wanted[name] = {.value = value, .is_relative = is_relative};
 }
 
-/// @param displacement  [m], or empty: as the request's drive says
-Answer Recommend(RecommendationRequest request, const std::string& criterion,
-                 const Array& displacement) {
-  request.displacement = VectorOf(displacement);
-  request.asked.criterion = request::FindCriterion(criterion);
-  return AnswerOf([&](const request::Tell& warn) { return MakeRecommendation(request, warn); });
-}
-
-Answer RecommendForRecord(const NamedRecord& record) {
-  return AnswerOf([&](const request::Tell& warn) {
-    return request::RecommendForRecord(record.name, record.file.record, warn);
-  });
-}
-
 Answer Tradeoff(const LawRequest& law, const std::vector<std::string>& excitations,
-                const Array& array, const std::string& path_name) {
+                const Array& array, const std::string& path_name, double tolerance) {
   const std::vector<double> displacement = VectorOf(array);
   for (const std::string& name : excitations) {
     RequireOneOf("--excitation", name, request::ExcitationNames());
@@ -125,7 +108,8 @@ Answer Tradeoff(const LawRequest& law, const std::vector<std::string>& excitatio
     return request::MakeTradeoff({.law = law,
                                   .excitations = excitations,
                                   .displacement = displacement,
-                                  .path_name = path_name},
+                                  .path_name = path_name,
+                                  .tolerance = tolerance},
                                  warn);
   });
 }
@@ -225,21 +209,6 @@ void AddRequests(py::module_& module) {
       .def_readwrite("cycles", &PlanRequest::cycles)
       .def_readwrite("with_terms", &PlanRequest::with)
       .def("set_wanted", &SetWanted, py::arg("name"), py::arg("value"), py::arg("is_relative"));
-  py::class_<DriveRequest>(module, "DriveRequest")
-      .def(py::init<>())
-      .def_readwrite("waveform", &DriveRequest::waveform)
-      .def_readwrite("lambda_", &DriveRequest::lambda)
-      .def_readwrite("amplitude", &DriveRequest::amplitude)
-      .def_readwrite("path", &DriveRequest::path)
-      .def_readwrite("path_unit", &DriveRequest::path_unit)
-      .def_readwrite("seed", &DriveRequest::seed)
-      .def("set_excitation", [](DriveRequest& request, double cycles, std::size_t samples_per_cycle,
-                                double frequency, double growth) {
-        request.excitation.cycles = cycles;
-        request.excitation.samples_per_cycle = samples_per_cycle;
-        request.excitation.frequency = frequency;
-        request.excitation.growth = growth;
-      });
 }
 
 }  // namespace
@@ -256,49 +225,29 @@ void AddAnswers(py::module_& module) {
              py::arg("names"), py::arg("arrays"), py::arg("response"), py::arg("response_noise"));
   module.def(
       "convert",
-      [](double sigma, double alpha, double slip_force, double amplitude, const std::string& from,
-         const std::string& to, std::optional<double> least_amplitude,
-         std::optional<double> largest_amplitude, double tolerance, std::size_t elements,
-         double beta, std::optional<double> normal_load, std::optional<double> contact_radius,
-         double viscous) {
-        return Convert({.law = {.tangential_stiffness = sigma,
-                                .shape_exponent = alpha,
-                                .slip_force = slip_force},
+      [](const std::string& fit, std::optional<double> sigma, std::optional<double> alpha,
+         std::optional<double> slip_force, std::optional<double> amplitude, const std::string& from,
+         const std::string& to, double tolerance, std::size_t elements, double beta,
+         std::optional<double> normal_load, std::optional<double> contact_radius, double viscous) {
+        return Convert({.fit = fit,
+                        .sigma = sigma,
+                        .alpha = alpha,
+                        .slip_force = slip_force,
+                        .amplitude = amplitude,
                         .from = from,
                         .to = to,
-                        .options = {.amplitude = amplitude,
-                                    .tolerance = tolerance,
-                                    .elements = elements,
-                                    .beta = beta},
-                        .least_amplitude = least_amplitude,
-                        .largest_amplitude = largest_amplitude,
+                        .options = {.tolerance = tolerance, .elements = elements, .beta = beta},
                         .normal = {.normal_load = normal_load,
                                    .contact_radius = contact_radius,
                                    .viscous = viscous}});
       },
-      py::kw_only(), py::arg("sigma"), py::arg("alpha"), py::arg("slip_force"),
-      py::arg("amplitude"), py::arg("from_law"), py::arg("to"), py::arg("least_amplitude"),
-      py::arg("largest_amplitude"), py::arg("tolerance"), py::arg("elements"), py::arg("beta"),
-      py::arg("normal_load"), py::arg("contact_radius"), py::arg("viscous"));
+      py::kw_only(), py::arg("fit"), py::arg("sigma"), py::arg("alpha"), py::arg("slip_force"),
+      py::arg("amplitude"), py::arg("from_law"), py::arg("to"), py::arg("tolerance"),
+      py::arg("elements"), py::arg("beta"), py::arg("normal_load"), py::arg("contact_radius"),
+      py::arg("viscous"));
   module.def("plan", &Plan, py::arg("request"), py::arg("initial_state"), py::arg("record"));
-  module.def(
-      "recommend",
-      [](const LawRequest& law, const DriveRequest& drive, double tolerance,
-         std::optional<double> cost, std::size_t transient_cycles, const std::string& criterion,
-         const Array& displacement) {
-        return Recommend({.law = law,
-                          .drive = drive,
-                          .displacement = {},
-                          .asked = {.tolerance = tolerance,
-                                    .largest_cost = cost,
-                                    .transient_cycles = transient_cycles}},
-                         criterion, displacement);
-      },
-      py::kw_only(), py::arg("law"), py::arg("drive"), py::arg("tolerance"), py::arg("cost"),
-      py::arg("transient_cycles"), py::arg("criterion"), py::arg("displacement"));
-  module.def("recommend_for_record", &RecommendForRecord, py::arg("record"));
   module.def("tradeoff", &Tradeoff, py::arg("law"), py::arg("excitations"), py::arg("displacement"),
-             py::arg("path_name"));
+             py::arg("path_name"), py::arg("tolerance"));
   module.def("validate", &Validate, py::arg("cases"), py::arg("seed"));
   module.def(
       "read_displacement_path",

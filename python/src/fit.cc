@@ -8,7 +8,6 @@
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
@@ -103,12 +102,9 @@ class Likelihood {
   identification::LogLikelihood of_;
 };
 
-void SetTerm(FitRequest& request, const std::string& name, std::optional<double> value,
-             const std::string& form, std::optional<double> standard_uncertainty) {
-  const identification::Term* term = identification::FindTerm(name);
-  if (term == nullptr) throw InputError("there is no term '" + name + "'");
-  request.terms[term->name] = {
-      .value = value, .standard_uncertainty = standard_uncertainty, .form = form};
+void SetRigStiffness(FitRequest& request, std::optional<double> value,
+                     std::optional<double> standard_uncertainty) {
+  request.rig_stiffness = {.value = value, .standard_uncertainty = standard_uncertainty};
 }
 
 void AddCovariate(FitRequest& request, const std::string& column, std::optional<double> value) {
@@ -141,15 +137,13 @@ void AddFit(py::module_& module) {
       .def_readwrite("noise_in", &FitRequest::noise_in)
       .def_readwrite("offsets", &FitRequest::offsets)
       .def("add_covariate", &AddCovariate, py::arg("column"), py::arg("value"))
-      .def_readwrite("term_choice", &FitRequest::term_choice)
+      .def_readwrite("terms", &FitRequest::terms)
+      .def_readwrite("compare", &FitRequest::compare)
       .def("set_load_window", &SetRange<&FitRequest::load_window, double>)
       .def("set_cycles", &SetRange<&FitRequest::cycles, std::size_t>)
       .def("set_samples", &SetRange<&FitRequest::samples, std::size_t>)
-      .def_readwrite("skip_cycles", &FitRequest::skip_cycles)
       .def_readwrite("trim", &FitRequest::trim)
       .def_readwrite("loss", &FitRequest::loss)
-      .def_readwrite("starts", &FitRequest::starts)
-      .def_readwrite("seed", &FitRequest::seed)
       .def_readwrite("fix", &FitRequest::fix)
       .def_readwrite("start", &FitRequest::start)
       .def_readwrite("prior", &FitRequest::prior)
@@ -162,8 +156,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("files", &FitRequest::files)
       .def_readwrite("join", &FitRequest::join)
       .def_readwrite("contact", &FitRequest::contact)
-      .def("set_term", &SetTerm, py::arg("name"), py::arg("value"), py::arg("form"),
-           py::arg("standard_uncertainty") = py::none())
+      .def("set_rig_stiffness", &SetRigStiffness, py::arg("value"), py::arg("standard_uncertainty"))
       .def("set_normal_loads", &SetNormalLoads, py::arg("loads"))
       .def("covariate_columns", &request::CovariateColumns);
   py::class_<Fitted, std::shared_ptr<Fitted>>(module, "Fitted")
@@ -194,13 +187,6 @@ void AddFit(py::module_& module) {
       .def_property_readonly("names", &Likelihood::names)
       .def("__call__", &Likelihood::operator(), py::arg("values"));
   module.def("fit", &Fit, py::arg("records"), py::arg("request"));
-  module.def("terms", [] {
-    std::vector<std::pair<std::string, std::string>> terms;
-    for (const identification::Term& term : identification::Terms()) {
-      if (!term.option.empty() && !term.of_column) terms.emplace_back(term.name, term.option);
-    }
-    return terms;
-  });
 }
 
 }  // namespace mindahl::python

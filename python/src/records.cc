@@ -27,11 +27,9 @@ std::vector<io::NamedColumn> ColumnsOfArrays(const std::vector<std::string>& nam
 namespace {
 
 NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns,
-                    std::optional<std::uint64_t> max_rows,
                     std::optional<std::uint64_t> max_memory) {
   const py::gil_scoped_release others_may_run;
   io::ReadLimits limits;
-  if (max_rows) limits.rows = *max_rows;
   limits.memory = max_memory.value_or(MemoryOfProcess());
   return {path, io::ReadRecord(path, columns, limits)};
 }
@@ -115,7 +113,7 @@ void AddRecords(py::module_& module) {
           "what was assumed, one sentence each")
       .def("__len__", [](const NamedRecord& record) { return record.file.record.size(); });
   module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("columns"),
-             py::arg("max_rows") = py::none(), py::arg("max_memory") = py::none());
+             py::arg("max_memory") = py::none());
   module.def("record_of_columns", &RecordOfColumns, py::arg("name"), py::arg("names"),
              py::arg("arrays"), py::arg("columns"));
 }

@@ -54,7 +54,6 @@ Tracked Track(const TrackRequest& request, const std::vector<NamedRecord>& recor
   run.emplace(request,
               request::TrackEvents{
                   .fits = take, .note = warn, .warn = warn, .begins = {}, .piece_is_read = {}});
-  if (request.shares_alpha) run->PoolAlpha(records);
   run->Read(records);
   run->Finish();
   tracked.test = std::move(run->test());
@@ -76,8 +75,9 @@ struct DescribedTest {
   /// Returns the JSON, the text, and the changes in sentences.
   [[nodiscard]] std::tuple<std::string, std::string, std::vector<std::string>> Describe() const {
     const py::gil_scoped_release others_may_run;
-    const std::vector<campaign::CourseDescription> described = test.courses.Describe();
-    return {ToJson(test, described), ToText(test, described), Changes(test, described)};
+    const std::vector<campaign::Evolution> evolutions = test.courses.Describe(test.is_torsional);
+    return {ToJson(test, evolutions), ToText(test, evolutions),
+            campaign::ChangeStatements(evolutions)};
   }
 };
 
@@ -134,11 +134,9 @@ void AddTrack(py::module_& module) {
   py::class_<TrackRequest>(module, "TrackRequest")
       .def(py::init<>())
       .def_readwrite("fit", &TrackRequest::fit)
-      .def_readwrite("normal_load", &TrackRequest::normal_load)
       .def_readwrite("average", &TrackRequest::average)
       .def_readwrite("every", &TrackRequest::every)
       .def_readwrite("threads", &TrackRequest::threads)
-      .def_readwrite("shares_alpha", &TrackRequest::shares_alpha)
       .def_property(
           "skips_broken_rows",
           [](const TrackRequest& self) { return self.broken_rows == io::BrokenRows::kSkip; },

@@ -102,7 +102,8 @@ void DropWhatOverflows(CycleFit& fit) {
 
 std::span<const CycleFlag> CycleFlags() { return kFlags; }
 
-CycleFitter::CycleFitter(FitOptions options) : fitter_(OfSteadyCycles(std::move(options))) {}
+CycleFitter::CycleFitter(FitOptions options, std::optional<double> compliance)
+    : fitter_(OfSteadyCycles(std::move(options))), compliance_(compliance) {}
 
 CycleFit CycleFitter::Fit(const Cycle& cycle) {
   CycleFit fit = FitAlone(cycle);
@@ -143,6 +144,9 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   fit.slip_force = FittedValueOf(*result, "slip_force", "slip_force_open", fit);
   fit.force_offset = FittedValueOf(*result, "force_offset", nullptr, fit);
   fit.rms = result->rms;
+  if (compliance_ && fit.sigma.value && !fit.HasFlag("sigma_open")) {
+    fit.contact_radius = *fit.sigma.value * *compliance_ / 8;
+  }
   const bool is_known = result->Find("slip_force")->is_known();
   if (is_known && fit.slip_force.value && fit.normal_load && *fit.normal_load > 0) {
     fit.friction_coefficient = *fit.slip_force.value / *fit.normal_load;
@@ -187,6 +191,7 @@ constexpr std::array kNumbers = {
                 Of<&CycleFit::force_offset, &FittedValue::standard_error>},
     CycleNumber{"rms", "N", Of<&CycleFit::rms>},
     CycleNumber{"friction_coefficient", "", Of<&CycleFit::friction_coefficient>},
+    CycleNumber{"contact_radius", "m", Of<&CycleFit::contact_radius>},
 };
 
 constexpr std::string_view kPartial = "partial";

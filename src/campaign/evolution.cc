@@ -5,121 +5,36 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
-#include "core/probability.h"
-#include "mindahl/core/error.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::campaign {
 
 namespace {
 
-constexpr double kShade = 0.3;  // of what is measured
-
-std::string_view Words(ChangeKind kind) {
-  switch (kind) {
-    case ChangeKind::kEndOfRunningIn:
-      return "running-in ends";
-    case ChangeKind::kTransition:
-      return "step";
-    case ChangeKind::kBend:
-      return "other rate";
-  }
-  return "change";
-}
-
-io::PlotPanel EvolutionPanel(const Evolution& evolution) {
-  const std::span<const Course::Bin> bins = evolution.course.bins();
-  double largest = 0.0;
-  for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
-  const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
-  io::PlotPanel panel{.x_label = "cycle", .y_label = report::WithUnit(evolution.name, unit.name)};
-  io::PlotSeries course{
-      .label = evolution.has_errors ? "cycles, 95 % of one" : "cycles, least and greatest",
-      .style = io::PlotStyle::kBand,
-      .shade = kShade};
-  for (const Course::Bin& bin : bins) {
-    const double error =
-        kNormalQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.factor;
-    const double value = bin.value / unit.factor;
-    course.x.push_back(bin.cycle);
-    course.y.push_back(value);
-    course.lower.push_back(evolution.has_errors ? value - error : bin.least / unit.factor);
-    course.upper.push_back(evolution.has_errors ? value + error : bin.greatest / unit.factor);
-  }
-  panel.series.push_back(std::move(course));
-  for (std::size_t k = 0; k < evolution.description.stretches.size(); ++k) {
-    const Stretch& stretch = evolution.description.stretches[k];
-    io::PlotSeries line{.label = k == 0 ? "stretches" : ""};
-    constexpr int kStepsOfCurve = 40;
-    const int steps = stretch.time_constant ? kStepsOfCurve : 1;
-    const auto first = static_cast<double>(stretch.first_cycle);
-    const double way = static_cast<double>(stretch.last_cycle) - first;
-    for (int step = 0; step <= steps; ++step) {
-      line.x.push_back(first + way * step / steps);
-      line.y.push_back(stretch.At(line.x.back()) / unit.factor);
-    }
-    panel.series.push_back(std::move(line));
-  }
-  for (const Change& change : evolution.description.changes) {
-    panel.marks.push_back({.x = static_cast<double>(change.cycle),
-                           .label = fmt::format("{}, {}", Words(change.kind), change.cycle)});
-  }
-  return panel;
-}
-
-}  // namespace
-
-std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
-  std::vector<io::PlotPanel> panels;
-  for (const Evolution& evolution : evolutions) {
-    if (evolution.course.bins().size() > 1) panels.push_back(EvolutionPanel(evolution));
-  }
-  return panels;
-}
-
-io::Plot EvolutionPlot(std::span<const Evolution> evolutions, const std::string& title,
-                       const std::string& subtitle) {
-  constexpr int kPanelHeight = 230;  // [px]
-  io::Plot plot;
-  plot.title = title;
-  plot.subtitle = subtitle;
-  plot.panels = EvolutionPanels(evolutions);
-  if (plot.panels.empty()) {
-    throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
-  }
-  for (std::size_t k = 0; k + 1 < plot.panels.size(); ++k) plot.panels[k].x_label.clear();
-  plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
-  return plot;
-}
-
-namespace {
-
 std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
+std::optional<double> SlipForceError(const CycleFit& fit) { return fit.slip_force.standard_error; }
+std::optional<double> SigmaError(const CycleFit& fit) { return fit.sigma.standard_error; }
 
 constexpr std::array kQuantities = {
-    TrackedQuantity{"sigma", "N/m", "sigma_open",
-                    [](const CycleFit& fit) { return fit.sigma.value; },
-                    [](const CycleFit& fit) { return fit.sigma.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"alpha", "-", "alpha_open", [](const CycleFit& fit) { return fit.alpha.value; },
-                    [](const CycleFit& fit) { return fit.alpha.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"slip_force", "N", "slip_force_open",
-                    [](const CycleFit& fit) { return fit.slip_force.value; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"friction_coefficient", "-", "",
-                    [](const CycleFit& fit) { return fit.friction_coefficient; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
-                    /*is_drawn=*/true},
-    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms,
-                    /*is_drawn=*/true},
-    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }, Rms},
-    TrackedQuantity{"energy_ratio", "-", "", [](const CycleFit& fit) { return fit.energy_ratio; },
-                    Rms, /*is_drawn=*/true},
+    TrackedQuantity{"friction_coefficient", "-", "μ", "",
+                    [](const CycleFit& fit) { return fit.friction_coefficient; }, SlipForceError},
+    TrackedQuantity{"slip_force", "N", "Tc", "slip_force_open",
+                    [](const CycleFit& fit) { return fit.slip_force.value; }, SlipForceError},
+    TrackedQuantity{"half_gap", "N", "half gap", "",
+                    [](const CycleFit& fit) { return fit.half_gap; }, Rms},
+    TrackedQuantity{"sigma", "N/m", "σ", "sigma_open",
+                    [](const CycleFit& fit) { return fit.sigma.value; }, SigmaError},
+    TrackedQuantity{"contact_radius", "m", "a", "sigma_open",
+                    [](const CycleFit& fit) { return fit.contact_radius; }, SigmaError},
+    TrackedQuantity{"alpha", "-", "", "alpha_open",
+                    [](const CycleFit& fit) { return fit.alpha.value; },
+                    [](const CycleFit& fit) { return fit.alpha.standard_error; }},
+    TrackedQuantity{"energy", "J", "", "", [](const CycleFit& fit) { return fit.energy; }, Rms,
+                    /*is_drawn=*/false},
+    TrackedQuantity{"energy_ratio", "-", "", "",
+                    [](const CycleFit& fit) { return fit.energy_ratio; }, Rms},
 };
 
 /// Returns one over the square of an error, within what sums of a million million neither overflow
@@ -129,29 +44,66 @@ double WeightOf(double error) {
   return std::clamp(1 / error / error, 1 / kLargest, kLargest);
 }
 
-/// Returns "p 0.003", or that p is too small to state.
-std::string ChanceText(double p_value) {
+/// Returns "+60 %"; nothing where the sign changes or it grows more than tenfold.
+std::string RelativeChange(double from, double to) {
+  constexpr double kMost = 10;
+  const double change = to / from - 1;
+  if (!(change > -1 && change < kMost)) return "";
+  return fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 0.1 ? 1 : 0);
+}
+
+/// Returns "0.352 → 0.600" or "250 → 400 µm".
+std::string FromTo(double from, double to, const std::string& unit) {
+  const double largest = std::max(std::abs(from), std::abs(to));
+  const report::ScaledUnit scaled = report::UnitFor(unit, largest);
+  constexpr int kMost = 9;
+  const int decimals =
+      largest > 0
+          ? std::clamp(2 - static_cast<int>(std::floor(std::log10(largest / scaled.factor))), 0,
+                       kMost)
+          : 0;
+  return fmt::format("{:.{}f} → {:.{}f}{}{}", from / scaled.factor, decimals, to / scaled.factor,
+                     decimals, scaled.name.empty() ? "" : " ", scaled.name);
+}
+
+std::string ChanceWords(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
 }
 
-std::string TextOf(const Change& change) {
-  const std::string_view what = change.kind == ChangeKind::kTransition ? "a step" : "a new rate";
-  return fmt::format("at cycle {} ({} to {}) {}, {:.5g} to {:.5g}, {}", change.cycle,
-                     change.lower95, change.upper95, what, change.before, change.after,
-                     ChanceText(change.p_value));
-}
-
-std::string TextOf(const Stretch& stretch) {
-  return fmt::format("from cycle {} to {} a trend, {:.5g} to {:.5g}, {}", stretch.first_cycle,
-                     stretch.last_cycle, stretch.at_start, stretch.at_end,
-                     ChanceText(stretch.slope_p_value));
+io::PlotPanel EvolutionPanel(const Evolution& evolution) {
+  constexpr double kShade = 0.3;  // of what is measured
+  constexpr double kManyCycles = 100;
+  const std::span<const Course::Bin> bins = evolution.course.bins();
+  double largest = 0.0;
+  for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
+  const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
+  io::PlotPanel panel{.x_label = "cycle",
+                      .y_label = report::WithUnit(evolution.quantity->name, unit.name),
+                      .log_x = bins.back().cycle >= kManyCycles * bins.front().cycle};
+  io::PlotSeries course{.label = "", .style = io::PlotStyle::kBand, .shade = kShade};
+  for (const Course::Bin& bin : bins) {
+    course.x.push_back(bin.cycle);
+    course.y.push_back(bin.value / unit.factor);
+    course.lower.push_back(bin.least / unit.factor);
+    course.upper.push_back(bin.greatest / unit.factor);
+  }
+  panel.series.push_back(std::move(course));
+  for (const Step& step : evolution.description.steps) {
+    panel.marks.push_back(
+        {.x = static_cast<double>(step.cycle), .label = fmt::format("step, {}", step.cycle)});
+  }
+  if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
+    panel.marks.push_back(
+        {.x = static_cast<double>(*settled), .label = fmt::format("settled, {}", *settled)});
+  }
+  return panel;
 }
 
 }  // namespace
 
 std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
-TrackedCourses::TrackedCourses() : courses_(kQuantities.size()), have_errors_(kQuantities.size()) {}
+TrackedCourses::TrackedCourses() : courses_(kQuantities.size()) {}
 
 void TrackedCourses::Add(const CycleFit& fit) {
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
@@ -160,46 +112,126 @@ void TrackedCourses::Add(const CycleFit& fit) {
     if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
     // A value without an error is exact, held or without noise: then all have one weight.
     const std::optional<double> error = quantity.error(fit);
-    const bool has_error = error && *error > 0;
-    courses_[k].Add(fit.number, *value, has_error ? WeightOf(*error) : 1.0);
-    if (has_error) have_errors_[k] = true;
+    courses_[k].Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
   }
 }
 
-std::vector<CourseDescription> TrackedCourses::Describe() const {
-  std::vector<CourseDescription> descriptions;
-  descriptions.reserve(courses_.size());
-  for (const Course& course : courses_) descriptions.push_back(FindChanges(course));
-  return descriptions;
+std::vector<Evolution> TrackedCourses::Describe(bool is_torsional) const {
+  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  std::vector<Evolution> evolutions;
+  for (std::size_t k = 0; k < kQuantities.size(); ++k) {
+    if (const std::optional<CourseDescription> found = campaign::Describe(courses_[k])) {
+      evolutions.push_back({&kQuantities[k],
+                            std::string(report::UnitIn(units, kQuantities[k].unit)), courses_[k],
+                            *found});
+    }
+  }
+  return evolutions;
 }
 
-std::vector<std::string> SmallTrendStatements(const CourseDescription& course,
-                                              const ChangeThresholds& thresholds) {
+std::string Headline(std::span<const Evolution> evolutions) {
+  std::string text;
+  bool has_force = false;
+  for (const Evolution& evolution : evolutions) {
+    const TrackedQuantity& quantity = *evolution.quantity;
+    const CourseDescription& course = evolution.description;
+    if (quantity.symbol.empty()) continue;
+    const bool is_force = quantity.name == "friction_coefficient" ||
+                          quantity.name == "slip_force" || quantity.name == "half_gap";
+    if (is_force && std::exchange(has_force, true)) continue;
+    const std::string change = RelativeChange(course.first, course.last);
+    const bool in_percent = quantity.name == "sigma" && !change.empty();
+    text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
+    if (!course.changed()) {
+      text += report::Quantity(course.first, evolution.unit, 3) + ", unchanged";
+    } else {
+      text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);
+    }
+    if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
+  }
+  return text;
+}
+
+std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions, std::size_t most) {
+  struct Statement {
+    double size;  // relative
+    std::string text;
+  };
+  std::vector<Statement> statements;
+  const auto add = [&](const Evolution& evolution, const std::string& when, double from, double to,
+                       double p_value) {
+    const std::string change = RelativeChange(from, to);
+    statements.push_back(
+        {std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
+         fmt::format("{}: {}, {}{}, {}", evolution.quantity->name, when,
+                     FromTo(from, to, evolution.unit), change.empty() ? "" : " (" + change + ")",
+                     ChanceWords(p_value))});
+  };
+  for (const Evolution& evolution : evolutions) {
+    for (const Trend& trend : evolution.description.trends) {
+      add(evolution, fmt::format("cycles {} to {}", trend.first_cycle, trend.last_cycle),
+          trend.from, trend.to, trend.p_value);
+    }
+    for (const Step& step : evolution.description.steps) {
+      add(evolution, fmt::format("a step at cycle {}", step.cycle), step.before, step.after,
+          step.p_value);
+    }
+  }
+  std::vector<double> sizes;
+  for (const Statement& statement : statements) sizes.push_back(statement.size);
+  std::ranges::sort(sizes, std::greater<>());
+  const double least = sizes.size() > most ? sizes[most - 2] : 0.0;  // one line says how many more
   std::vector<std::string> lines;
-  for (const Stretch& stretch : course.stretches) {
-    if (stretch.trends || !(stretch.slope_p_value < thresholds.chance)) continue;
-    lines.push_back(TextOf(stretch));
+  for (const Statement& statement : statements) {
+    if (statement.size >= least && lines.size() + 1 < most + (sizes.size() > most ? 0 : 1)) {
+      lines.push_back(statement.text);
+    }
+  }
+  if (lines.size() < statements.size()) {
+    lines.push_back(
+        fmt::format("and {} smaller ones, which --json lists", statements.size() - lines.size()));
   }
   return lines;
 }
 
-std::vector<std::string> ChangeStatements(const CourseDescription& course) {
-  std::vector<std::string> lines;
-  const auto settled =
-      std::ranges::find(course.changes, ChangeKind::kEndOfRunningIn, &Change::kind);
-  std::size_t first = 0;  // first segment not yet described
-  if (settled != course.changes.end()) {
-    lines.push_back(fmt::format("running-in up to cycle {} ({} to {}), {:.5g} to {:.5g}, {}",
-                                settled->cycle, settled->lower95, settled->upper95,
-                                course.stretches.front().at_start, settled->before,
-                                ChanceText(settled->p_value)));
-    first = static_cast<std::size_t>(settled - course.changes.begin()) + 1;
+std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
+  const bool has_friction = std::ranges::any_of(evolutions, [](const Evolution& evolution) {
+    return evolution.quantity->name == "friction_coefficient";
+  });
+  std::vector<io::PlotPanel> panels;
+  for (const Evolution& evolution : evolutions) {
+    if (!evolution.quantity->is_drawn || evolution.course.bins().size() < 2) continue;
+    if (has_friction && evolution.quantity->name == "slip_force") continue;
+    panels.push_back(EvolutionPanel(evolution));
   }
-  for (std::size_t k = first; k < course.stretches.size(); ++k) {
-    if (k > first) lines.push_back(TextOf(course.changes[k - 1]));
-    if (course.stretches[k].trends) lines.push_back(TextOf(course.stretches[k]));
+  return panels;
+}
+
+io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
+  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  double travel = 0.0;
+  double force = 0.0;
+  for (const Cycle& cycle : cycles) {
+    for (const double x : cycle.record.displacement) travel = std::max(travel, std::abs(x));
+    for (const double t : cycle.record.force) force = std::max(force, std::abs(t));
   }
-  return lines;
+  const report::ScaledUnit x_unit = report::UnitFor(report::UnitIn(units, "m"), travel);
+  const report::ScaledUnit y_unit = report::UnitFor(report::UnitIn(units, "N"), force);
+  io::PlotPanel panel{
+      .x_label = report::WithUnit(is_torsional ? "angle" : "displacement", x_unit.name),
+      .y_label = report::WithUnit(is_torsional ? "torque" : "force", y_unit.name)};
+  for (const Cycle& cycle : cycles) {
+    io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number)};
+    for (std::size_t i = 0; i < cycle.record.size(); ++i) {
+      loop.x.push_back(cycle.record.displacement[i] / x_unit.factor);
+      loop.y.push_back(cycle.record.force[i] / y_unit.factor);
+    }
+    loop.shade = cycles.size() < 2 ? 0.0
+                                   : static_cast<double>(panel.series.size()) /
+                                         static_cast<double>(cycles.size() - 1);
+    panel.series.push_back(std::move(loop));
+  }
+  return panel;
 }
 
 }  // namespace mindahl::campaign

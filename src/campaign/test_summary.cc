@@ -6,51 +6,13 @@
 #include <algorithm>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
-#include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "core/probability.h"
 #include "mindahl/core/error.h"
-#include "mindahl/io/csv_table.h"
-#include "report/statements.h"
 
 namespace mindahl::campaign {
-
-void PooledValue::Add(double value, double standard_error) {
-  RequireFinite("value to be pooled", value);
-  RequirePositive("standard error of a value to be pooled", standard_error);
-  if (count_++ == 0) origin_ = value;
-  const double weight = 1 / (standard_error * standard_error);
-  const double off = value - origin_;
-  weights_ += weight;
-  squared_weights_ += weight * weight;
-  values_ += weight * off;
-  squares_ += weight * off * off;
-}
-
-double PooledValue::mean() const { return origin_ + values_ / weights_; }
-
-double PooledValue::ChiSquared() const {
-  return std::max(0.0, squares_ - values_ * values_ / weights_);
-}
-
-double PooledValue::scatter() const {
-  if (count_ < 2) return 0.0;
-  const double beyond = ChiSquared() - static_cast<double>(count_ - 1);
-  return std::sqrt(std::max(0.0, beyond / (weights_ - squared_weights_ / weights_)));
-}
-
-double PooledValue::standard_error() const {
-  const double between = scatter();
-  return std::sqrt(1 / weights_ + between * between * squared_weights_ / (weights_ * weights_));
-}
-
-double PooledValue::p_value() const {
-  if (count_ < 2) return 1.0;
-  return PValueOfChiSquared(ChiSquared(), static_cast<double>(count_ - 1));
-}
 
 namespace {
 
@@ -83,45 +45,6 @@ std::string InWords(const EnergyCounts& counts) {
   }
   if (counts.left_out > 0) parts.push_back(fmt::format("{} as zero", counts.left_out));
   return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
-}
-
-void RequireThatAlphaCanBeShared(const identification::FitOptions& fit,
-                                 std::span<const std::string> files) {
-  if (fit.model->shape_exponent || fit.fixed.contains("alpha")) {
-    throw InputError(
-        fmt::format("--alpha shared: alpha is not fitted: {} it",
-                    fit.fixed.contains("alpha") ? "--fix holds" : "--model prescribes"));
-  }
-  for (const std::string& file : files) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    const bool is_there_twice =
-        !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
-    if (file != io::kStandardInput && is_there_twice) continue;
-    throw InputError(fmt::format(
-        "--alpha shared: {} can be read only once, and two passes are needed: write it to a file",
-        file));
-  }
-}
-
-void PoolAlpha(const CycleFit& fit, PooledValue& alpha) {
-  const bool is_known = !fit.HasFlag("not_converged") && !fit.HasFlag("alpha_open");
-  const FittedValue& own = fit.alpha;
-  if (!is_known || !own.value || !own.standard_error) return;
-  if (*own.standard_error > 0) alpha.Add(*own.value, *own.standard_error);
-}
-
-void RequireSharedAlpha(const PooledValue& alpha) {
-  if (alpha.count() > 0) return;
-  throw InputError(
-      "--alpha shared: no cycle determines alpha: give a known value, --fix alpha=VALUE");
-}
-
-std::string SharedAlphaInWords(const PooledValue& alpha) {
-  return fmt::format(
-      "shared alpha {:.6g} ± {:.2g}, from {} cycles that scatter by {:.2g} beyond their errors, {}",
-      alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
-      report::ChanceText(alpha.p_value(), 1));
 }
 
 std::string Repeats::InWords() const {

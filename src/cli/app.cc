@@ -211,7 +211,6 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   AddContactCommand(app, console);
   AddConvertCommand(app, console);
   AddTradeoffCommand(app, console);
-  AddRecommendCommand(app, console);
   AddPlanCommand(app, console);
   AddTrackCommand(app, console);
   AddBatchCommand(app, console);

@@ -38,7 +38,6 @@ void AddValidateCommand(CLI::App& app, Console& console);
 void AddContactCommand(CLI::App& app, Console& console);
 void AddConvertCommand(CLI::App& app, Console& console);
 void AddTradeoffCommand(CLI::App& app, Console& console);
-void AddRecommendCommand(CLI::App& app, Console& console);
 void AddPlanCommand(CLI::App& app, Console& console);
 void AddTrackCommand(CLI::App& app, Console& console);
 void AddBatchCommand(CLI::App& app, Console& console);

@@ -165,6 +165,8 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       .WholeNumber(1, 1024);
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
+  ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
+                      "--terms", "--files-from", "--output", "--report", "--json", "--help-all"});
   WhenCalled(command, [options, &command, &console] {
     options->request.files = FilesOf(options->request.files, options->list);
     RunBatch(*options, command, console);

@@ -16,9 +16,11 @@ using LawOptions = request::LawRequest;
 
 /// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
 /// other option and, unless it is exact, one standard uncertainty, in percent of the number's
-/// magnitude with %. Blanks around either do not count.
+/// magnitude with %. Either may have a unit, "50 N ± 0.5 N"; one at the end is of both, "50±0.5 N".
+/// @param unit  that of a number
 /// @throws InputError naming the option, the text, the rule and the remedy
-contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option);
+contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
+                                            std::string_view unit);
 
 /// How many normal loads an option may give.
 enum class NormalLoads { kOne, kOneAFile };

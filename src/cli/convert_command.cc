@@ -29,7 +29,7 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
   }
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
-                     console);
+                     console, {options.asked.fit});
   request::ConversionRequest asked = options.asked;
   asked.options.tolerance = ParseTolerance(options.tolerance);
   const request::ConvertedContact converted = request::MakeConversion(asked);
@@ -53,33 +53,27 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       "Converts a contact's steady loop to another law or program: the\n"
       "parameters, the remaining error, and the amplitudes at which it is\n"
       "small.",
-      {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
+      {"mindahl convert fit.json --to dahl",
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
        "    --input-lines contact.tcl"});
   const OptionGroup contact(command, "The contact");
+  contact.Add("fit", options->asked.fit,
+              "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
+  contact.Add("--sigma", options->asked.sigma, "tangential stiffness [N/m]", "N/M");
+  contact.Add("--alpha", options->asked.alpha, "shape exponent [-], default 1/3", "ALPHA");
+  contact.Add("--slip-force", options->asked.slip_force, "slip force Tc [N]", "N");
   contact
-      .Add("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]", "N/M")
-      .Required();
-  contact.Add("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3",
-              "ALPHA");
-  contact.Add("--slip-force", options->asked.law.slip_force, "slip force Tc [N]", "N").Required();
-  contact
-      .AddShown("--from", options->asked.from,
-                "law of these parameters: of fit --model mindlin-dahl or --model dahl")
+      .Add("--from", options->asked.from,
+           "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
+           "fit's, "
+           "else masing")
       .OneOf({"masing", "dahl"});
-  contact
-      .Add("--amplitude", options->asked.options.amplitude,
-           "amplitude X of the contact's steady loop [m], without the rig's travel", "M")
-      .Required();
+  contact.Add("--amplitude", options->asked.amplitude,
+              "amplitude X of the contact's steady loop [m], without the rig's travel", "M");
   const OptionGroup result(command, "What it becomes");
   result.Add("--to", options->asked.to, "law or program")
       .Required()
       .OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name));
-  result.Add(
-      "--least-amplitude", options->asked.least_amplitude,
-      "from this amplitude [m] on a target that is not exact is fitted;\ndefault --amplitude", "M");
-  result.Add("--largest-amplitude", options->asked.largest_amplitude,
-             "up to this amplitude [m] it is fitted; default --amplitude", "M");
   result.AddShown("--tolerance", options->tolerance,
                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
                   "E");

@@ -36,7 +36,6 @@ struct FitCommandOptions {
   bool has_details = false;
   std::string sweep;  // "" for a record
   std::string response;
-  std::optional<double> response_noise;
 };
 
 /// @param provenance  asked for where a page is written: it reads the files once more
@@ -67,8 +66,8 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
 
 void RequireSweepOptions(const CLI::App& command) {
   constexpr auto kOfSweeps = std::to_array<std::string_view>(
-      {"strict", "help", "sweep", "json", "response", "response-noise", "displacement", "force",
-       "encoding", "fix", "model", "confidence"});
+      {"strict", "help", "sweep", "json", "response", "displacement", "force", "encoding", "fix",
+       "model", "confidence"});
   for (const OptionState& option : OptionsOf(command)) {
     const bool is_of_sweeps = std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end();
     if (!option.is_given || is_of_sweeps) continue;
@@ -82,7 +81,7 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
                      options.request.files);
   const Messages messages{console.err, "fit"};
   const request::FittedSweep fitted = request::FitSweepFile(
-      options.request, options.sweep, options.response, options.response_noise,
+      options.request, options.sweep, options.response, /*response_noise=*/std::nullopt,
       [&](std::string_view note) { messages.Note(note); });
   console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
   WriteAnswer(options.json_path, console, fitted);
@@ -90,7 +89,7 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
   if (!options.sweep.empty()) return RunSweep(options, command, console);
-  if (!options.response.empty() || options.response_noise) {
+  if (!options.response.empty()) {
     throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
   }
   const FitRequest& request = options.request;
@@ -140,8 +139,6 @@ void AddFitCommand(CLI::App& app, Console& console) {
       "\"2 [N/um]\"; default a recognised name; --displacement or --force\nnames the column of "
       "the amplitude",
       "COL");
-  sweeps.Add("--response-noise", options->response_noise,
-             "known standard deviation of a response [N/m] or [m/N]", "S");
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
@@ -151,6 +148,8 @@ void AddFitCommand(CLI::App& app, Console& console) {
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
   AddStrict(group, options->strict, "exit status 3");
+  ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
+                      "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
   WhenCalled(command, [options, &command, &console] { RunFit(*options, command, console); });
 }
 

@@ -15,7 +15,9 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "core/from_chars.h"
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
@@ -31,10 +33,17 @@ namespace {
 
 using request::kFitIt;
 
-double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
-  const auto value = NumberIn<double>(text.starts_with('+') ? text.substr(1) : text);
-  if (value) return *value;
-  throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
+/// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
+std::string_view UnitOf(std::string_view parameter) {
+  const Term* term = identification::FindTerm(identification::TermNameOf(parameter));
+  return term == nullptr ? "-" : term->unit;
+}
+
+double ParseNumber(std::string_view text, std::string_view option, std::string_view form,
+                   std::string_view unit = "-") {
+  if (const std::optional<double> value = ParseQuantity(text, unit)) return *value;
+  throw InputError(fmt::format("{}: '{}' is not a number{}: write {}", option, text,
+                               unit == "-" ? "" : fmt::format(" or a quantity in {}", unit), form));
 }
 
 /// Returns "left<separator>right".
@@ -60,13 +69,16 @@ void ReadAssignments(const std::vector<std::string>& texts, std::string_view opt
   assignments.clear();
   for (const std::string& text : texts) {
     const auto [name, value] = Split(text, '=', option, form);
-    if (!assignments.emplace(name, parse(value, option, form)).second) ThrowTwice(option, name);
+    if (!assignments.emplace(name, parse(value, option, form, UnitOf(name))).second) {
+      ThrowTwice(option, name);
+    }
   }
 }
 
-Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form) {
+Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form,
+                       std::string_view unit) {
   const auto [lower, upper] = Split(text, ':', option, form);
-  return {ParseNumber(lower, option, form), ParseNumber(upper, option, form)};
+  return {ParseNumber(lower, option, form, unit), ParseNumber(upper, option, form, unit)};
 }
 
 loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
@@ -95,120 +107,112 @@ request::CovariateRequest ParseCovariate(const std::string& text) {
   return choice;
 }
 
-/// Reads fit, a number, or the form of a slip position.
-request::TermRequest ParseTerm(const std::string& text, const Term& term) {
-  if (term.option == "--slip-position") return {.form = text};
+/// Reads fit, a number, or a number with its standard uncertainty.
+request::RigRequest ParseRig(const std::string& text) {
+  constexpr std::string_view kOption = "--rig-stiffness";
   if (text == kFitIt) return {};
-  const auto has = [&](std::string_view separator) {
-    return text.find(separator) != std::string::npos;
-  };
-  if (term.name == "rig_stiffness" && (has("±") || has("+-") || has("+/-"))) {
-    const contact::UncertainValue stated = ParseUncertainValue(text, term.option);
-    RequirePositive(fmt::format("{}: standard uncertainty [{}]", term.option, term.unit),
-                    stated.standard_error);
-    return {.value = stated.value, .standard_uncertainty = stated.standard_error};
-  }
-  return {.value =
-              ParseNumber(text, term.option,
-                          term.unit == "-" ? std::string("a number, or fit")
-                                           : fmt::format("a number in {}, or fit", term.unit))};
+  const contact::UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
+  if (stated.standard_error == 0) return {.value = stated.value};
+  return {.value = stated.value, .standard_uncertainty = stated.standard_error};
 }
 
-/// Adds an option that is read into an optional range.
-template <typename Range, typename Parse>
-void AddRange(const OptionGroup& group, const std::string& name, std::optional<Range>& range,
-              const std::string& form, const std::string& help, Parse parse) {
-  group.AddRead(
-      name,
-      [&range, name, form, parse](const std::string& text) { range = parse(text, name, form); },
-      help, "LO:HI");
-}
-
-void AddLimitOptions(CLI::App& command, FitRequest& options) {
-  const OptionGroup group(command, std::string(kColumnGroup));
-  group.AddShown("--max-rows", options.max_rows, "refuse files with more rows than this in total")
-      .WholeNumber(1, 1'000'000'000'000);
-  group
-      .Add("--max-memory", options.max_memory,
-           "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
-           "memory, or the limit of the process",
-           "SIZE")
-      .WholeNumber(1, 1'000'000'000'000'000'000)
-      .WithUnitOfSize();
-}
-
-void AddWindowOptions(CLI::App& command, FitRequest& options) {
-  const OptionGroup group(command, std::string(kColumnGroup));
-  AddRange(group, "--time-window", options.time_window, "LO:HI in seconds",
-           "fit only samples from LO to HI [s]", &ParseInterval);
-  AddRange(group, "--load-window", options.load_window, "LO:HI in newtons",
-           "fit only samples under a normal load from LO to HI [N];\nthe others still count as "
-           "loading history",
-           &ParseInterval);
+/// Reads "cycles=2:9" and the like, of `--select`; or, of its older names, "2:9" alone.
+void ReadSelection(std::string_view what, std::string_view range, const std::string& option,
+                   FitRequest& request) {
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
-  AddRange(group, "--cycles", options.cycles, counted,
-           "fit only samples of the cycles LO to HI, counted from 1;\nthe others still count as "
-           "loading history",
-           &ParseCountRange);
-  AddRange(group, "--samples", options.samples, counted,
-           "fit only the samples LO to HI of each record, counted from 1;\nthe others still count "
-           "as loading history",
-           &ParseCountRange);
-  group
-      .AddShown("--skip-cycles", options.skip_cycles,
-                "number of cycles to leave out at the start;\nthey still count as loading history")
-      .WholeNumber(0, 1'000'000'000);
-  group
-      .AddShown("--trim", options.trim,
-                "auto leaves out what at the ends of a record is not the test, with a\nnote: "
-                "rests, and ramps of the load")
-      .OneOf(request::kTrims);
+  if (what == "cycles") {
+    request.cycles = ParseCountRange(range, option, counted);
+  } else if (what == "samples") {
+    request.samples = ParseCountRange(range, option, counted);
+  } else if (what == "time") {
+    request.time_window = ParseInterval(range, option, "LO:HI in seconds", "s");
+  } else if (what == "load") {
+    request.load_window = ParseInterval(range, option, "LO:HI in newtons", "N");
+  } else {
+    throw InputError(fmt::format(
+        "{}: {} must be one of them", option,
+        UnknownAmong(what, std::vector<std::string>{"cycles", "samples", "time", "load"})));
+  }
 }
 
-void AddTermOptions(const OptionGroup& group, FitRequest& options) {
-  for (const Term& term : identification::Terms()) {
-    if (term.option.empty()) continue;
-    const std::string option(term.option);
-    const std::string help(term.help);
-    const std::string argument(term.argument);
-    if (term.of_column) {
-      const auto read = [&options](const std::vector<std::string>& texts) {
-        options.covariates.clear();
-        for (const std::string& text : texts) options.covariates.push_back(ParseCovariate(text));
-      };
-      group.AddReadAll(option, read, help, argument).OneAtATime();
-    } else if (argument.empty()) {
-      group.AddAction(
-          option, [&options, &term] { options.terms[term.name] = {}; }, help);
-    } else {
-      const auto read = [&options, &term](const std::string& text) {
-        options.terms[term.name] = ParseTerm(text, term);
-      };
-      group.AddRead(option, read, help, argument);
+void AddSelections(CLI::App& command, FitRequest& request) {
+  const OptionGroup group(command, std::string(kColumnGroup));
+  group
+      .AddReadAll(
+          "--select",
+          [&request](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              const auto [what, range] =
+                  Split(text, '=', "--select", "cycles=LO:HI, time, load or samples");
+              ReadSelection(what, range, fmt::format("--select {}", what), request);
+            }
+          },
+          "fit only cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s]\nor load=LO:HI "
+          "[N]; repeatable; what is not of the time window still\ncounts as loading history",
+          "WHAT=LO:HI")
+      .OneAtATime();
+  const OptionGroup hidden(command, "");
+  for (const auto& [name, what] : {std::pair("--cycles", "cycles"),
+                                   {"--samples", "samples"},
+                                   {"--time-window", "time"},
+                                   {"--load-window", "load"}}) {
+    hidden.AddRead(
+        name,
+        [&request, option = std::string(name), what = std::string_view(what)](
+            const std::string& text) { ReadSelection(what, text, option, request); },
+        "", "LO:HI");
+  }
+  group
+      .AddShown("--trim", request.trim,
+                "leave out what at the ends of a record is not the test, and say which\nrows")
+      .OneOf(request::kOnOff);
+}
+
+/// Breaks a list of words into lines of a help text, the first of which has `used` characters.
+std::string InLines(const std::vector<std::string>& words, std::size_t used) {
+  constexpr std::size_t kWidth = 70;
+  std::string text;
+  for (const std::string& word : words) {
+    if (used + 1 + word.size() > kWidth) {
+      text += '\n';
+      used = 0;
+    } else if (!text.empty()) {
+      text += ' ';
     }
+    text += word;
+    used += 1 + word.size();
   }
+  return text;
 }
 
-std::string TermGroupNames() {
-  std::string names;
-  for (const identification::TermGroup& group : identification::TermGroups()) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", group.name);
+std::string DescribeModels() {
+  std::string text =
+      "law of the friction; auto: mindlin-dahl or dahl, whichever the record supports";
+  for (const models::FrictionModel& model : models::FrictionModels()) {
+    if (!model.scaled_by_peak) text += fmt::format("\n{}: {}", model.name, model.title);
   }
-  return names;
+  return text;
+}
+
+std::string DescribeTerms() {
+  std::string text =
+      "terms that are fitted in addition to the law; auto: those that the\nrecord requires, as "
+      "judged by held-out cycles. A column's name, or";
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    text += fmt::format("\n{}: {}", group.name, group.meaning);
+  }
+  return text + "\ndefault none";
 }
 
 std::string DescribeParameters() {
-  std::string contact;
-  std::string record;
+  std::vector<std::string> words;
   for (const Term& term : identification::Terms()) {
     if (term.of_column) continue;  // --covariate takes its value
-    std::string& list = term.scope == identification::Scope::kContact ? contact : record;
-    list += fmt::format("{}{} [{}]", list.empty() ? "" : ", ", term.name, term.unit);
+    words.push_back(fmt::format("{} [{}],", term.name, term.unit));
   }
-  return fmt::format(
-      "hold a parameter at a value: {}; of each record: {} (with several files numbered, "
-      "force_offset_2)",
-      contact, record);
+  words.back().pop_back();
+  return "hold a parameter at a value in its unit, and add its term:\n" + InLines(words, 0) +
+         "\noffsets and drifts of several files are numbered, force_offset_2";
 }
 
 }  // namespace
@@ -222,13 +226,13 @@ void AddJoin(CLI::App& command, FitRequest& options) {
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const OptionGroup group(command, std::string(kColumnGroup));
-  group.Add(
-      "--displacement", columns.displacement,
-      "displacement column: header name or number from 1, with its unit if\nthe header has "
-      "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
-      "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; found from names,\nunits and numbers by default; m, cm, mm, um, nm, in, or "
-      "rad, deg",
-      "COL");
+  group.Add("--displacement", columns.displacement,
+            "displacement column: header name or number from 1, with its unit if\nthe header has "
+            "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
+            "offset, \"lvdt2-lvdt1\",\n\"raw*0.0123-4.5 [mm]\"; found from names,\nunits and "
+            "numbers by default; m, cm, mm, um, nm, in, or "
+            "rad, deg",
+            "COL");
   group.Add("--force", columns.force,
             "force column, likewise: \"cell1+cell2\"; N, mN, uN, kN, lbf, kgf; of a\ntorque 'N m', "
             "'N mm'",
@@ -256,25 +260,11 @@ void RequireNoColumns(const io::RecordColumns& columns) {
   require(columns.normal_load, "--normal-load-column");
 }
 
-/// Breaks a list of names after every few of them.
-std::string InLines(std::string names, int in_a_line) {
-  int seen = 0;
-  for (std::size_t at = names.find(", "); at != std::string::npos; at = names.find(", ", at + 2)) {
-    if (++seen % in_a_line == 0) names.replace(at, 2, ",\n");
-  }
-  return names;
-}
-
 void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
-  const std::vector<std::string_view> models = request::ModelNames();
-  std::string description = "friction model:";
-  for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (model.scaled_by_peak) continue;
-    description += fmt::format(" {} ({});", model.name, model.title);
-  }
-  description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
-  group.AddShown("--model", options.model, description).OneOf(models);
+  group.AddShown("--model", options.model, DescribeModels()).OneOf(request::ModelNames());
+  group.AddFlag("--compare", options.compare,
+                "list all models, with and without a rig, by AICc and held-out cycles");
   group
       .AddShown("--initial-state", options.initial_state,
                 "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
@@ -292,23 +282,28 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       .OneOf(request::kNoiseIn);
   group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
       .OneOf(request::kOnOff);
-  AddTermOptions(group, options);
-  group.Add("--terms", options.term_choice,
-            "auto adds the terms that the record requires, one at a time, as\njudged by held-out "
-            "cycles; NAME,NAME,... fits these:\n" +
-                InLines(TermGroupNames(), 4) +
-                "\ndefault: auto for a single record that the law alone misses by more\nthan 5 %, "
-                "without options for terms; else none; in track none",
-            "auto|none|NAME,...");
-  const OptionGroup hidden(command, "");
-  hidden.AddAction(
-      "--follow-load",
-      [] {
-        throw InputError(
-            "--follow-load is no longer needed: a load column that varies by more than 1 % is "
-            "followed by itself; leave the option out");
-      },
-      "no longer needed: a load that varies is followed by itself");
+  group.AddRead(
+      "--rig-stiffness",
+      [&options](const std::string& text) { options.rig_stiffness = ParseRig(text); },
+      "stiffness of the rig in series with the contact [N/m], or fit;\nK+-U or K+-3%: fitted about "
+      "K with standard uncertainty U; default rigid",
+      "K[+-U]|fit");
+  group
+      .AddReadAll(
+          "--covariate",
+          [&options](const std::vector<std::string>& texts) {
+            options.covariates.clear();
+            for (const std::string& text : texts) {
+              options.covariates.push_back(ParseCovariate(text));
+            }
+          },
+          "additional force C·column, C [N/unit]; default fit; columns by header\nname or 1-based "
+          "number; repeatable",
+          "COL[=C|fit]")
+      .OneAtATime();
+  group.Add("--terms", options.terms, DescribeTerms(), "none|auto|NAME,...")
+      .SplitAtCommas()
+      .OneAtATime();
   const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
     group.AddReadAll(
@@ -326,8 +321,8 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   &ParseInterval, "keep a parameter between two values");
   add_assignments(
       "--prior", options.prior, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
-      [](std::string_view value, std::string_view option, std::string_view) {
-        const contact::UncertainValue prior = ParseUncertainValue(value, option);
+      [](std::string_view value, std::string_view option, std::string_view, std::string_view unit) {
+        const contact::UncertainValue prior = ParseUncertainValue(value, option, unit);
         if (prior.standard_error > 0) return prior;
         throw InputError(fmt::format(
             "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
@@ -335,32 +330,37 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       },
       "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
   group.AddShown("--confidence", options.confidence, "confidence of every interval [-]", "C");
-  group.Add("--force-noise", options.force_noise,
-            "known standard deviation of the force [N]; default from the residuals", "N");
-  group.Add("--displacement-noise", options.displacement_noise,
-            "known standard deviation of the displacement [m]; default from the data where "
-            "they show any",
-            "M");
+  group
+      .Add("--force-noise", options.force_noise,
+           "known standard deviation of the force [N]; default from the residuals", "N")
+      .InUnit("N");
+  group
+      .Add("--displacement-noise", options.displacement_noise,
+           "known standard deviation of the displacement [m]; default from the\ndata where they "
+           "show any",
+           "M")
+      .InUnit("m");
   group
       .AddShown("--loss", options.loss,
                 "weight of residuals that are large against their scatter: huber and\ncauchy "
                 "reduce it, tukey reduces it to zero")
       .OneOf(request::kLosses);
   group
-      .AddShown("--starts", options.starts,
-                "number of starting points that are refined: the four most promising,\nthe others "
-                "drawn at random")
-      .WholeNumber(1, 1000);
-  group.AddShown("--seed", options.seed, "seed of the starting points drawn at random")
-      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
-  group.Add("--reversal-gate", options.reversal_gate,
-            "excursions up to this [m] are noise, not reversals; default from the data", "M");
+      .Add("--reversal-gate", options.reversal_gate,
+           "excursions up to this [m] are noise, not reversals; default from the\ndata", "M")
+      .InUnit("m");
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request.columns);
-  AddLimitOptions(command, request);
-  AddWindowOptions(command, request);
+  OptionGroup(command, std::string(kColumnGroup))
+      .Add("--max-memory", request.max_memory,
+           "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
+           "memory, or the limit of the process",
+           "SIZE")
+      .WholeNumber(1, 1'000'000'000'000'000'000)
+      .WithUnitOfSize();
+  AddSelections(command, request);
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }

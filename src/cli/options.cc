@@ -12,6 +12,7 @@
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/units.h"
 
 namespace mindahl::cli {
 
@@ -25,7 +26,41 @@ CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::stri
     text += '\n';
   }
   command->footer(text + '\n' + program.get_footer());
+  command->set_help_all_flag("--help-all", "Print all options and exit");
   return *command;
+}
+
+namespace {
+
+class EverydayFormatter : public CLI::Formatter {
+ public:
+  explicit EverydayFormatter(std::vector<std::string> names) : names_(std::move(names)) {}
+
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    if (mode == CLI::AppFormatMode::All) return Formatter::make_help(app, std::move(name), mode);
+    std::vector<const CLI::Option*> shown;
+    for (const std::string& each : names_) shown.push_back(app->get_option(each));
+    const auto all = app->get_options([](const CLI::Option* option) {
+      return !option->get_group().empty() && !option->get_lnames().empty();
+    });
+    const std::size_t hidden = all.size() - shown.size();
+    return fmt::format("{}{}{}{}\n{} further options: mindahl {} --help-all\n\n{}",
+                       make_description(app), make_usage(app, std::move(name)),
+                       make_positionals(app),
+                       make_group("Options", /*is_positional=*/false, std::move(shown)), hidden,
+                       app->get_name(), make_footer(app));
+  }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+void ShowFirst(CLI::App& command, std::vector<std::string> names) {
+  command.formatter(std::make_shared<EverydayFormatter>(std::move(names)));
+  command.get_formatter()->column_width(30);
 }
 
 void WhenCalled(CLI::App& command, std::function<void()> run) { command.callback(std::move(run)); }
@@ -76,6 +111,20 @@ const Option& Option::SplitAtCommas() const {
 
 const Option& Option::OneAtATime() const {
   option_->allow_extra_args(false);
+  return *this;
+}
+
+const Option& Option::InUnit(const std::string& unit) const {
+  const auto convert = [unit](std::string& text) -> std::string {
+    // What has no unit is read, and refused, as a number.
+    if (Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
+    const std::optional<double> value = ParseQuantity(text, unit);
+    if (!value)
+      return fmt::format("'{}' is no quantity in {}: write a number or its unit", text, unit);
+    text = fmt::format("{}", *value);
+    return {};
+  };
+  option_->transform(CLI::Validator(convert, ""));
   return *this;
 }
 

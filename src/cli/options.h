@@ -21,6 +21,10 @@ namespace mindahl::cli {
 CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::string& about,
                      std::initializer_list<std::string_view> examples);
 
+/// Lets the help of a command show these options alone, and `--help-all` all of them.
+/// @param names  with their dashes, in the order of the help
+void ShowFirst(CLI::App& command, std::vector<std::string> names);
+
 /// Sets what a command does once its options are read.
 void WhenCalled(CLI::App& command, std::function<void()> run);
 
@@ -40,6 +44,8 @@ class Option {
   const Option& SplitAtCommas() const;
   /// Takes one value each time that it is given; others take all words up to the next option.
   const Option& OneAtATime() const;
+  /// Takes a quantity with its unit, "50 N", where a number is one in `unit`.
+  const Option& InUnit(const std::string& unit) const;
   /// Takes a size in bytes with a unit: "4GB".
   const Option& WithUnitOfSize() const;
 

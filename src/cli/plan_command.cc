@@ -114,12 +114,20 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                "where the record does not determine it",
                "FILE");
   AddColumnOptions(command, options->columns);
-  expected.Add("--rig-stiffness", options->plan.rig_stiffness,
-               "stiffness of the rig in series [N/m]; known unless --with fits it", "K");
-  expected.Add("--force-noise", options->plan.force_noise,
-               "standard deviation of the force noise [N]", "S");
-  expected.Add("--displacement-noise", options->plan.displacement_noise,
-               "standard deviation of the displacement noise [m], white; default 0", "S");
+  expected
+      .Add("--rig-stiffness", options->plan.rig_stiffness,
+           "stiffness of the rig in series [N/m], with which --record is fitted too;\nknown "
+           "unless --with fits it",
+           "K")
+      .InUnit("N/m");
+  expected
+      .Add("--force-noise", options->plan.force_noise, "standard deviation of the force noise [N]",
+           "S")
+      .InUnit("N");
+  expected
+      .Add("--displacement-noise", options->plan.displacement_noise,
+           "standard deviation of the displacement noise [m], white; default 0", "S")
+      .InUnit("m");
   expected.Add("--autocorrelation", options->plan.autocorrelation,
                "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0",
                "RHO");
@@ -127,7 +135,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P");
   const OptionGroup loop(command, "The loop");
   loop.Add("--amplitude", options->plan.amplitudes,
-           "amplitude X [m], repeatable; default 13 around the onset of slip", "X");
+           "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
+      .InUnit("m");
   loop.Add("--load-ratio", options->plan.load_ratios,
            "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
       .SplitAtCommas();

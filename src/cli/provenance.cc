@@ -49,7 +49,8 @@ std::string ShellWord(std::string_view word) {
       quoted += character;
     }
   }
-  return quoted + "'";
+  quoted += '\'';
+  return quoted;
 }
 
 std::string CommandLine(int argc, const char* const* argv) {

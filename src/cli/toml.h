@@ -15,11 +15,12 @@ struct TomlItem {
   std::size_t line = 0;             ///< 1-based, of the key
 };
 
-/// The part of TOML that options need: sections, and keys with a string, a number, a boolean or an
-/// array of such, which may span lines, have comments between its values and end in a comma. A word
-/// without quotation marks is a string too.
+/// Returns the keys of a TOML text (toml.io), in its order: strings, numbers, booleans and arrays
+/// of such.
 /// @param file  the text's name, for messages
-/// @throws InputError naming file and line: what is not closed, has no value, or comes after one
+/// @throws InputError naming file and line: of what is no TOML, of a key that is given twice, and
+/// of
+///   a value that no option takes
 std::vector<TomlItem> ReadToml(std::string_view text, std::string_view file);
 
 }  // namespace mindahl::cli

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cli/app.h"
+#include "cli/contact_options.h"
 #include "cli/file_list.h"
 #include "cli/fit_request.h"
 #include "cli/kept_cycles.h"
@@ -44,14 +45,10 @@ namespace {
 using campaign::CycleFit;
 using request::TrackedTest;
 
-constexpr std::string_view kOwnAlpha = "cycle";
-constexpr std::string_view kSharedAlpha = "shared";
-
 struct TrackCommandOptions {
   request::TrackRequest track{.threads = std::max(1U, std::thread::hardware_concurrency())};
   FileList list;
   std::string broken_rows = "refuse";
-  std::string alpha = std::string(kOwnAlpha);
   std::string output;
   std::string json_path;
   std::string plot_path;
@@ -75,6 +72,13 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
   }
   std::error_code error;
+  const std::string extension = std::filesystem::path(options.output).extension().string();
+  if (extension == ".parquet" || extension == ".xlsx" || extension == ".h5") {
+    throw InputError(fmt::format(
+        "--output: {}: the table is CSV: give a name that ends in .csv (docs/queries.md makes "
+        "Parquet of it)",
+        options.output));
+  }
   const auto status = std::filesystem::status(options.output, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw InputError(
@@ -141,7 +145,7 @@ class TrackRun {
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther();
   void SayProgress();
-  void Draw(const std::vector<campaign::CourseDescription>& described);
+  void Draw(const std::vector<campaign::Evolution>& evolutions);
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
@@ -265,10 +269,6 @@ void TrackRun::Track() {
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes_ += size;
   }
-  if (options_.track.shares_alpha) {
-    const Progress progress(console_.err, "fitting alpha, the first of two passes");
-    run_.PoolAlpha();
-  }
   signals_.emplace();
   try {
     run_.Read();
@@ -325,17 +325,17 @@ void TrackRun::Go() {
   Track();
   run_.test().output = options_.output;
   console_.exit_status = test().established() ? kDone : kNotEstablished;
-  const std::vector<campaign::CourseDescription> described = test().courses.Describe();
-  Draw(described);
-  WriteAnswer(options_.json_path, console_, test(), described);
+  const std::vector<campaign::Evolution> evolutions = test().courses.Describe(test().is_torsional);
+  Draw(evolutions);
+  WriteAnswer(options_.json_path, console_, test(), evolutions);
 }
 
-void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
-  if (!options_.plot_path.empty()) io::WritePlot(ToPlot(test(), described), options_.plot_path);
+void TrackRun::Draw(const std::vector<campaign::Evolution>& evolutions) {
+  if (!options_.plot_path.empty()) io::WritePlot(ToPlot(test(), evolutions), options_.plot_path);
   if (!options_.report_path.empty()) {
     io::WriteFileAtomically(
         options_.report_path,
-        ToPage(test(), described, ProvenanceOf(command_, console_, options_.track.fit.files)));
+        ToPage(test(), evolutions, ProvenanceOf(command_, console_, options_.track.fit.files)));
   }
 }
 
@@ -593,20 +593,14 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddJoin(command, options->track.fit);
   AddColumnOptions(command, options->track.fit.columns);
   AddModelOptions(command, options->track.fit);
+  AddContactOptions(command, options->track.fit.contact);
   const OptionGroup cycles(command, "Cycles");
-  cycles.Add("--normal-load", options->track.normal_load,
-             "normal load N [N] of all cycles; default the column's mean over each", "N");
   cycles
       .AddShown("--average", options->track.average,
                 "number of consecutive cycles that are fitted together")
       .WholeNumber(1, 1'000'000);
   cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
       .WholeNumber(1, 1'000'000'000);
-  cycles
-      .AddShown("--alpha", options->alpha,
-                "cycle: each cycle has its own; shared: all have the weighted mean of a\nfirst "
-                "pass, and a second pass fits sigma and Tc")
-      .OneOf({std::string(kOwnAlpha), std::string(kSharedAlpha)});
   cycles
       .AddShown("--broken-rows", options->broken_rows,
                 "refuse: a row without a number in a needed column ends the run; skip:\nit is "
@@ -629,7 +623,6 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   WhenCalled(command, [options, &command, &console] {
     options->track.fit.files = FilesOf(options->track.fit.files, options->list);
-    options->track.shares_alpha = options->alpha == kSharedAlpha;
     if (options->broken_rows == "skip") options->track.broken_rows = io::BrokenRows::kSkip;
     RunTrack(*options, command, console);
   });

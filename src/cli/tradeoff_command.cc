@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,14 +23,13 @@ struct TradeoffOptions {
   std::string path;
   std::string path_unit;
   std::string csv;
-  std::string regions_csv;
   std::string plot;
   std::string json;
+  std::string tolerance = "1%";
 };
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
   RequireOutputPaths({{"--csv", options.csv},
-                      {"--regions-csv", options.regions_csv},
                       {"--plot", options.plot},
                       {"--json", options.json, /*dash_is_stdout=*/true}},
                      console, {options.path});
@@ -41,22 +39,16 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
     asked.displacement = io::ReadDisplacementPath(
         options.path, options.path_unit.empty() ? "" : fmt::format("[{}]", options.path_unit));
   }
+  asked.tolerance = ParseTolerance(options.tolerance);
   const Messages messages{console.err, "tradeoff"};
-  std::optional<Progress> progress;
-  const request::Tradeoff study = request::MakeTradeoff(
-      asked, [&](std::string_view warning) { messages.Warn(warning); },
-      [&](std::string_view what) {
-        if (!progress) progress.emplace(console.err, std::string(what));
-        progress->Say(std::string(what));
-      });
-  progress.reset();
+  const request::Tradeoff study = [&] {
+    const Progress progress(console.err, "timing every method");
+    return request::MakeTradeoff(asked, [&](std::string_view warning) { messages.Warn(warning); });
+  }();
 
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(study), options.plot);
   if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(study));
-  if (!options.regions_csv.empty()) {
-    io::WriteFileAtomically(options.regions_csv, RegionsCsv(study));
-  }
   WriteAnswer(options.json, console, study);
 }
 
@@ -66,13 +58,12 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
   CLI::App& command = AddCommand(
       app, "tradeoff",
-      "Compares error and cost of every method and model along five\n"
-      "excitations, the cost by counted operations and as measured in this\n"
-      "run, and lists the amplitudes at which each model is good enough. The\n"
-      "default contact is that of Peyret et al. (2017).",
-      {"mindahl tradeoff --excitation micro",
-       "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
-       "points.csv"});
+      "Compares error and cost of every model and method along an excitation,\n"
+      "and names the cheapest whose force is within a tolerance of the exact\n"
+      "one, and whose dissipated energy is too. The default contact is that of\n"
+      "Peyret et al. (2017).",
+      {"mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --tolerance 1%",
+       "mindahl tradeoff --excitation micro --csv points.csv"});
   AddLawOptions(command, options->study.law);
   const OptionGroup group(command, "Excitation");
   const Option scenes =
@@ -87,10 +78,11 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                           .Excludes(scenes);
   group.Add("--path-unit", options->path_unit, "unit of that column, default the header's", "UNIT")
       .Needs(path);
+  OptionGroup(command, kPlainGroup)
+      .AddShown("--tolerance", options->tolerance,
+                "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E");
   const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
-  output.Add("--regions-csv", options->regions_csv,
-             "amplitudes at which each model is good enough, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   WhenCalled(command, [options, &console] { RunTradeoff(*options, console); });

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
-#include <iterator>
+#include <cstdint>
 #include <limits>
 #include <numeric>
-#include <ranges>
+#include <vector>
 
-#include "convert/bouc_wen_shape.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -19,51 +23,17 @@ using models::BranchLaw;
 
 namespace {
 
-void RequireBoucWen(const BoucWenLaw& law) {
-  constexpr double kLargestExponent = 20.0;
-  RequirePositive("Bouc-Wen stiffness [N/m]", law.stiffness);
-  RequirePositive("Bouc-Wen slip force [N]", law.slip_force);
-  if (!(law.exponent >= 1 && law.exponent <= kLargestExponent)) {
-    ThrowInvalid("Bouc-Wen exponent [-]", law.exponent, "must be in 1 … 20");
-  }
-  if (!(law.beta > 0 && law.beta <= 1)) {
-    ThrowInvalid("Bouc-Wen beta [-]", law.beta, "must be in (0, 1]");
-  }
+constexpr double kLargestExponent = 20.0;
+
+/// Returns where a function changes its sign between two places.
+template <typename Function>
+double Solve(const Function& function, double low, double high) {
+  constexpr int kBits = 48;
+  std::uintmax_t iterations = 200;
+  const auto [from, to] = boost::math::tools::toms748_solve(
+      function, low, high, boost::math::tools::eps_tolerance<double>(kBits), iterations);
+  return std::midpoint(from, to);
 }
-
-/// The virgin curve of elements: a polygon that bends where one slips.
-class VirginPolygon {
- public:
-  explicit VirginPolygon(const IwanElements& elements) {
-    for (std::size_t j = 0; j < elements.size(); ++j) {
-      if (elements.slip_force[j] == 0) continue;
-      corners_.push_back({.at = elements.slip_force[j] / elements.stiffness[j],
-                          .stiffness = elements.stiffness[j],
-                          .slip_force = elements.slip_force[j]});
-    }
-    std::ranges::sort(corners_, {}, &Corner::at);
-    double slipped = 0.0;
-    for (Corner& corner : corners_) corner.slip_force = slipped += corner.slip_force;
-    double stiffness = 0.0;
-    for (Corner& corner : std::views::reverse(corners_)) {
-      corner.stiffness = stiffness += corner.stiffness;
-    }
-  }
-
-  double operator()(double x) const {
-    const auto next = std::ranges::upper_bound(corners_, x, {}, &Corner::at);
-    return (next == corners_.begin() ? 0.0 : std::prev(next)->slip_force) +
-           (next == corners_.end() ? 0.0 : next->stiffness * x);
-  }
-
- private:
-  struct Corner {
-    double at;          // [m]
-    double stiffness;   // of all that slip here or later
-    double slip_force;  // of all that slip here or before
-  };
-  std::vector<Corner> corners_;
-};
 
 /// A model's rising branch, T = f(d) − T*.
 struct ModelBranch {
@@ -82,6 +52,81 @@ struct ModelBranch {
   }
 };
 
+/// Bouc's and Wen's law over y = kx/Tc, t = T/Tc, which has no closed form.
+class BoucWenBranch {
+ public:
+  explicit BoucWenBranch(const BoucWenLaw& law) : law_(law) {
+    RequirePositive("Bouc-Wen stiffness [N/m]", law.stiffness);
+    RequirePositive("Bouc-Wen slip force [N]", law.slip_force);
+    if (!(law.exponent >= 1 && law.exponent <= kLargestExponent)) {
+      ThrowInvalid("Bouc-Wen exponent [-]", law.exponent, "must be in 1 … 20");
+    }
+    if (!(law.beta > 0 && law.beta <= 1)) {
+      ThrowInvalid("Bouc-Wen beta [-]", law.beta, "must be in (0, 1]");
+    }
+  }
+
+  /// Force t and work ∫t dy since the branch's start.
+  struct State {
+    double force;
+    double work = 0.0;
+    double y = 0.0;
+  };
+
+  /// Follows a rising branch up to y.
+  void Rise(State& state, double y) const {
+    namespace odeint = boost::numeric::odeint;
+    using Values = std::array<double, 2>;
+    auto stepper =
+        odeint::make_controlled<odeint::runge_kutta_dopri5<Values>>(kTolerance, kTolerance);
+    Values values = {state.force, state.work};
+    const auto rate = [&](const Values& at, Values& derivative, double /*y*/) {
+      const double share = at[0] < 0 ? 1 - 2 * law_.beta : 1.0;  // γ − β or γ + β
+      derivative = {1 - share * std::pow(std::min(std::abs(at[0]), 1.0), law_.exponent), at[0]};
+    };
+    double h = y - state.y;
+    while (state.y < y && values[0] < 1 - kTolerance) {
+      h = std::min(h, y - state.y);
+      if (state.y + h <= state.y) break;
+      stepper.try_step(rate, values, state.y, h);
+    }
+    // From there on it slides.
+    state = {values[0], values[1] + values[0] * std::max(y - state.y, 0.0), y};
+  }
+
+  /// Returns the peak of the steady loop between ±y: a branch from −t* ends at t*.
+  [[nodiscard]] double Peak(double y) const {
+    const auto excess = [&](double peak) {
+      State state{-peak};
+      Rise(state, 2 * y);
+      return state.force - peak;
+    };
+    return excess(1.0) > -2 * kTolerance ? 1.0 : Solve(excess, 0.0, 1.0);
+  }
+
+  /// Returns W·k/Tc² of the loop between ±y.
+  [[nodiscard]] double Energy(double y) const {
+    State state{-Peak(y)};
+    Rise(state, 2 * y);
+    return 2 * state.work;
+  }
+
+  [[nodiscard]] double Normalize(double x) const { return law_.stiffness / law_.slip_force * x; }
+
+ private:
+  static constexpr double kTolerance = 1e-12;
+  BoucWenLaw law_;
+};
+
+/// Virgin curve of elements.
+double VirginForce(const IwanElements& elements, double x) {
+  double force = 0.0;
+  for (std::size_t j = 0; j < elements.size(); ++j) {
+    force += std::min(elements.stiffness[j] * x, elements.slip_force[j]);
+  }
+  return force;
+}
+
 struct Rising {
   double amplitude;
   std::span<const double> distance;
@@ -95,25 +140,23 @@ struct Rising {
   }
 
   void operator()(const BoucWenLaw& law) const {
-    RequireBoucWen(law);
-    const BoucWenShape shape(law.exponent, law.beta);
-    const double rate = law.stiffness / law.slip_force;
-    const BoucWenShape::Loop loop = shape.LoopOf(rate * amplitude);
+    const BoucWenBranch branch(law);
+    BoucWenBranch::State state{-branch.Peak(branch.Normalize(amplitude))};
     for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = law.slip_force * shape.Rising(loop, rate * distance[i]);
+      branch.Rise(state, branch.Normalize(distance[i]));
+      force[i] = law.slip_force * state.force;
     }
   }
 
   void operator()(const IwanElements& elements) const {
-    const VirginPolygon virgin(elements);
-    const double peak = virgin(amplitude);
+    const double peak = VirginForce(elements, amplitude);
     for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = 2 * virgin(distance[i] / 2) - peak;
+      force[i] = 2 * VirginForce(elements, distance[i] / 2) - peak;
     }
   }
 };
 
-/// Distances at which a rising branch bends.
+/// Adds distances at which a rising branch bends.
 struct Corners {
   double amplitude;
   std::vector<double>& distance;
@@ -129,58 +172,6 @@ struct Corners {
   }
 };
 
-/// Returns the distances at which two branches are compared: densest after the reversal, at every
-/// corner, and in the middle between any two of these.
-std::vector<double> PlacesToCompare(const SteadyLaw& law, const SteadyLaw& reference,
-                                    double amplitude) {
-  constexpr int kIntervals = 64;
-  constexpr double kGrowth = 8.0;  // of the spacing, as an exponent
-  std::vector<double> corners;
-  for (int i = 0; i <= kIntervals; ++i) {
-    const double share = static_cast<double>(i) / kIntervals;
-    corners.push_back(2 * amplitude * (std::expm1(kGrowth * share) / std::expm1(kGrowth)));
-  }
-  std::visit(Corners{amplitude, corners}, law);
-  std::visit(Corners{amplitude, corners}, reference);
-  std::erase_if(corners, [&](double distance) { return !(distance <= 2 * amplitude); });
-  std::ranges::sort(corners);
-  std::vector<double> places = {corners.front()};
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    places.push_back(std::midpoint(corners[i - 1], corners[i]));
-    places.push_back(corners[i]);
-  }
-  return places;
-}
-
-std::vector<double> Differences(const SteadyLaw& law, const SteadyLaw& reference, double amplitude,
-                                std::span<const double> distance) {
-  std::vector<double> difference(distance.size());
-  std::vector<double> expected(distance.size());
-  EvaluateRisingBranch(law, amplitude, distance, difference);
-  EvaluateRisingBranch(reference, amplitude, distance, expected);
-  for (std::size_t i = 0; i < difference.size(); ++i) {
-    difference[i] = std::abs(difference[i] - expected[i]);
-  }
-  return difference;
-}
-
-/// Returns the largest difference of force [N] at some places, or next to the largest of these.
-double LargestDifference(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
-  const std::vector<double> places = PlacesToCompare(law, reference, amplitude);
-  const std::vector<double> difference = Differences(law, reference, amplitude, places);
-  const auto largest = static_cast<std::size_t>(
-      std::distance(difference.begin(), std::ranges::max_element(difference)));
-  constexpr std::size_t kFiner = 128;
-  const double from = places[largest == 0 ? 0 : largest - 1];
-  const double to = places[std::min(largest + 1, places.size() - 1)];
-  std::vector<double> beside(kFiner + 1);
-  for (std::size_t i = 0; i <= kFiner; ++i) {
-    beside[i] = std::lerp(from, to, static_cast<double>(i) / kFiner);
-  }
-  return std::max(difference[largest],
-                  std::ranges::max(Differences(law, reference, amplitude, beside)));
-}
-
 struct Energy {
   double amplitude;
 
@@ -188,10 +179,9 @@ struct Energy {
     return models::SteadyLoopEnergy(*of.model, of.law, amplitude);
   }
   double operator()(const BoucWenLaw& law) const {
-    RequireBoucWen(law);
-    const BoucWenShape shape(law.exponent, law.beta);
+    const BoucWenBranch branch(law);
     return law.slip_force * law.slip_force / law.stiffness *
-           shape.Energy(law.stiffness / law.slip_force * amplitude);
+           branch.Energy(branch.Normalize(amplitude));
   }
   double operator()(const IwanElements& elements) const {
     double energy = 0.0;
@@ -203,6 +193,30 @@ struct Energy {
   }
 };
 
+/// Stiffness and slip force with which a law has a contact's peak force and energy at an amplitude.
+struct Scales {
+  double stiffness;
+  double slip_force;
+};
+
+/// @param peak, energy  of the law with a stiffness and a slip force of 1, at the amplitude y
+template <typename Peak, typename Energy>
+Scales ScalesOf(const ModelLaw& contact, double amplitude, const Peak& peak, const Energy& energy) {
+  const double wanted_peak = PeakForce(contact, amplitude);
+  const double fullness = LoopEnergy(contact, amplitude) / (4 * amplitude * wanted_peak);
+  // W/(4·y·t*) grows from 0 for a loop that sticks to 1 for one that slides.
+  const auto excess = [&](double log_y) {
+    const double y = std::exp(log_y);
+    return energy(y) / (4 * y * peak(y)) - fullness;
+  };
+  double log_y = std::log(1e-3);
+  const double high = std::log(1e12);
+  if (excess(log_y) < 0) log_y = excess(high) > 0 ? Solve(excess, log_y, high) : high;
+  const double y = std::exp(log_y);
+  const double slip_force = wanted_peak / peak(y);
+  return {y * slip_force / amplitude, slip_force};
+}
+
 }  // namespace
 
 void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
@@ -212,6 +226,12 @@ void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<cons
   std::visit(Rising{amplitude, distance, force}, law);
 }
 
+double PeakForce(const SteadyLaw& law, double amplitude) {
+  double peak = 0.0;
+  EvaluateRisingBranch(law, amplitude, std::array{2 * amplitude}, std::span(&peak, 1));
+  return peak;
+}
+
 double LoopEnergy(const SteadyLaw& law, double amplitude) {
   RequirePositive("amplitude [m]", amplitude);
   return std::visit(Energy{amplitude}, law);
@@ -219,16 +239,64 @@ double LoopEnergy(const SteadyLaw& law, double amplitude) {
 
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
   RequirePositive("amplitude [m]", amplitude);
-  double peak = 0.0;
-  EvaluateRisingBranch(reference, amplitude, std::array{2 * amplitude}, std::span(&peak, 1));
+  constexpr int kPlaces = 512;
+  std::vector<double> distance;
+  std::visit(Corners{amplitude, distance}, law);
+  std::visit(Corners{amplitude, distance}, reference);
+  std::erase_if(distance, [&](double at) { return !(at < 2 * amplitude); });
+  for (int i = 0; i <= kPlaces; ++i) {
+    distance.push_back(2 * amplitude * std::pow(static_cast<double>(i) / kPlaces, 3));
+  }
+  std::ranges::sort(distance);
+  std::vector<double> force(distance.size());
+  std::vector<double> expected(distance.size());
+  EvaluateRisingBranch(law, amplitude, distance, force);
+  EvaluateRisingBranch(reference, amplitude, distance, expected);
   LoopError error;
-  error.force = LargestDifference(law, reference, amplitude) / peak;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    error.force = std::max(error.force, std::abs(force[i] - expected[i]) / expected.back());
+  }
   const double energy = LoopEnergy(law, amplitude);
   const double lost = LoopEnergy(reference, amplitude);
   error.energy = lost > 0      ? energy / lost - 1
                  : energy == 0 ? 0.0
                                : std::numeric_limits<double>::infinity();
   return error;
+}
+
+BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
+                            const models::FrictionModel& model, double shape_exponent) {
+  if (shape_exponent == 0) {
+    // A spring with Coulomb's limit loses 4Tc(X − Tc/k).
+    const double peak = PeakForce(contact, amplitude);
+    const double slid = LoopEnergy(contact, amplitude) / (4 * peak);
+    return {peak / (amplitude - slid), 0.0, peak};
+  }
+  const BranchLaw unit{1.0, shape_exponent, 1.0};
+  const auto [stiffness, slip_force] = ScalesOf(
+      contact, amplitude, [&](double y) { return models::SteadyPeakForce(model, unit, y); },
+      [&](double y) { return models::SteadyLoopEnergy(model, unit, y); });
+  return {stiffness, shape_exponent, slip_force};
+}
+
+BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta) {
+  const auto law_of = [&](double exponent) {
+    const BoucWenBranch unit({1.0, 1.0, exponent, beta});
+    const auto [stiffness, slip_force] = ScalesOf(
+        contact, amplitude, [&](double y) { return unit.Peak(y); },
+        [&](double y) { return unit.Energy(y); });
+    return BoucWenLaw{stiffness, slip_force, exponent, beta};
+  };
+  constexpr int kBits = 20;
+  const auto difference = [&](double log_exponent) {
+    return CompareLoops(law_of(std::exp(log_exponent)), contact, amplitude).force;
+  };
+  const double log_exponent =
+      boost::math::tools::brent_find_minima(difference, 0.0, std::log(kLargestExponent), kBits)
+          .first;
+  // Where the least is at n = 1 the search ends next to it.
+  const double exponent = std::clamp(std::exp(log_exponent), 1.0, kLargestExponent);
+  return law_of(difference(0.0) <= difference(log_exponent) ? 1.0 : exponent);
 }
 
 }  // namespace mindahl::convert

@@ -4,6 +4,9 @@
 #include <array>
 #include <numbers>
 #include <span>
+#include <utility>
+
+#include "core/from_chars.h"
 
 namespace mindahl {
 namespace {
@@ -45,6 +48,19 @@ constexpr std::array kTimes = {
     Entry{"ms", 1, 1e3},
     Entry{"us", 1, 1e6},
     Entry{"min", 60, 1},
+};
+
+constexpr std::array kPressures = {
+    Entry{"Pa", 1, 1},
+    Entry{"hPa", 1e2, 1},
+    Entry{"kPa", 1e3, 1},
+    Entry{"MPa", 1e6, 1},
+    Entry{"GPa", 1e9, 1},
+    Entry{"mbar", 1e2, 1},
+    Entry{"bar", 1e5, 1},
+    Entry{"psi", 6894.757293168, 1},
+    Entry{"kgf/cm2", 98066.5, 1},
+    Entry{"kgf/cm²", 98066.5, 1},
 };
 
 struct Synonym {
@@ -113,11 +129,7 @@ std::optional<Unit> TorqueUnit(std::string_view symbol) {
   return Find(kTorques, WithBlank(symbol));
 }
 std::optional<Unit> ForceUnit(std::string_view symbol) { return Find(kForces, symbol); }
-bool IsPressureUnit(std::string_view symbol) {
-  constexpr std::array<std::string_view, 10> kPressures = {
-      "Pa", "hPa", "kPa", "MPa", "GPa", "mbar", "bar", "psi", "kgf/cm2", "kgf/cm²"};
-  return std::ranges::find(kPressures, symbol) != kPressures.end();
-}
+bool IsPressureUnit(std::string_view symbol) { return Find(kPressures, symbol).has_value(); }
 std::optional<Unit> TimeUnit(std::string_view symbol) { return Find(kTimes, symbol); }
 
 std::string LengthUnitSymbols() { return Symbols(kLengths); }
@@ -125,5 +137,61 @@ std::string AngleUnitSymbols() { return Symbols(kAngles); }
 std::string TorqueUnitSymbols() { return Symbols(kTorques); }
 std::string ForceUnitSymbols() { return Symbols(kForces); }
 std::string TimeUnitSymbols() { return Symbols(kTimes); }
+
+namespace {
+
+std::string_view WithoutBlanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
+std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
+  using Finder = std::optional<Unit> (*)(std::string_view);
+  constexpr auto find_pressure = [](std::string_view text) { return Find(kPressures, text); };
+  const std::array<std::pair<std::string_view, Finder>, 6> finders = {{{"m", &LengthUnit},
+                                                                       {"N", &ForceUnit},
+                                                                       {"s", &TimeUnit},
+                                                                       {"rad", &AngleUnit},
+                                                                       {"N m", &TorqueUnit},
+                                                                       {"Pa", find_pressure}}};
+  for (const auto& [name, find] : finders) {
+    if (name != base) continue;
+    const std::optional<Unit> unit = find(symbol);
+    return unit ? std::optional(unit->ToSi(value)) : std::nullopt;
+  }
+  return symbol == base && base != "-" ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::size_t BeginOfUnit(std::string_view text) {
+  double value = 0.0;
+  std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+  if (begin < text.size() && text[begin] == '+') ++begin;
+  const auto [stop, error] = FromChars(text.data() + begin, text.data() + text.size(), value);
+  if (error != std::errc()) return text.size();
+  return static_cast<std::size_t>(stop - text.data());
+}
+
+std::optional<double> ParseQuantity(std::string_view text, std::string_view unit) {
+  text = WithoutBlanks(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t end = BeginOfUnit(text);
+  const std::optional<double> value = NumberIn<double>(text.substr(0, end));
+  const std::string_view symbol = WithoutBlanks(text.substr(end));
+  if (!value || symbol.empty()) return value;
+  const std::size_t slash = symbol.find('/');
+  const std::size_t base_slash = unit.find('/');
+  if (base_slash == std::string_view::npos) return InBaseOf(*value, symbol, unit);
+  if (slash == std::string_view::npos) return std::nullopt;
+  const auto over =
+      InBaseOf(*value, WithoutBlanks(symbol.substr(0, slash)), unit.substr(0, base_slash));
+  const auto under =
+      InBaseOf(1.0, WithoutBlanks(symbol.substr(slash + 1)), unit.substr(base_slash + 1));
+  if (!over || !under) return std::nullopt;
+  return *over / *under;
+}
 
 }  // namespace mindahl

@@ -230,15 +230,10 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
 /// Drops the causes whose remedy was tried and refused: advice that would be followed in vain.
 void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   const TermGroup* group = FindTermGroup(refused.name);
-  const std::string_view option =
-      group != nullptr ? FindTerm(group->terms.front())->option : std::string_view();
   std::erase_if(causes, [&](const Cause& cause) {
-    constexpr std::string_view kOfColumn = "--covariate ";
-    if (group == nullptr) {
-      return cause.option.starts_with(kOfColumn) &&
-             NameOfCovariate(cause.option.substr(kOfColumn.size())) == refused.name;
-    }
-    return !option.empty() && cause.option.find(option) != std::string::npos;
+    if (group == nullptr) return NameOfCovariate(cause.term) == refused.name;
+    const TermGroup* other = FindTermGroup(cause.term);
+    return other != nullptr && other->terms.front() == group->terms.front();
   });
 }
 
@@ -258,6 +253,7 @@ class Selection {
       : records_(records), selection_(options), result_(result) {}
 
   void Run(const FitOptions& options);
+  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law);
   bool RunNamed(FitOptions options, std::span<const std::string> names);
 
  private:
@@ -272,6 +268,7 @@ class Selection {
   [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
   std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
                                         const std::map<std::string, double>& starts);
+  bool Begin(const FitOptions& options, const FitResult& law);
   void MakeScores(const FitOptions& options, const FitResult& law);
   void DivideIntoParts(const FitResult& fit);
   void Judge(const TermScore& base, const TermScore& trial, ConsideredTerm& considered) const;
@@ -709,6 +706,39 @@ void Selection::Simplify() {
   }
 }
 
+/// Lists the candidates and takes the law as the model to add to; false where it has no fit.
+bool Selection::Begin(const FitOptions& options, const FitResult& law) {
+  candidates_ = ListTermCandidates(records_, options, law);
+  MakeScores(options, law);
+  facts_ = law.WidestRecord().facts;
+  load_ratio_ = law.WidestRecord().load_ratio;
+  samples_ = CountedSamples(law, records_);
+  base_.fit = law;
+  std::optional<CandidateModel> start = FitFrom(base_, options, {});
+  if (!start) return false;
+  base_ = std::move(*start);
+  DivideIntoParts(base_.fit);
+  judged_ = law;
+  return true;
+}
+
+std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
+  std::vector<std::string> names;
+  if (!IsFitted(law) || !Begin(options, law)) return names;
+  if (std::ranges::all_of(
+          law.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); })) {
+    names.emplace_back("backlash");
+  }
+  const std::vector<TermTrial> trials = ScoreCandidates();
+  for (const TermTrial& trial : trials) {
+    const ConsideredTerm& considered = trial.candidate->considered;
+    const bool gains = considered.gain >= selection_.smallest_gain;
+    const bool is_there = std::ranges::find(names, considered.name) != names.end();
+    if (gains && !is_there && !IsRefused(trial, trials)) names.push_back(considered.name);
+  }
+  return names;
+}
+
 void Selection::Run(const FitOptions& options) {
   ++result_.estimates;
   Fitter first(options);
@@ -720,18 +750,7 @@ void Selection::Run(const FitOptions& options) {
                              KnowsSlipForce(result_.fit));
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
-  candidates_ = ListTermCandidates(records_, options, result_.fit);
-  MakeScores(options, result_.fit);
-  facts_ = result_.fit.WidestRecord().facts;
-  load_ratio_ = result_.fit.WidestRecord().load_ratio;
-  samples_ = CountedSamples(result_.fit, records_);
-  base_.fit = result_.fit;
-  std::optional<CandidateModel> start = FitFrom(base_, options, {});
-  if (!start) return;
-  base_ = std::move(*start);
-  DivideIntoParts(base_.fit);
-
-  judged_ = result_.fit;
+  if (!Begin(options, result_.fit)) return;
   AddMeasuredGap();
   while (judged_.adequacy.verdict != AdequacyVerdict::kAdequate &&
          result_.added.size() < selection_.most_terms && Round()) {
@@ -875,6 +894,16 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
     result.fit = all_at_once.Fit(records, Depth::kFull);
   }
   return result;
+}
+
+std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const FitOptions& options,
+                                     const FitResult& fit, std::size_t most) {
+  if (options.response() != loop::Channel::kForce) return {};
+  const TermSelectionOptions defaults;
+  TermSelection unused;
+  std::vector<std::string> names = Selection(records, defaults, unused).Likely(options, fit);
+  names.resize(std::min(names.size(), most));
+  return names;
 }
 
 }  // namespace mindahl::identification

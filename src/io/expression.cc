@@ -41,7 +41,8 @@ class ExpressionReader {
     }
     if (expression.terms.empty()) Throw("names no column: write it like raw*0.0123-4.5 [N]");
     for (const Expression::Term& term : expression.terms) {
-      if (!std::isfinite(term.weight) || term.weight == 0) Throw("has a factor that is 0 or infinite");
+      if (!std::isfinite(term.weight) || term.weight == 0)
+        Throw("has a factor that is 0 or infinite");
     }
     return expression;
   }
@@ -96,9 +97,10 @@ class ExpressionReader {
       product.factor /= first->value;
       product.column = static_cast<std::size_t>(first->value) - 1;
     } else if (numbered_) {
-      Throw(fmt::format("has {0}, which may be a column or a number: write #{0} for the column, {0}.0 "
-                        "for the number",
-                        first->text));
+      Throw(fmt::format(
+          "has {0}, which may be a column or a number: write #{0} for the column, {0}.0 "
+          "for the number",
+          first->text));
     }
     return product;
   }
@@ -108,7 +110,8 @@ class ExpressionReader {
     if (rest_.starts_with('#')) {
       Take(1);
       const Number number = TakeNumber();
-      if (!number.may_be_column) Throw(fmt::format("has #{}: there are {} columns", number.text, columns_));
+      if (!number.may_be_column)
+        Throw(fmt::format("has #{}: there are {} columns", number.text, columns_));
       return static_cast<std::size_t>(number.value) - 1;
     }
     for (std::size_t end = rest_.size(); end != std::string_view::npos && end > 0;

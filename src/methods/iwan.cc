@@ -1,9 +1,7 @@
 #include "mindahl/methods/iwan.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 
 #include "mindahl/core/error.h"
 
@@ -31,36 +29,19 @@ Tangent TangentAt(long double larger, long double shape_exponent) {
           1 - larger + (beta > 0 ? less : 0) - less / std::abs(beta)};
 }
 
-/// Returns the larger of u and u^α at tangent i of n.
-long double PointOfTangent(std::size_t i, std::size_t n, IwanSpacing spacing,
-                           long double shape_exponent) {
-  if (i == 0) return 1;
-  if (i == n) return 0;
-  const long double share = static_cast<long double>(i) / static_cast<long double>(n);
-  if (spacing == IwanSpacing::kOptimal) {
-    return std::pow(1 - share, 2 * std::min(shape_exponent, 1.0L));
-  }
-  // F falls from 1 at u = 0 to 0 at u = 1.
-  constexpr int kBits = 50;
-  std::uintmax_t iterations = 200;
-  const auto [low, high] = boost::math::tools::toms748_solve(
-      [&](long double at) { return TangentAt(at, shape_exponent).intercept - share; }, 0.0L, 1.0L,
-      1 - share, -share, boost::math::tools::eps_tolerance<long double>(kBits), iterations);
-  return low + (high - low) / 2;
-}
-
 }  // namespace
 
-IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements,
-                              IwanSpacing spacing) {
+IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements) {
   Validate(law);
   if (elements == 0) ThrowInvalid("number of Iwan elements [-]", 0.0, "must be >= 1");
   if (law.shape_exponent == 0) return {{law.tangential_stiffness}, {law.slip_force}};
   IwanElements result;
   Tangent last = TangentAt(1, law.shape_exponent);
   for (std::size_t i = 1; i <= elements; ++i) {
-    const Tangent next =
-        TangentAt(PointOfTangent(i, elements, spacing, law.shape_exponent), law.shape_exponent);
+    // The larger of u and u^α, with √u = 1 − i/n; exactly 0 at the last.
+    const long double left = 1 - static_cast<long double>(i) / static_cast<long double>(elements);
+    const Tangent next = TangentAt(std::pow(left, 2 * std::min<long double>(law.shape_exponent, 1)),
+                                   law.shape_exponent);
     result.stiffness.push_back(
         static_cast<double>(law.tangential_stiffness * (last.slope - next.slope)));
     result.slip_force.push_back(

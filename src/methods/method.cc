@@ -19,111 +19,100 @@ using models::FrictionModel;
 
 namespace {
 
+// What operations take [ns].
+constexpr double kPlace = 4.1;       // to find the branch that a sample lies on
+constexpr double kReversal = 100.0;  // to open a branch
+constexpr double kRoot = 1.4;        // the branch law, α = 1/3: a square root and a division
+constexpr double kPower = 17.0;      // the branch law, any other α: two transcendentals
+constexpr double kRatePower = 31.0;  // the slope at the start of a branch of Dahl's law
+constexpr double kLookUp = 2.3;      // the branch law from a table
+constexpr double kElement = 0.35;    // an element of Iwan's, moved on
+constexpr double kSum = 4.0;         // the sum of their forces
+
+struct PathSize {
+  double samples = 0.0;
+  double branches = 0.0;
+
+  [[nodiscard]] double cost() const { return kPlace * samples + kReversal * branches; }
+};
+
+PathSize SizeOf(const FrictionModel& model, const Drive& drive) {
+  return {static_cast<double>(drive.displacement.size()),
+          static_cast<double>(MakeDrivePath(model, drive).branches.size())};
+}
+
 Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
   return [&model, law](const Drive& drive, std::span<double> force) {
     models::EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
   };
 }
 
-void CountExact(const FrictionModel& model, const BranchLaw& law, const Resolution&,
-                const Drive& drive, OperationCount& count) {
-  const auto branches = static_cast<double>(CountPath(model, drive, count).branches.size());
-  const Operation branch_law = LawOperation(law.shape_exponent);
-  count.Add(branch_law, static_cast<double>(drive.displacement.size()) + branches);
-  // The steady peak, and the rate of a branch that starts with another stiffness.
-  if (model.scaled_by_peak) count.Add(branch_law, branches);
-  if (model.memory == models::Memory::kNone) count.Add(Operation::kRatePower, branches);
+double CostOfExact(const FrictionModel& model, const BranchLaw& law, const Resolution&,
+                   const Drive& drive) {
+  const PathSize path = SizeOf(model, drive);
+  const double start = model.memory == models::Memory::kNone ? kRatePower * path.branches : 0.0;
+  if (law.shape_exponent == 0) return path.cost() + start;  // hidden by finding the branch
+  // The steady peak of a branch is one evaluation more.
+  const double evaluations = path.samples + (model.scaled_by_peak ? 2 : 1) * path.branches;
+  return path.cost() + start + (law.shape_exponent == 1.0 / 3 ? kRoot : kPower) * evaluations;
 }
 
-void CountIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution,
-               const Drive& drive, OperationCount& count) {
-  constexpr std::size_t kLanes = 4;  // moved at once, filled or not
-  const std::size_t elements = law.shape_exponent == 0 ? 1 : resolution.steps;
-  const std::size_t moved = (elements + kLanes - 1) / kLanes * kLanes;
-  count.Add(Operation::kElement,
-            static_cast<double>(drive.displacement.size()) * static_cast<double>(moved));
-  count.Add(Operation::kSum, static_cast<double>(drive.displacement.size()));
+Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
+                        const Resolution& resolution) {
+  return MakeDopri5(model, law, resolution, nullptr);
 }
 
-template <IwanSpacing spacing>
+/// Evaluates: steps depend on where the drive slips, and on the error that is found.
+double CostOfDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                    const Drive& drive) {
+  double steps = 0.0;
+  std::vector<double> force(drive.displacement.size());
+  MakeDopri5(model, law, resolution, &steps)(drive, force);
+  return SizeOf(model, drive).cost() + steps;
+}
+
 Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution) {
-  return [elements = MakeIwanElements(law, resolution.steps, spacing)](const Drive& drive,
-                                                                       std::span<double> force) {
+  return [elements = MakeIwanElements(law, resolution.steps)](const Drive& drive,
+                                                              std::span<double> force) {
     EvaluateIwanForce(elements, drive.displacement, force);
   };
 }
 
-template <StepMethod make>
-Evaluator PrepareSteps(const FrictionModel& model, const BranchLaw& law,
-                       const Resolution& resolution) {
-  return make(model, law, resolution, nullptr);
+double CostOfIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution,
+                  const Drive& drive) {
+  constexpr std::size_t kLanes = 4;  // moved at once, filled or not
+  const std::size_t elements = law.shape_exponent == 0 ? 1 : resolution.steps;
+  const auto moved = static_cast<double>((elements + kLanes - 1) / kLanes * kLanes);
+  return static_cast<double>(drive.displacement.size()) * (kElement * moved + kSum);
 }
 
-/// Counts on the way: steps depend on where the drive slips, and on the error that is found.
-template <StepMethod make>
-void CountSteps(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                const Drive& drive, OperationCount& count) {
-  CountPath(model, drive, count);
-  std::vector<double> force(drive.displacement.size());
-  make(model, law, resolution, &count)(drive, force);
+double CostOfTable(const FrictionModel& model, const BranchLaw&, const Resolution&,
+                   const Drive& drive) {
+  const PathSize path = SizeOf(model, drive);
+  return path.cost() + kLookUp * (path.samples + path.branches);
 }
 
 constexpr std::array kMethods{
-    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .count = CountExact},
-    Method{.name = "euler",
-           .title = "explicit Euler",
-           .steps = "substeps a sample",
-           .order = 1,
-           .prepare = PrepareSteps<MakeEuler>,
-           .count = CountSteps<MakeEuler>},
-    Method{.name = "rk4",
-           .title = "Runge-Kutta of order 4",
-           .steps = "substeps a sample",
-           .order = 4,
-           .prepare = PrepareSteps<MakeRk4>,
-           .count = CountSteps<MakeRk4>},
+    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .cost = CostOfExact},
     Method{.name = "dopri5",
            .title = "Dormand-Prince 5(4), adaptive",
            .steps = "substeps a sample at least",
            .adaptive = true,
-           .order = 5,
-           .prepare = PrepareSteps<MakeDopri5>,
-           .count = CountSteps<MakeDopri5>},
-    Method{.name = "backward-euler",
-           .title = "implicit Euler",
-           .steps = "substeps a sample",
-           .order = 1,
-           .prepare = PrepareSteps<MakeBackwardEuler>,
-           .count = CountSteps<MakeBackwardEuler>},
-    Method{.name = "exponential",
-           .title = "exponential Rosenbrock-Euler",
-           .steps = "substeps a sample",
-           .order = 2,
-           .prepare = PrepareSteps<MakeExponential>,
-           .count = CountSteps<MakeExponential>},
+           .prepare = PrepareDopri5,
+           .cost = CostOfDopri5},
     Method{.name = "iwan",
-           .title = "Iwan, equal slip forces",
+           .title = "Jenkins elements in parallel",
            .steps = "elements",
            .default_steps = 32,
            .masing_only = true,
-           .order = 1,
-           .prepare = PrepareIwan<IwanSpacing::kEqualForce>,
-           .count = CountIwan},
-    Method{.name = "iwan-optimal",
-           .title = "Iwan, optimal spacing",
-           .steps = "elements",
-           .default_steps = 32,
-           .masing_only = true,
-           .order = 2,
-           .prepare = PrepareIwan<IwanSpacing::kOptimal>,
-           .count = CountIwan},
+           .prepare = PrepareIwan,
+           .cost = CostOfIwan},
     Method{.name = "table",
            .title = "tabulated branch law",
            .steps = "intervals",
            .default_steps = 256,
-           .order = 2,
            .prepare = PrepareTable,
-           .count = CountTable},
+           .cost = CostOfTable},
 };
 
 }  // namespace
@@ -165,23 +154,11 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   };
 }
 
-std::string_view NameOf(Operation operation) {
-  constexpr std::array<std::string_view, kOperations> kNames = {
-      "sample",     "place",      "reversal",    "linear",   "root",  "power",
-      "element",    "sum",        "look_up",     "step",     "stage", "trial",
-      "cubic_root", "rate_power", "exponential", "iteration"};
-  return kNames[static_cast<std::size_t>(operation)];
-}
-
-OperationCount CountOperations(const Method& method, const models::FrictionModel& model,
-                               const models::BranchLaw& law, const Resolution& resolution,
-                               const Drive& drive) {
-  OperationCount count;
-  // Prepare() checks the arguments.
-  const Evaluator evaluate = Prepare(method, model, law, resolution);
-  method.count(model, law, resolution, drive, count);
-  count.Add(Operation::kSample, static_cast<double>(drive.displacement.size()));
-  return count;
+double CostOf(const Method& method, const FrictionModel& model, const BranchLaw& law,
+              const Resolution& resolution, const Drive& drive) {
+  Prepare(method, model, law, resolution);  // checks the arguments
+  return kCostOfSample + method.cost(model, law, resolution, drive) /
+                             static_cast<double>(drive.displacement.size());
 }
 
 }  // namespace mindahl::methods

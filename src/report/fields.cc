@@ -127,7 +127,7 @@ Json Causes(const Report& report) {
   Json causes = Json::array();
   for (const identification::Cause& cause : report.fit.adequacy.causes) {
     causes.push_back({{"code", cause.code},
-                      {"try", cause.option.empty() ? Json() : Json(cause.option)},
+                      {"term", cause.term.empty() ? Json() : Json(cause.term)},
                       {"delta_aicc", NumberOrNull(cause.delta_aicc)},
                       {"explains", NumberOrNull(cause.explains)}});
   }
@@ -360,8 +360,8 @@ const std::vector<Field>& Fields() {
          return IsJudged(report) ? std::string("no half gap is measured") : WhyNotJudged(report);
        }},
       {"adequacy.causes", "",
-       "terms that the residuals look like: `code`, `try`, `delta_aicc`, `explains`", Causes,
-       [](R) { return std::string("no option takes it into account"); }},
+       "terms that the residuals look like: `code`, `term`, `delta_aicc`, `explains`", Causes,
+       [](R) { return std::string("no term takes it into account"); }},
       {"measured.half_gap.value", "N", "half the force between the strokes, at their middle",
        [](R report) { return IfClosed(report, [](const auto& facts) { return facts.half_gap; }); },
        WhyNotClosed},

@@ -187,7 +187,7 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"law_undecided", "the other law fits as well"},
     {"other_law_fits_better", nullptr, OtherLawFitsBetter},
     {"systematic_residual", "the misfit is alike in every stroke"},
-    {"slow_residuals", "the misfit drifts slowly: fit parts of the record with --cycles"},
+    {"slow_residuals", "the misfit drifts slowly: fit parts of it, --select cycles=LO:HI"},
     {"energy_contradiction", nullptr, EnergyContradiction},
     {"loop_not_seen", nullptr, LoopNotSeen},
     {"no_model_fits", "the law does not have the shape of the record"},

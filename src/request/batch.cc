@@ -361,10 +361,12 @@ std::string TableCsv(std::span<const BatchEntry> entries) {
   }
   for (std::size_t k = 0; k < entries.size(); ++k) {
     for (std::size_t c = 0; c < table.size(); ++c) {
-      text += (c == 0 ? "\n" : ",") + CsvOf(table[c].cells[k]);
+      text += c == 0 ? '\n' : ',';
+      text += CsvOf(table[c].cells[k]);
     }
   }
-  return text + "\n";
+  text += '\n';
+  return text;
 }
 
 std::string ToText(std::span<const BatchEntry> entries, const std::string& output) {

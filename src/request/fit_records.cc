@@ -13,8 +13,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/law_selection.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/test_part.h"
 #include "mindahl/report/contact.h"
@@ -163,7 +165,7 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
                                        std::vector<RecordFile>& records, FitOptions& options) {
   std::vector<report::LeftOut> left_out;
   const bool is_chosen = request.load_window || request.samples || request.cycles;
-  if (request.trim != kAutomatic || is_chosen || options.response() != loop::Channel::kForce) {
+  if (request.trim != kOnOff.front() || is_chosen || options.response() != loop::Channel::kForce) {
     return left_out;
   }
   bool all_cycled = true;
@@ -194,7 +196,7 @@ void RequireLoads(const FitRequest& request, const std::optional<Interval>& wind
     const std::vector<double>& load = inputs[r].record.normal_load;
     if (load.empty()) {
       throw InputError(
-          fmt::format("{}: --load-window needs a normal load: name its column with "
+          fmt::format("{}: --select load=LO:HI needs a normal load: name its column with "
                       "--normal-load-column",
                       request.files[r]));
     }
@@ -204,7 +206,7 @@ void RequireLoads(const FitRequest& request, const std::optional<Interval>& wind
     if (!std::ranges::all_of(load, lies_outside)) continue;
     const auto [least, greatest] = std::ranges::minmax(load);
     throw InputError(
-        fmt::format("{}: --load-window {}:{} holds no sample: the normal load runs from {:.6g} to "
+        fmt::format("{}: --select load={}:{} holds no sample: the normal load runs from {:.6g} to "
                     "{:.6g} N",
                     request.files[r], window->lower, window->upper, least, greatest));
   }
@@ -234,50 +236,128 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
                    *mean));
 }
 
-/// Makes the requested fit, of the model and terms that are named or left to be chosen.
-/// @param options    changed to those of the model and terms that are chosen
-/// @param selection  written where the model is chosen
-/// @param terms      written where terms are chosen or named together
-identification::FitResult FitAsked(const FitRequest& request, FitOptions& options,
-                                   std::span<const Record> records,
-                                   std::optional<identification::ModelSelection>& selection,
-                                   std::optional<identification::TermSelection>& terms) {
-  try {
-    const bool by_default = ChoosesTermsByDefault(request) && records.size() == 1;
-    const bool chooses_terms = by_default || request.term_choice == kAutomatic;
-    if (request.model == kAutomatic) {
-      selection = identification::SelectModel(records, options);
-      const identification::ModelScore& chosen = selection->scores[selection->chosen];
-      options.model = chosen.model;
-      if (chosen.rig) options.terms.emplace_back("rig_stiffness");
-      if (!chooses_terms) return selection->fit;
-    }
-    if (chooses_terms) {
-      terms = identification::SelectTerms(records, options, {.only_for_use = by_default});
-      options = terms->options;
-      identification::FitResult fit = std::move(terms->fit);
-      // A law that is enough is reported as without a choice.
-      if (by_default && terms->considered.empty()) terms.reset();
-      return fit;
-    }
-    const std::vector<std::string> named = NamedTerms(request);
-    if (!named.empty() && options.response() == loop::Channel::kForce) {
-      identification::TermSelection selected =
-          identification::SelectTerms(records, options, {.named = named});
-      options = std::move(selected.options);
-      return std::move(selected.fit);
-    }
-    return identification::Fit(records, options, identification::Depth::kFull);
-  } catch (const identification::TooFewSamples& error) {
-    throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
+/// A fit with the options that it has in the end.
+struct AskedFit {
+  FitOptions options;
+  identification::FitResult fit = {};
+  std::optional<identification::TermSelection> terms = {};  // where they are chosen
+};
+
+/// Fits the options' law with the terms that are named or, where asked for, chosen.
+AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
+                std::span<const Record> records, bool chooses_terms) {
+  AskedFit asked{.options = options};
+  std::vector<std::string> named = NamedTerms(request);
+  std::erase_if(named, [](const std::string& name) {
+    return identification::FindTermGroup(name) == nullptr;
+  });
+  if (options.response() == loop::Channel::kForce && (chooses_terms || !named.empty())) {
+    identification::TermSelection selected = identification::SelectTerms(
+        records, options, {.named = chooses_terms ? std::vector<std::string>() : std::move(named)});
+    asked.options = selected.options;
+    asked.fit = std::move(selected.fit);
+    if (chooses_terms) asked.terms = std::move(selected);
+    return asked;
   }
+  asked.fit = identification::Fit(records, options, identification::Depth::kFull);
+  return asked;
+}
+
+/// Makes the requested fit; with `--model auto` by Masing's law or, where the record supports it,
+/// by Dahl's own. Terms are chosen for the law that is better without them.
+AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
+                  std::span<const Record> records) {
+  const bool chooses_terms = ChoosesTerms(request);
+  if (request.model != kAutomatic) return FitLaw(request, options, records, chooses_terms);
+  AskedFit asked = FitLaw(request, options, records, /*chooses_terms=*/false);
+  if (identification::MayFollowOtherLaw(asked.fit, options)) {
+    FitOptions of_other = options;
+    of_other.model = models::FindFrictionModel("dahl");
+    AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
+    if (identification::IsBetterLaw(other.fit, asked.fit, options.thresholds)) {
+      asked = std::move(other);
+    }
+  }
+  if (!chooses_terms) return asked;
+  FitOptions of_law = options;
+  of_law.model = asked.options.model;
+  return FitLaw(request, of_law, records, chooses_terms);
+}
+
+/// Adds a term to a request for the law alone.
+/// @param name  as LikelyTerms() gives it
+/// @returns the option that does the same
+std::string AddTermTo(FitRequest& request, const std::string& name,
+                      std::span<const Record> records) {
+  if (name == "rig_stiffness") {
+    request.rig_stiffness = RigRequest{};
+    return "--rig-stiffness fit";
+  }
+  if (identification::FindTermGroup(name) != nullptr) {
+    request.terms = {name};
+    return "--terms " + name;
+  }
+  const auto& columns = records.front().covariates;
+  const std::string column = std::ranges::find(columns, name, [](const loop::Covariate& covariate) {
+                               return identification::NameOfCovariate(covariate.name);
+                             })->name;
+  request.covariates.push_back({.column = column});
+  const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
+  return fmt::format("--covariate {}{}{}", quote, column, quote);
+}
+
+bool KnowsSlipForce(const FitResult& fit) {
+  const ParameterEstimate* slip_force = fit.Find("slip_force");
+  return slip_force != nullptr && slip_force->is_known();
+}
+
+/// Fits the record again with each of the few most likely terms, where the law alone is not
+/// adequate, and returns the one that misses least, if by a tenth less than the law. A term with
+/// which the slip force is lost is none.
+std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
+                                             std::span<const Record> records,
+                                             const FitResult& fit) {
+  constexpr std::size_t kMostTried = 2;
+  constexpr double kLeastGain = 0.1;
+  constexpr double kGoodEnough = 0.5;  // of the misfit: no other term is tried
+  const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
+  if (!fit.converged || !before || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
+      !options.terms.empty() || !options.covariates.empty()) {
+    return std::nullopt;
+  }
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  std::optional<report::NextStep> best;
+  for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
+    FitRequest with = request;
+    report::NextStep step{.text = name,
+                          .options = AddTermTo(with, name, records),
+                          .misfit_before = *before,
+                          .misfit_after = *before};
+    if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
+    try {
+      FitOptions tried = MakeFitOptions(with);
+      tried.preparation = options.preparation;
+      tried.initial_state = options.initial_state;
+      tried.model = options.model;
+      const FitResult found = FitLaw(with, tried, records, /*chooses_terms=*/false).fit;
+      if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
+      if (KnowsSlipForce(fit) && !KnowsSlipForce(found)) continue;
+      step.misfit_after = *found.adequacy.misfit_over_half_gap;
+    } catch (const InvalidArgument&) {
+      continue;  // the record does not determine it
+    }
+    if (!best || step.misfit_after < best->misfit_after) best = std::move(step);
+    if (best->misfit_after < kGoodEnough * *before) break;
+  }
+  if (!best || best->misfit_after > (1 - kLeastGain) * *before) return std::nullopt;
+  return best;
 }
 
 }  // namespace
 
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
                                 FitOptions& options) {
-  if (request.term_choice != kAutomatic) return "";
+  if (!ChoosesTerms(request)) return "";
   FitOptions of_head = options;
   // The head is fitted like its cycles: an asymmetry is then an offset of each.
   of_head.initial_state = models::InitialState::kSteady;
@@ -324,12 +404,10 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
   io::RecordColumns columns = request.columns;
   columns.covariates = CovariateColumns(request);
   std::vector<RecordFile> inputs;
-  io::ReadLimits left{.rows = request.max_rows,
-                      .memory = request.max_memory.value_or(MemoryOfProcess())};
+  io::ReadLimits left{.memory = request.max_memory.value_or(MemoryOfProcess())};
   for (const std::string& file : request.files) {
     RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
     const std::size_t rows = input.record.size();
-    left.rows -= std::min<std::uintmax_t>(left.rows, rows);
     left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
     KeepTimeWindow(request, file, input);
     for (const std::string& text : input.notes) note(text);
@@ -367,20 +445,28 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
+  AskedFit asked{.options = options};
   std::optional<identification::ModelSelection> selection;
-  std::optional<identification::TermSelection> terms;
-  identification::FitResult fit = FitAsked(request, options, records, selection, terms);
+  try {
+    if (request.compare) selection = identification::SelectModel(records, options);
+    asked = FitAsked(request, options, records);
+  } catch (const identification::TooFewSamples& error) {
+    throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
+  }
+  std::optional<report::NextStep> next;
+  if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
-  UseMeasuredNormalLoad(known, fit, records, options.preparation.load_window, note);
+  UseMeasuredNormalLoad(known, asked.fit, records, options.preparation.load_window, note);
   return report::MakeReport({.files = std::move(names),
                              .records = std::move(inputs),
-                             .fit = std::move(fit),
-                             .options = options,
+                             .fit = std::move(asked.fit),
+                             .options = asked.options,
                              .known = known,
                              .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
                              .selection = std::move(selection),
-                             .terms = std::move(terms)});
+                             .terms = std::move(asked.terms),
+                             .next = std::move(next)});
 }
 
 }  // namespace mindahl::request

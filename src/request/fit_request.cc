@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "core/text.h"
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
@@ -22,12 +22,8 @@ using identification::Term;
 
 namespace {
 
-// --drift is of the channel that is fitted.
-constexpr std::string_view kDriftOfForce = "force_drift";
+/// The drift of a displacement that is fitted, where it alone is a term.
 constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
-
-// The term that has the option --slip-position.
-constexpr std::string_view kSlipPosition = "slip_slope";
 
 [[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
   throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
@@ -45,42 +41,59 @@ void RequireCounts(std::string_view option, const std::optional<loop::CountRange
                                option, range->first, range->last));
 }
 
-/// Fits the other terms of a group, those that are not given.
-void ApplyCompanions(std::string_view group, std::string_view but, FitOptions& fit) {
-  for (const std::string_view name : identification::FindTermGroup(group)->terms) {
+/// Fits the terms of a group that are not given.
+void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
+  for (const std::string_view name : group.terms) {
     const std::string term(name);
-    if (name == but || fit.fixed.contains(term)) continue;
+    if (fit.fixed.contains(term)) continue;
     if (std::ranges::find(fit.terms, term) == fit.terms.end()) fit.terms.push_back(term);
   }
 }
 
-void ApplySlipPosition(std::string_view text, FitOptions& fit) {
-  constexpr std::array<std::string_view, 2> kForms = {"linear", "quadratic"};
-  RequireOneOf("--slip-position", text, kForms);
-  ApplyCompanions(text == kForms[0] ? "slip_position" : "slip_position_quadratic", "", fit);
+/// Fits what a term that is held at a value has no meaning without, as a ripple's factors.
+void AddCompanionsOfFixed(FitOptions& fit) {
+  for (const auto& [name, value] : fit.fixed) {
+    const Term* term = identification::FindTerm(name);
+    if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
+    const auto groups = identification::TermGroups();
+    const auto group = std::ranges::find_if(groups, [&](const identification::TermGroup& each) {
+      return std::ranges::find(each.terms, name) != each.terms.end();
+    });
+    AddGroup(*group, fit);
+  }
 }
 
-void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
-  const std::string name(term.name);
-  if (!asked.value) {
-    if (fit.fixed.contains(name)) {
-      throw InputError(fmt::format("{} {} contradicts --fix {}: give one of the two", term.option,
-                                   term.argument.empty() ? "" : kFitIt, name));
+void ApplyRig(const RigRequest& asked, FitOptions& fit) {
+  constexpr const char* kName = "rig_stiffness";
+  if (fit.fixed.contains(kName)) {
+    throw InputError("--rig-stiffness and --fix rig_stiffness say the same: give one of the two");
+  }
+  if (asked.value) RequirePositive("--rig-stiffness [N/m]", *asked.value);
+  if (asked.value && !asked.standard_uncertainty) {
+    fit.fixed[kName] = *asked.value;
+    return;
+  }
+  fit.terms.emplace_back(kName);
+  if (asked.value) fit.priors[kName] = {*asked.value, *asked.standard_uncertainty};
+}
+
+/// Returns the columns of --covariate, and of --terms the names that are no terms.
+std::vector<CovariateRequest> CovariatesOf(const FitRequest& request) {
+  std::vector<CovariateRequest> covariates = request.covariates;
+  if (request.noise_in == "displacement") return covariates;
+  for (std::string& name : NamedTerms(request)) {
+    if (identification::FindTermGroup(name) != nullptr) continue;
+    std::vector<std::string> names;
+    for (const auto& group : identification::TermGroups()) names.emplace_back(group.name);
+    if (const auto nearest = NearestName(name, names)) {
+      throw InputError(
+          fmt::format("--terms: '{}' is no term: did you mean '{}'? A column is named by "
+                      "--covariate {}",
+                      name, *nearest, name));
     }
-    fit.terms.push_back(name);
-    return;
+    covariates.push_back({.column = std::move(name)});
   }
-  (term.must_be_positive() ? RequirePositive : RequireFinite)(
-      fmt::format("{} [{}]", term.option, term.unit), *asked.value);
-  if (asked.standard_uncertainty && !fit.fixed.contains(name)) {
-    fit.terms.push_back(name);
-    fit.priors[name] = {*asked.value, *asked.standard_uncertainty};
-    return;
-  }
-  if (!fit.fixed.emplace(name, *asked.value).second) {
-    throw InputError(
-        fmt::format("{} and --fix {} say the same: give one of the two", term.option, name));
-  }
+  return covariates;
 }
 
 void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions& fit) {
@@ -103,26 +116,30 @@ void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions
   }
 }
 
-void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
-  std::vector<std::string_view> names = {kAutomatic, kNoTerms};
-  for (const identification::TermGroup& group : identification::TermGroups()) {
-    names.push_back(group.name);
-  }
+/// Applies --terms: groups of terms, and columns.
+void ApplyTerms(const FitRequest& request, FitOptions& fit) {
+  const bool is_of_force = fit.response() == loop::Channel::kForce;
   std::vector<std::string_view> given;
-  const std::vector<std::string> named = NamedTerms(request);
-  for (const std::string_view name : named) {
-    RequireOneOf("--terms", name, names);
+  for (const std::string& name : NamedTerms(request)) {
     if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
     given.push_back(name);
-    const identification::TermGroup* group = identification::FindTermGroup(name);
-    if (group == nullptr) {
+    if (name == kAutomatic || name == kNoTerms) {
       throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
     }
-    if (const std::string_view term = group->terms.front(); request.terms.contains(term)) {
-      throw InputError(fmt::format("--terms {} and {} say the same: give one of the two", name,
-                                   identification::FindTerm(term)->option));
+    if ((name == kDriftOfDisplacement) == is_of_force) {
+      throw InputError(fmt::format("--terms {}: {}", name,
+                                   is_of_force ? "it is a term of a fit with --noise-in "
+                                                 "displacement: give force_drift"
+                                               : "with --noise-in displacement displacement_drift "
+                                                 "alone is a term: leave it out"));
     }
-    ApplyCompanions(name, "", fit);
+    if (name == "rig_stiffness" && request.rig_stiffness) {
+      throw InputError(
+          "--terms rig_stiffness and --rig-stiffness say the same: give one of the two");
+    }
+    const identification::TermGroup* group = identification::FindTermGroup(name);
+    if (group != nullptr) AddGroup(*group, fit);
+    if (!is_of_force) fit.terms.push_back(name);
   }
 }
 
@@ -132,14 +149,10 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
         fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
   };
   constexpr std::string_view kBeside = "it needs a fit of the force; leave one of the two out";
-  for (const auto& [name, asked] : request.terms) {
-    if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
-  }
+  if (request.rig_stiffness) refuse("--rig-stiffness", kBeside);
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
-  if (!request.term_choice.empty() && request.term_choice != kNoTerms) refuse("--terms", kBeside);
-  if (request.model == kAutomatic) {
-    refuse("--model auto", "models are chosen by fits of the force; name one");
-  }
+  if (ChoosesTerms(request)) refuse("--terms auto", kBeside);
+  if (request.compare) refuse("--compare", "models are compared by fits of the force");
   if (request.force_noise) {
     refuse("--force-noise", "the force is taken as exact; give --displacement-noise");
   }
@@ -149,14 +162,13 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
 }
 
 /// A start, a bound or a prior of what the fit does not move would be taken without a word.
-void RequireFitted(std::string_view option, const std::string& name, bool is_automatic,
-                   const FitOptions& fit) {
+void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
   const auto refuse = [&](std::string_view why) {
     throw InputError(
         fmt::format("{}: {} is not fitted, so this has no effect: {}", option, name, why));
   };
   if (fit.fixed.contains(name)) refuse("it is held at a value that is given; give one of the two");
-  if (name == "alpha" && !is_automatic && fit.model != nullptr && fit.model->shape_exponent) {
+  if (name == "alpha" && fit.model != nullptr && fit.model->shape_exponent) {
     refuse(fmt::format("--model {} prescribes it; use --model mindlin-dahl", fit.model->name));
   }
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
@@ -169,15 +181,13 @@ void RequireFitted(std::string_view option, const std::string& name, bool is_aut
   if (term->name == origin && fit.initial_state == models::InitialState::kSteady) {
     refuse("that of a steady loop is its centre; use --initial-state virgin");
   }
-  if (term->option.empty() && term->name != kDriftOfDisplacement) return;
-  if (term->of_column) return;  // the fit knows the columns
-  const bool is_tried = is_automatic && term->name == "rig_stiffness";
-  if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
-  if (term->name == kDriftOfDisplacement) {
-    refuse(fit.response() == loop::Channel::kForce ? "add --drift --noise-in displacement"
-                                                   : "add --drift");
-  }
-  refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
+  const bool is_of_displacement = term->name == kDriftOfDisplacement;
+  if ((term->group.empty() && !is_of_displacement) || term->of_column) return;
+  if (std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
+  refuse(
+      term->name == "rig_stiffness"
+          ? std::string("add --rig-stiffness fit")
+          : fmt::format("add --terms {}", is_of_displacement ? kDriftOfDisplacement : term->group));
 }
 
 void RequireWithinBounds(const FitOptions& fit) {
@@ -205,57 +215,31 @@ void RequireKnownChoices(const FitRequest& request) {
   RequireOneOf("--noise-in", request.noise_in, kNoiseIn);
   RequireOneOf("--offsets", request.offsets, kOnOff);
   RequireOneOf("--loss", request.loss, kLosses);
-  RequireOneOf("--trim", request.trim, kTrims);
-}
-
-/// Refuses options that choose samples in addition to --trim auto.
-void RequireTrimAlone(const FitRequest& request) {
-  if (request.trim != kAutomatic) return;
-  const auto refuse = [](std::string_view option, std::string_view why) {
-    throw InputError(fmt::format("{} cannot be combined with --trim auto: {}", option, why));
-  };
-  constexpr std::string_view kBoth = "both say which cycles count; leave one of the two out";
-  if (request.cycles) refuse("--cycles", kBoth);
-  if (request.samples) refuse("--samples", kBoth);
-  if (request.skip_cycles > 0) refuse("--skip-cycles", kBoth);
-  if (request.noise_in == "displacement") {
-    refuse("--noise-in displacement", "trimming compares cycles of an imposed displacement");
-  }
+  RequireOneOf("--trim", request.trim, kOnOff);
 }
 
 }  // namespace
 
 std::vector<std::string_view> ModelNames() {
-  std::vector<std::string_view> names;
+  std::vector<std::string_view> names = {kAutomatic};
   for (const models::FrictionModel& model : models::FrictionModels()) {
     if (!model.scaled_by_peak) names.push_back(model.name);
   }
-  names.push_back(kAutomatic);
   return names;
 }
 
-bool ChoosesTermsByDefault(const FitRequest& request) {
-  const auto is_of_term = [](const auto& held) {
-    const Term* term = identification::FindTerm(identification::TermNameOf(held.first));
-    return term != nullptr && term->presence == identification::Presence::kOnDemand;
-  };
-  return request.term_choice.empty() && request.files.size() <= 1 && request.terms.empty() &&
-         request.covariates.empty() && std::ranges::none_of(request.fix, is_of_term) &&
-         request.model != kAutomatic && request.loss == kLosses.front() &&
-         request.noise_in == kNoiseIn.front();
+bool ChoosesTerms(const FitRequest& request) {
+  return request.terms.size() == 1 && request.terms.front() == kAutomatic;
 }
 
 std::vector<std::string> NamedTerms(const FitRequest& request) {
-  const std::string_view choice = request.term_choice;
-  if (choice.empty() || choice == kNoTerms || choice == kAutomatic) return {};
-  const std::vector<std::string_view> names = PartsOf(choice, ',');
-  return {names.begin(), names.end()};
+  const bool is_none = request.terms.size() == 1 && request.terms.front() == kNoTerms;
+  return is_none || ChoosesTerms(request) ? std::vector<std::string>() : request.terms;
 }
 
 FitOptions MakeFitOptions(const FitRequest& options) {
   FitOptions fit;
   RequireKnownChoices(options);
-  RequireTrimAlone(options);
   if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
   if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
   if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;
@@ -271,14 +255,11 @@ FitOptions MakeFitOptions(const FitRequest& options) {
     fit.normal_loads.push_back(load.value);
   }
   for (const auto& [option, window] :
-       {std::pair("--load-window", options.load_window), {"--time-window", options.time_window}}) {
+       {std::pair("--select load", options.load_window), {"--select time", options.time_window}}) {
     if (window) RequireOrdered(option, window->lower, window->upper);
   }
   preparation.load_window = options.load_window;
-  preparation.skip_cycles = options.skip_cycles;
   fit.loss = FindLoss(options.loss);
-  fit.starts = options.starts;
-  fit.seed = options.seed;
   if (options.displacement_noise) {
     RequireNonNegative("--displacement-noise [m]", *options.displacement_noise);
   }
@@ -292,24 +273,12 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
   preparation.reversal_gate = options.reversal_gate;
   fit.fixed = options.fix;
-  for (const auto& [name, asked] : options.terms) {
-    const bool is_of_displacement =
-        name == kDriftOfForce && fit.response() == loop::Channel::kDisplacement;
-    if (name == kSlipPosition) continue;
-    ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), asked,
-              fit);
-  }
-  // Those that bring others come last: what is given of these is known.
-  for (const auto& [name, asked] : options.terms) {
-    if (name == kSlipPosition) ApplySlipPosition(asked.form, fit);
-    if (name == "speed_exponent") ApplyCompanions("speed_exponent", name, fit);
-    if (name == "slip_speed_exponent") ApplyCompanions("slip_speed", name, fit);
-    if (name == "ripple_period") ApplyCompanions("ripple", name, fit);
-  }
-  ApplyTermNames(options, fit);
-  ApplyCovariates(options.covariates, fit);
-  RequireCounts("--cycles", options.cycles);
-  RequireCounts("--samples", options.samples);
+  if (options.rig_stiffness) ApplyRig(*options.rig_stiffness, fit);
+  ApplyTerms(options, fit);
+  AddCompanionsOfFixed(fit);
+  ApplyCovariates(CovariatesOf(options), fit);
+  RequireCounts("--select cycles", options.cycles);
+  RequireCounts("--select samples", options.samples);
   preparation.cycles = options.cycles;
   preparation.samples = options.samples;
   fit.start = options.start;
@@ -324,32 +293,28 @@ FitOptions MakeFitOptions(const FitRequest& options) {
           fmt::format("--prior {} and --rig-stiffness say the same: give one of the two", name));
     }
   }
-  const bool is_automatic = options.model == kAutomatic;
   RequireWithinBounds(fit);
-  for (const auto& [name, value] : fit.priors) RequireFitted("--prior", name, is_automatic, fit);
-  for (const auto& [name, value] : fit.start) RequireFitted("--start", name, is_automatic, fit);
-  for (const auto& [name, interval] : fit.bounds) {
-    RequireFitted("--bound", name, is_automatic, fit);
-  }
+  for (const auto& [name, value] : fit.priors) RequireFitted("--prior", name, fit);
+  for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
+  for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);
   return fit;
 }
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
-  if (request.model == kAutomatic) {
-    throw InputError(
-        "--model auto: a model is chosen for a test, not for each cycle: choose one by fit "
-        "--cycles and name it here");
+  if (request.compare) {
+    throw InputError("--compare: models are compared over a test: by fit --select cycles=LO:HI");
   }
-  if (!request.covariates.empty()) {
+  if (!CovariatesOf(request).empty()) {
     throw InputError("--covariate is not available in track: fit a part of the record with fit");
   }
   if (request.noise_in == "displacement") {
     throw InputError(
         "--noise-in displacement is not available in track: fit a part of the record with fit");
   }
-  if (request.terms.contains("asymmetry")) {
+  if (std::ranges::find(request.terms, "asymmetry") != request.terms.end()) {
     throw InputError(
-        "--asymmetry is not available in track: where the contact slips as a whole, force_offset "
+        "--terms asymmetry is not available in track: where the contact slips as a whole, "
+        "force_offset "
         "of a cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
   }
   return MakeFitOptions(request);
@@ -357,8 +322,9 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
 
 std::vector<std::string> CovariateColumns(const FitRequest& request) {
   std::vector<std::string> columns;
-  columns.reserve(request.covariates.size());
-  for (const CovariateRequest& choice : request.covariates) columns.push_back(choice.column);
+  for (CovariateRequest& choice : CovariatesOf(request)) {
+    columns.push_back(std::move(choice.column));
+  }
   return columns;
 }
 

@@ -67,6 +67,11 @@ void ExpectFromRecord(const PlanRequest& request, Expectation& expected, const T
   const loop::Record record = request.record().record;
   FitOptions fit_options = FitOptionsOf(request);
   if (request.law.alpha) fit_options.fixed["alpha"] = *request.law.alpha;
+  const bool fits_rig = std::ranges::find(request.with, "rig_stiffness") != request.with.end();
+  if (request.rig_stiffness && !fits_rig) {
+    RequirePositive("--rig-stiffness [N/m]", *request.rig_stiffness);
+    fit_options.fixed["rig_stiffness"] = *request.rig_stiffness;
+  }
   identification::FitResult fit = identification::Fit({&record, 1}, fit_options);
   const auto say = [&](const std::string& what) {
     warn(fmt::format("{}: {}", request.record_name, what));

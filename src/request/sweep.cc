@@ -47,7 +47,7 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
                      const Tell& note) {
   constexpr std::array<std::string_view, 2> kKinds = {"secant", "tangent"};
   RequireOneOf("--sweep", kind, kKinds);
-  const std::string& model = request.model;
+  const std::string model = request.model == kAutomatic ? "mindlin-dahl" : request.model;
   if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
     throw InputError(fmt::format(
         "--model {}: a sweep needs a Masing law: mindlin-dahl, mindlin or jenkins", model));

@@ -11,52 +11,45 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
+#include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/report/units.h"
-#include "report/statements.h"
 #include "report/template.h"
 #include "request/json.h"
 
 namespace mindahl::request {
 
-using campaign::CourseDescription;
-using campaign::TrackedQuantity;
+using campaign::Evolution;
 
 namespace {
 
-std::string UnitOf(const TrackedTest& test, std::string_view unit) {
-  return report::UnitIn(test.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
-}
-
-Json QuantitiesJson(const TrackedTest& test, const std::vector<CourseDescription>& courses) {
-  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+Json QuantitiesJson(const std::vector<Evolution>& evolutions) {
   Json quantities = Json::object();
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const CourseDescription& course = courses[k];
-    if (course.stretches.empty()) continue;
-    Json stretches = Json::array();
-    for (const campaign::Stretch& stretch : course.stretches) {
-      stretches.push_back({{"first_cycle", stretch.first_cycle},
-                           {"last_cycle", stretch.last_cycle},
-                           {"at_start", stretch.at_start},
-                           {"at_end", stretch.at_end},
-                           {"slope", stretch.slope},
-                           {"slope_p_value", stretch.slope_p_value},
-                           {"trends", stretch.trends},
-                           {"time_constant", NumberOrNull(stretch.time_constant)}});
+  for (const Evolution& evolution : evolutions) {
+    const campaign::CourseDescription& course = evolution.description;
+    Json steps = Json::array();
+    for (const campaign::Step& step : course.steps) {
+      steps.push_back({{"cycle", step.cycle},
+                       {"before", step.before},
+                       {"after", step.after},
+                       {"p_value", step.p_value}});
     }
-    Json changes = Json::array();
-    for (const campaign::Change& change : course.changes) {
-      changes.push_back({{"kind", campaign::NameOf(change.kind)},
-                         {"cycle", change.cycle},
-                         {"ci95", {change.lower95, change.upper95}},
-                         {"before", change.before},
-                         {"after", change.after},
-                         {"p_value", change.p_value}});
+    Json trends = Json::array();
+    for (const campaign::Trend& trend : course.trends) {
+      trends.push_back({{"first_cycle", trend.first_cycle},
+                        {"last_cycle", trend.last_cycle},
+                        {"from", trend.from},
+                        {"to", trend.to},
+                        {"p_value", trend.p_value}});
     }
-    quantities[std::string(tracked[k].name)] = {
-        {"unit", UnitOf(test, tracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
+    quantities[std::string(evolution.quantity->name)] = {
+        {"unit", evolution.unit},
+        {"first", course.first},
+        {"last", course.last},
+        {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
+        {"steps", steps},
+        {"trends", trends}};
   }
   return quantities;
 }
@@ -75,29 +68,24 @@ Json EnergyCountsJson(const campaign::EnergyCounts& counts) {
       {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
 }
 
-/// Returns the time histories that a figure shows: of friction coefficient and slip force, which
-/// say the same, the first where it is known.
-std::vector<campaign::Evolution> EvolutionsOf(const TrackedTest& test,
-                                              const std::vector<CourseDescription>& described) {
-  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
-  std::vector<campaign::Evolution> evolutions;
-  const auto is_known = [&](std::string_view name) {
-    const auto found = std::ranges::find(tracked, name, &TrackedQuantity::name);
-    const auto k = static_cast<std::size_t>(found - tracked.begin());
-    return !described[k].stretches.empty();
-  };
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const TrackedQuantity& quantity = tracked[k];
-    if (!quantity.is_drawn || described[k].stretches.empty()) continue;
-    if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
-    evolutions.push_back(
-        {.name = std::string(quantity.name),
-         .unit = std::string(UnitOf(test, quantity.unit)),
-         .has_errors = quantity.has_standard_error && test.courses.have_errors()[k],
-         .course = test.courses.courses()[k],
-         .description = described[k]});
+/// Returns the compliance G* [1/Pa], where it or the materials are known.
+std::optional<double> ComplianceOf(const contact::KnownContact& known) {
+  if (known.tangential_compliance) return known.tangential_compliance->value;
+  const contact::KnownBody& one = known.body_1;
+  const contact::KnownBody& two = known.body_2;
+  if (!one.youngs_modulus || !one.poisson_ratio || !two.youngs_modulus || !two.poisson_ratio) {
+    return std::nullopt;
   }
-  return evolutions;
+  return contact::TangentialCompliance(
+      {.youngs_modulus = one.youngs_modulus->value, .poisson_ratio = one.poisson_ratio->value},
+      {.youngs_modulus = two.youngs_modulus->value, .poisson_ratio = two.poisson_ratio->value});
+}
+
+std::vector<io::PlotPanel> PanelsOf(const TrackedTest& test,
+                                    const std::vector<Evolution>& evolutions) {
+  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(evolutions);
+  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
+  return panels;
 }
 
 }  // namespace
@@ -114,33 +102,17 @@ bool TrackedTest::established() const {
   return failed == flags.end() || failed->second != fits;
 }
 
-std::vector<std::string> Changes(const TrackedTest& test,
-                                 const std::vector<CourseDescription>& described) {
-  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
-  std::vector<std::string> changes;
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const std::string name = report::WithUnit(tracked[k].name, UnitOf(test, tracked[k].unit));
-    for (const std::string& line : campaign::ChangeStatements(described[k])) {
-      changes.push_back(fmt::format("{}: {}", name, line));
-    }
-  }
-  return changes;
-}
-
-std::string ToPage(const TrackedTest& test, const std::vector<CourseDescription>& described,
+std::string ToPage(const TrackedTest& test, const std::vector<Evolution>& evolutions,
                    const report::Provenance& provenance) {
-  const std::vector<campaign::Evolution> evolutions = EvolutionsOf(test, described);
-  const std::vector<std::string> changes = Changes(test, described);
+  const std::vector<std::string> changes = campaign::ChangeStatements(evolutions);
   Json ends = Json::array();
-  for (const campaign::Evolution& evolution : evolutions) {
-    const auto& stretches = evolution.description.stretches;
-    if (stretches.empty()) continue;
-    ends.push_back({{"name", evolution.name},
-                    {"first", report::Quantity(stretches.front().at_start, evolution.unit)},
-                    {"last", report::Quantity(stretches.back().at_end, evolution.unit)}});
+  for (const Evolution& evolution : evolutions) {
+    ends.push_back({{"name", evolution.quantity->name},
+                    {"first", report::Quantity(evolution.description.first, evolution.unit)},
+                    {"last", report::Quantity(evolution.description.last, evolution.unit)}});
   }
   Json figures = Json::array();
-  for (io::PlotPanel& panel : campaign::EvolutionPanels(evolutions)) {
+  for (io::PlotPanel& panel : PanelsOf(test, evolutions)) {
     const std::string id = fmt::format("evolution-{}", figures.size() + 1);
     std::string quantity = panel.y_label;
     figures.push_back({{"id", id},
@@ -158,9 +130,9 @@ std::string ToPage(const TrackedTest& test, const std::vector<CourseDescription>
       "track",
       {{"title", fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles)},
        {"verdict", is_failed ? report::VerdictData("bad", "failed", "no fit of a cycle converged")
-                   : changes.empty()
-                       ? report::VerdictData("good", "steady", campaign::kNothingChanged)
-                       : report::VerdictData("poor", "changed", "these changes are beyond chance")},
+                             : report::VerdictData(changes.empty() ? "good" : "poor",
+                                                   changes.empty() ? "steady" : "changed",
+                                                   campaign::Headline(evolutions))},
        {"changes", is_failed ? Json() : Json(changes)},
        {"cycles", test.cycles},
        {"samples", test.samples},
@@ -168,33 +140,33 @@ std::string ToPage(const TrackedTest& test, const std::vector<CourseDescription>
        {"dissipated", report::Quantity(test.energy.total(), "J")},
        {"energy_counts", campaign::InWords(test.energy.counts())},
        {"unused_samples", test.unused_samples},
-       {"shared_alpha", test.shared_alpha ? campaign::SharedAlphaInWords(*test.shared_alpha) : ""},
        {"ends", std::move(ends)},
        {"evolutions", std::move(figures)},
        {"flags", std::move(flags)},
        {"provenance", report::ProvenanceData(provenance)}});
 }
 
-io::Plot ToPlot(const TrackedTest& test, const std::vector<CourseDescription>& described) {
-  const std::string_view changes = Changes(test, described).empty()
-                                       ? campaign::kNothingChanged
-                                       : "dashed where it changed beyond chance";
-  return campaign::EvolutionPlot(EvolutionsOf(test, described), report::NameOf(test.files),
-                                 fmt::format("{} cycles: {}", test.cycles, changes));
+io::Plot ToPlot(const TrackedTest& test, const std::vector<Evolution>& evolutions) {
+  constexpr int kPanelHeight = 230;  // [px]
+  io::Plot plot{.title = report::NameOf(test.files),
+                .panels = PanelsOf(test, evolutions),
+                .subtitle = campaign::Headline(evolutions)};
+  if (plot.panels.empty()) {
+    throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
+  }
+  plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
+  return plot;
 }
 
-std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>& described) {
-  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
-  std::string text =
-      fmt::format("{} cycles of {} samples, {} fits{}{}\n", test.cycles, test.samples, test.fits,
-                  test.output.empty() ? "" : " in ", test.output);
+std::string ToText(const TrackedTest& test, const std::vector<Evolution>& evolutions) {
+  std::string text = campaign::Headline(evolutions) + "\n";
+  text += fmt::format("{} cycles of {} samples, {} fits{}{}, {:.6g} J dissipated in all{}\n",
+                      test.cycles, test.samples, test.fits, test.output.empty() ? "" : " in ",
+                      test.output, test.energy.total(), campaign::InWords(test.energy.counts()));
   if (test.resumed > 0) text += fmt::format("{} of them existed already\n", test.resumed);
   if (test.unused_samples > 0) {
     text += fmt::format("{} samples at the ends belong to no whole cycle\n", test.unused_samples);
   }
-  text += fmt::format("{:.6g} J dissipated in all{}\n", test.energy.total(),
-                      campaign::InWords(test.energy.counts()));
-  if (test.shared_alpha) text += campaign::SharedAlphaInWords(*test.shared_alpha) + "\n";
   if (test.flagged > 0) {
     text += fmt::format("\n{} {} a flag:\n", test.flagged,
                         test.flagged == 1 ? "cycle has" : "cycles have");
@@ -204,64 +176,43 @@ std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>
       text += fmt::format("  {:<18}{:>8}   {}\n", flag.name, found->second, flag.meaning);
     }
   }
-  std::string courses;
-  std::string changes;
-  std::string small_trends;
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const campaign::CourseDescription& course = described[k];
-    if (course.stretches.empty()) continue;
-    const std::string name = report::WithUnit(tracked[k].name, UnitOf(test, tracked[k].unit));
-    courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
-                           course.stretches.back().at_end);
-    for (const std::string& line : campaign::ChangeStatements(course)) {
-      changes += fmt::format("  {:<21} {}\n", tracked[k].name, line);
-    }
-    for (const std::string& line : campaign::SmallTrendStatements(course)) {
-      small_trends += fmt::format("  {:<21} {}\n", tracked[k].name, line);
-    }
-  }
-  if (!courses.empty()) {
+  if (evolutions.empty()) return text;
+  text += fmt::format("\n  {:<30}{:>14}{:>14}{:>10}\n", "", "first", "last", "settled");
+  for (const Evolution& evolution : evolutions) {
+    const campaign::CourseDescription& course = evolution.description;
     text +=
-        fmt::format("\n  {:<30}{:>14}{:>14}\n{}", "over the test", "at first", "at last", courses);
-    text += changes.empty() ? fmt::format("\nN{}.\n", campaign::kNothingChanged.substr(1))
-                            : "\nChanges:\n" + changes;
-    if (!small_trends.empty()) text += "\nBeyond chance, but less than 1 %:\n" + small_trends;
+        fmt::format("  {:<30}{:>14.5g}{:>14.5g}{:>10}\n",
+                    report::WithUnit(evolution.quantity->name, evolution.unit), course.first,
+                    course.last, course.settled_at ? fmt::format("{}", *course.settled_at) : "-");
   }
-  return text;
+  const std::vector<std::string> changes = campaign::ChangeStatements(evolutions);
+  if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
+  return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
-std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>& described) {
-  Json json;
-  json["schema"] = "mindahl.track/1";
-  json["version"] = Version();
-  json["input"] = {{"files", test.files},
-                   {"samples", test.samples},
-                   {"cycles", test.cycles},
-                   {"unused_samples", test.unused_samples},
-                   {"broken_rows", test.broken_rows}};
-  json["reversals"] = {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}};
-  json["output"] = test.output.empty() ? Json() : Json(test.output);
-  json["fits"] = test.fits;
-  json["flagged"] = test.flagged;
-  json["flags"] = FlagsJson(test);
-  json["accumulated_energy"] = test.energy.total();
-  json["energy_counts"] = EnergyCountsJson(test.energy.counts());
-  json["shared_alpha"] = nullptr;
-  if (test.shared_alpha) {
-    json["shared_alpha"] = {{"value", test.shared_alpha->mean()},
-                            {"standard_error", test.shared_alpha->standard_error()},
-                            {"cycles", test.shared_alpha->count()},
-                            {"scatter", test.shared_alpha->scatter()},
-                            {"p_value", test.shared_alpha->p_value()}};
-  }
-  json["quantities"] = QuantitiesJson(test, described);
-  return Dump(json);
+std::string ToJson(const TrackedTest& test, const std::vector<Evolution>& evolutions) {
+  return Dump({{"schema", "mindahl.track/1"},
+               {"version", Version()},
+               {"input",
+                {{"files", test.files},
+                 {"samples", test.samples},
+                 {"cycles", test.cycles},
+                 {"unused_samples", test.unused_samples},
+                 {"broken_rows", test.broken_rows}}},
+               {"reversals", {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}}},
+               {"output", test.output.empty() ? Json() : Json(test.output)},
+               {"fits", test.fits},
+               {"flagged", test.flagged},
+               {"flags", FlagsJson(test)},
+               {"accumulated_energy", test.energy.total()},
+               {"energy_counts", EnergyCountsJson(test.energy.counts())},
+               {"headline", campaign::Headline(evolutions)},
+               {"quantities", QuantitiesJson(evolutions)}});
 }
 
 void Validate(const TrackRequest& request) {
-  const identification::FitOptions fit = MakeCycleFitOptions(request.fit);
-  if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
-  if (request.shares_alpha) campaign::RequireThatAlphaCanBeShared(fit, request.fit.files);
+  MakeCycleFitOptions(request.fit);
+  Validate(request.fit.contact);
 }
 
 TrackRun::TrackRun(const TrackRequest& request, TrackEvents events)
@@ -283,11 +234,12 @@ void TrackRun::BeginSource(const io::RecordFile& layout, const std::string& name
 
 void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) {
   fit_ = MakeCycleFitOptions(request_.fit);
-  if (request_.normal_load) fit_.normal_loads = {*request_.normal_load};
+  const contact::KnownContact& known = request_.fit.contact.known;
+  if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
   reading_ = campaign::ChooseReading(head, fit_);
   chosen_terms_ = ChooseTermsOfCycles(request_.fit, head, fit_);
-  if (test_.shared_alpha) fit_.fixed["alpha"] = test_.shared_alpha->mean();
   campaign::TrackOptions options{.fit = fit_,
+                                 .compliance = ComplianceOf(known),
                                  .together = request_.average,
                                  .every = request_.every,
                                  .threads = request_.threads};
@@ -360,17 +312,6 @@ void TrackRun::ReadRecord(const io::NamedRecord& record) {
   EndSource();
 }
 
-void TrackRun::PoolAlpha(std::span<const io::NamedRecord> records) {
-  campaign::PooledValue alpha;
-  TrackRun first_pass(request_, {.fits = [&alpha](std::span<const campaign::CycleFit> fits) {
-                        for (const campaign::CycleFit& fit : fits) campaign::PoolAlpha(fit, alpha);
-                      }});
-  first_pass.Read(records);
-  if (first_pass.cycles() == 0) return;  // as the second pass will say
-  campaign::RequireSharedAlpha(alpha);
-  test_.shared_alpha = alpha;
-}
-
 void TrackRun::Read(std::span<const io::NamedRecord> records) {
   if (records.empty()) {
     for (const std::string& file : request_.fit.files) ReadFile(file);
@@ -384,6 +325,7 @@ void TrackRun::Read(std::span<const io::NamedRecord> records) {
 void TrackRun::Finish() {
   test_.files = names_;
   test_.cycles = tracker_->cycles();
+  test_.log = tracker_->log();
   test_.reversal_gate = *fit_.preparation.reversal_gate;
   test_.is_gate_certain = reading_.gate.certain;
   campaign::RequireCycles(test_.cycles, request_.average, reading_, test_.reversal_gate,
@@ -410,14 +352,15 @@ void SeparateTests::Add(const std::string& file, const std::string& fault, const
   if (!fault.empty()) faults_.push_back(fault);
   established_ = established_ && fault.empty() && test.established();
   if (document_ == nullptr) return;
-  document_->tests.push_back({{"file", file},
-                              {"fault", fault.empty() ? Json() : Json(fault)},
-                              {"fits", test.fits},
-                              {"flagged", test.flagged},
-                              {"flags", FlagsJson(test)},
-                              {"accumulated_energy", test.energy.total()},
-                              {"energy_counts", EnergyCountsJson(test.energy.counts())},
-                              {"quantities", QuantitiesJson(test, test.courses.Describe())}});
+  document_->tests.push_back(
+      {{"file", file},
+       {"fault", fault.empty() ? Json() : Json(fault)},
+       {"fits", test.fits},
+       {"flagged", test.flagged},
+       {"flags", FlagsJson(test)},
+       {"accumulated_energy", test.energy.total()},
+       {"energy_counts", EnergyCountsJson(test.energy.counts())},
+       {"quantities", QuantitiesJson(test.courses.Describe(test.is_torsional))}});
 }
 
 std::string SeparateTests::ToJson() const {

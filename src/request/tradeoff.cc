@@ -9,19 +9,16 @@
 #include <utility>
 
 #include "core/text.h"
+#include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/tradeoff/recommendation.h"
 #include "request/json.h"
 
 namespace mindahl::request {
 
+using methods::Method;
 using models::BranchLaw;
 using models::Waveform;
-using tradeoff::Criterion;
-using tradeoff::LambdaRange;
-using tradeoff::ModelRegion;
-using tradeoff::ModelRegionOptions;
 using tradeoff::WorkPrecision;
 
 namespace {
@@ -60,15 +57,14 @@ double SlipReachOfLaw(const BranchLaw& law) {
 }
 
 MeasuredExcitation Measure(const BranchLaw& law, std::string name, std::string title,
-                           const methods::Drive& drive) {
-  const std::vector<tradeoff::Approximation> ladder =
-      tradeoff::AllApproximationsAlong(law, drive, tradeoff::MakeReferenceResponse(law, drive));
+                           const methods::Drive& drive, double tolerance) {
   MeasuredExcitation measured{.name = std::move(name),
                               .title = std::move(title),
                               .samples = drive.displacement.size(),
-                              .floor = tradeoff::MeasureCostFloor(drive),
-                              .points = tradeoff::MeasureWorkPrecision(law, drive, ladder)};
-  measured.front = tradeoff::ParetoFront(measured.points, Criterion::kMaxForce);
+                              .points = tradeoff::MeasureWorkPrecision(law, drive)};
+  measured.cheapest = tradeoff::CheapestWithin(tolerance, /*energy_counts=*/false, measured.points);
+  measured.cheapest_with_energy =
+      tradeoff::CheapestWithin(tolerance, /*energy_counts=*/true, measured.points);
   return measured;
 }
 
@@ -76,8 +72,8 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffRequest& request,
                                               const BranchLaw& law) {
   std::vector<MeasuredExcitation> measured;
   if (!request.displacement.empty()) {
-    measured.push_back(
-        Measure(law, "path", request.path_name, {.displacement = request.displacement}));
+    measured.push_back(Measure(law, "path", request.path_name,
+                               {.displacement = request.displacement}, request.tolerance));
     return measured;
   }
   for (const Scene& scene : kScenes) {
@@ -92,94 +88,77 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffRequest& request,
     methods::Drive drive{.displacement = excitation.displacement};
     if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
     measured.push_back(Measure(law, std::string(scene.name),
-                               fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive));
+                               fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive,
+                               request.tolerance));
   }
   return measured;
 }
 
-std::string SceneText(const MeasuredExcitation& scene) {
-  std::string text = fmt::format(
-      "{}: {} samples; floor measured {:.2f} ns/sample for memory, {:.2f} with one square root "
-      "and division\n  {}\n",
-      scene.title, scene.samples, scene.floor.memory, scene.floor.arithmetic,
-      PrecisionTableHead(/*is_timed=*/true));
-  for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    text +=
-        fmt::format("{} {}\n", scene.front[i] ? '*' : ' ',
-                    PrecisionTableRow(scene.points[i], tradeoff::ModelledCostFloor().arithmetic));
+/// States a choice: "spring, 1.5 ns/sample, 4.7 times as fast as mindlin by exact".
+std::string ChoiceText(const MeasuredExcitation& scene, std::size_t choice) {
+  const WorkPrecision& chosen = scene.points[choice];
+  const auto exact = std::ranges::find_if(scene.points, [&](const WorkPrecision& point) {
+    return point.approximation.model == scene.points.back().approximation.model;
+  });
+  const std::string text =
+      fmt::format("{}, {:.1f} ns/sample", Describe(chosen.approximation), chosen.cost);
+  if (&*exact == &chosen) return text + ": nothing cheaper is within it";
+  return text + fmt::format(", {:.1f} times as fast as {}", exact->cost / chosen.cost,
+                            Describe(exact->approximation));
+}
+
+std::string SceneText(const MeasuredExcitation& scene, double tolerance) {
+  std::string text =
+      fmt::format("{}: {} samples\ncheapest within {:g} % of the peak force: {}\n", scene.title,
+                  scene.samples, 100 * tolerance, ChoiceText(scene, scene.cheapest));
+  if (scene.cheapest_with_energy != scene.cheapest) {
+    text += fmt::format("and of the dissipated energy: {}\n",
+                        ChoiceText(scene, scene.cheapest_with_energy));
+  }
+  text += fmt::format("  {:<36} {:>10} {:>10}  {:>8} {:>8} {:>8}\n", "", "ns/sample", "measured",
+                      "max dT", "rms dT", "energy");
+  for (const WorkPrecision& point : scene.points) {
+    const std::string energy =
+        point.precision.energy ? fmt::format("{:.1e}", *point.precision.energy) : "-";
+    text += fmt::format("{} {:<36} {:>10.2f} {:>10.2f}  {:>8.1e} {:>8.1e} {:>8}\n",
+                        point.is_on_front ? '*' : ' ', Describe(point.approximation), point.cost,
+                        point.measured_cost, point.precision.max_force, point.precision.rms_force,
+                        energy);
   }
   return text + '\n';
 }
 
-/// "0.003 … 0.02, > 1.2"
-std::string RangesInWords(const std::vector<LambdaRange>& ranges,
-                          const ModelRegionOptions& studied) {
-  std::string text;
-  for (const LambdaRange& range : ranges) {
-    const bool from_least = range.from <= studied.least_lambda;
-    const bool to_greatest = range.to >= studied.greatest_lambda;
-    if (!text.empty()) text += ", ";
-    if (from_least && to_greatest) {
-      text += "all";
-    } else if (from_least) {
-      text += fmt::format("< {:.3g}", range.to);
-    } else if (to_greatest) {
-      text += fmt::format("> {:.3g}", range.from);
-    } else {
-      text += fmt::format("{:.3g} … {:.3g}", range.from, range.to);
-    }
-  }
-  return text.empty() ? "-" : text;
-}
-
-std::string_view CriterionName(Criterion criterion) {
-  return criterion == Criterion::kEnergy ? "energy" : "force";
-}
-
-std::string RegionsText(const std::vector<ModelRegion>& regions,
-                        const ModelRegionOptions& studied) {
-  std::string text =
-      "lambda = X/delta_c at which a model, with the contact's sigma, alpha and Tc, is within a "
-      "tolerance of the exact response\n(force: largest error of T*; energy: of that lost in the "
-      "cycle), steady amplitude:\n";
-  text += fmt::format("  {:<16} {:>5} {:<7}", "model", "cycle", "");
-  for (const double tolerance : studied.tolerances) {
-    text += fmt::format(" {:<22}", fmt::format("{:g} %", 100 * tolerance));
-  }
-  text += '\n';
-  // Regions come in the order model, cycle, criterion, tolerance. A cycle like the one before it is
-  // not repeated.
-  const std::size_t tolerances = studied.tolerances.size();
-  std::map<std::string, std::string> last;
-  for (std::size_t i = 0; i + tolerances <= regions.size(); i += tolerances) {
-    const ModelRegion& region = regions[i];
-    std::string row;
-    for (std::size_t k = 0; k < tolerances; ++k) {
-      row += fmt::format(" {:<22}", RangesInWords(regions[i + k].ranges, studied));
-    }
-    const std::string key = fmt::format("{}/{}", region.model, CriterionName(region.criterion));
-    if (last[key] == row) continue;
-    last[key] = row;
-    text += fmt::format("  {:<16} {:>5} {:<7}{}\n", region.model, region.cycle,
-                        CriterionName(region.criterion), row);
-  }
-  return text + "  (a cycle without a row is like the one before it)\n";
+/// Returns the keys of a point, which are the columns of the CSV too.
+Json PointJson(const WorkPrecision& point) {
+  const tradeoff::Approximation& approximation = point.approximation;
+  const Method* method = methods::FindMethod(approximation.method);
+  const bool has_steps = method != nullptr && !method->steps.empty();
+  const bool is_adaptive = method != nullptr && method->adaptive;
+  return {{"model", approximation.model},
+          {"method", method == nullptr ? Json() : Json(approximation.method)},
+          {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
+          {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
+          {"cost_ns_per_sample", point.cost},
+          {"measured_ns_per_sample", point.measured_cost},
+          {"max_force_error", point.precision.max_force},
+          {"rms_force_error", point.precision.rms_force},
+          {"energy_error", NumberOrNull(point.precision.energy)},
+          {"pareto", point.is_on_front}};
 }
 
 }  // namespace
 
 std::vector<std::string_view> ExcitationNames() { return NamesOf(kScenes, &Scene::name); }
 
-Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Tell& progress) {
-  const bool is_contact_given = IsAnythingGiven(request.law) || request.law.alpha;
-  Tradeoff study{.law = is_contact_given ? ResolveLaw(request.law) : PaperContact()};
-  for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
-  if (progress) progress("timing every method");
-  study.excitations = MeasureScenes(request, study.law);
-  if (progress) progress("searching where each model is good enough");
-  if (study.law.shape_exponent < 1) {
-    study.regions = tradeoff::FindModelRegions(study.law, study.studied);
+Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn) {
+  if (!(request.tolerance > 0 && request.tolerance <= 1)) {
+    ThrowInvalid("--tolerance [-]", request.tolerance, "must be in (0, 1]");
   }
+  const bool is_contact_given = IsAnythingGiven(request.law) || request.law.alpha;
+  Tradeoff study{.law = is_contact_given ? ResolveLaw(request.law) : PaperContact(),
+                 .tolerance = request.tolerance};
+  for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
+  study.excitations = MeasureScenes(request, study.law);
   return study;
 }
 
@@ -188,46 +167,30 @@ std::string ToText(const Tradeoff& study) {
       "sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N; * is on the Pareto front "
       "of cost and largest force error\n\n",
       study.law.tangential_stiffness, study.law.shape_exponent, study.law.slip_force);
-  for (const MeasuredExcitation& scene : study.excitations) text += SceneText(scene);
-  if (!study.regions.empty()) text += RegionsText(study.regions, study.studied);
+  for (const MeasuredExcitation& scene : study.excitations) {
+    text += SceneText(scene, study.tolerance);
+  }
   return text;
 }
 
 std::string PointsCsv(const Tradeoff& study) {
   std::string text =
-      "excitation,model,method,steps,tolerance,cost [ns/sample],measured [ns/sample],cost over "
-      "floor [-],max force error "
-      "[-],rms force error [-],energy error [-],on Pareto front,refitted sigma [N/m],refitted "
-      "alpha [-],refitted Tc [N]\n";
+      "excitation,model,method,steps,tolerance,cost [ns/sample],measured [ns/sample],max force "
+      "error [-],rms force error [-],energy error [-],on Pareto front\n";
   for (const MeasuredExcitation& scene : study.excitations) {
-    for (std::size_t i = 0; i < scene.points.size(); ++i) {
-      const WorkPrecision& point = scene.points[i];
-      const Json json = PrecisionJson(point);
-      const auto cell = [&](const char* key) {
-        return json[key].is_null()     ? std::string()
-               : json[key].is_string() ? json[key].get<std::string>()
-                                       : json[key].dump();
-      };
-      const auto own = [&](const char* key) {
-        return json["refitted"].contains(key) ? json["refitted"][key].dump() : std::string();
-      };
-      text += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", scene.name, cell("model"),
-          cell("method"), cell("steps"), cell("tolerance"), point.cost,
-          cell("measured_ns_per_sample"), point.cost / tradeoff::ModelledCostFloor().arithmetic,
-          point.precision.max_force, point.precision.rms_force, cell("energy_error"),
-          scene.front[i] ? 1 : 0, own("sigma"), own("alpha"), own("slip_force"));
-    }
-  }
-  return text;
-}
-
-std::string RegionsCsv(const Tradeoff& study) {
-  std::string text = "model,cycle,criterion,tolerance [-],lambda from [-],lambda to [-]\n";
-  for (const ModelRegion& region : study.regions) {
-    for (const LambdaRange& range : region.ranges) {
-      text += fmt::format("{},{},{},{},{},{}\n", region.model, region.cycle,
-                          CriterionName(region.criterion), region.tolerance, range.from, range.to);
+    for (const WorkPrecision& point : scene.points) {
+      text += scene.name;
+      for (const Json& cell : PointJson(point)) {
+        text += ',';
+        if (cell.is_string()) {
+          text += cell.get<std::string>();
+        } else if (cell.is_boolean()) {
+          text += cell.get<bool>() ? "1" : "0";
+        } else if (!cell.is_null()) {
+          text += cell.dump();
+        }
+      }
+      text += '\n';
     }
   }
   return text;
@@ -251,9 +214,7 @@ io::Plot ToPlot(const Tradeoff& study) {
     for (const WorkPrecision& point : scene.points) {
       const tradeoff::Approximation& approximation = point.approximation;
       const bool other_model = approximation.model != scene.points.back().approximation.model;
-      const std::string label = !other_model        ? approximation.method
-                                : approximation.law ? approximation.model + " refitted"
-                                                    : approximation.model;
+      const std::string label = other_model ? approximation.model : approximation.method;
       if (!curves.contains(label)) {
         order.push_back(label);
         curves[label] = {
@@ -278,31 +239,19 @@ std::string ToJson(const Tradeoff& study) {
   Json json;
   json["schema"] = "mindahl.tradeoff/1";
   json["version"] = Version();
-  json["law"] = LawJson(study.law);
+  json["law"] = {{"sigma", study.law.tangential_stiffness},
+                 {"alpha", study.law.shape_exponent},
+                 {"slip_force", study.law.slip_force}};
+  json["tolerance"] = study.tolerance;
   json["excitations"] = Json::array();
   for (const MeasuredExcitation& scene : study.excitations) {
-    Json entry;
-    entry["name"] = scene.name;
-    entry["samples"] = scene.samples;
-    entry["cost_floor"] = FloorJson(scene.floor);
-    entry["points"] = Json::array();
-    for (std::size_t i = 0; i < scene.points.size(); ++i) {
-      Json point = PrecisionJson(scene.points[i]);
-      point["pareto"] = static_cast<bool>(scene.front[i]);
-      entry["points"].push_back(point);
-    }
-    json["excitations"].push_back(entry);
-  }
-  json["model_regions"] = Json::array();
-  for (const ModelRegion& region : study.regions) {
-    Json entry = {{"model", region.model},
-                  {"cycle", region.cycle},
-                  {"criterion", CriterionName(region.criterion)},
-                  {"tolerance", region.tolerance},
-                  {"lambda", Json::array()}};
-    for (const LambdaRange& range : region.ranges)
-      entry["lambda"].push_back({range.from, range.to});
-    json["model_regions"].push_back(entry);
+    Json points = Json::array();
+    for (const WorkPrecision& point : scene.points) points.push_back(PointJson(point));
+    json["excitations"].push_back({{"name", scene.name},
+                                   {"samples", scene.samples},
+                                   {"cheapest", points[scene.cheapest]},
+                                   {"cheapest_with_energy", points[scene.cheapest_with_energy]},
+                                   {"points", points}});
   }
   return Dump(json);
 }

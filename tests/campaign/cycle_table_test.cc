@@ -88,15 +88,16 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
             "sliding_amplitude [m],half_gap [N],energy [J],energy_ratio,"
             "energy_friction_coefficient,slope_after_reversal [N/m],normal_load [N],sigma [N/m],"
             "sigma_error [N/m],alpha,alpha_error,slip_force [N],slip_force_error [N],"
-            "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,slip_regime,"
-            "accumulated_energy [J],flags,checksum\n");
+            "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,"
+            "contact_radius [m],slip_regime,accumulated_energy [J],flags,checksum\n");
   EXPECT_EQ(CycleTableHeader(true),
             "cycle,first_line,samples,start_time [s],amplitude [rad],peak_force [N m],"
             "sliding_amplitude [rad],half_gap [N m],energy [J],energy_ratio,"
             "energy_friction_coefficient,slope_after_reversal [N m/rad],normal_load [N m],"
             "sigma [N m/rad],sigma_error [N m/rad],alpha,alpha_error,slip_force [N m],"
             "slip_force_error [N m],force_offset [N m],force_offset_error [N m],rms [N m],"
-            "friction_coefficient,slip_regime,accumulated_energy [J],flags,checksum\n");
+            "friction_coefficient,contact_radius [rad],slip_regime,accumulated_energy [J],flags,"
+            "checksum\n");
   CycleFit fit = Filled();
   fit.start_time = 1.5;
   fit.amplitude = 2.5;
@@ -114,9 +115,10 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
   fit.force_offset = {17.5, 18.5};
   fit.rms = 19.5;
   fit.friction_coefficient = 20.5;
+  fit.contact_radius = 22.5;
   EXPECT_EQ(CycleTableRow(fit, 21.5),
             "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,16.5,"
-            "17.5,18.5,19.5,20.5,gross,21.5,glitches alpha_open,fedcba9876543210\n");
+            "17.5,18.5,19.5,20.5,22.5,gross,21.5,glitches alpha_open,fedcba9876543210\n");
   fit.slips_grossly = false;
   EXPECT_NE(CycleTableRow(fit, 21.5).find(",partial,"), std::string::npos);
   EXPECT_FALSE(*ReadCycleTableRow(WithoutEnd(CycleTableRow(fit, 21.5))).fit.slips_grossly);

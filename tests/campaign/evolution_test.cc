@@ -1,116 +1,174 @@
 #include "mindahl/campaign/evolution.h"
 
+#include <fmt/format.h>
+
 #include "support/prelude.h"
 
 namespace mindahl::campaign::evolution_test {
 namespace {
 
-/// Falls by a tenth after its 60th cycle.
-Evolution Step(bool has_errors) {
-  Evolution evolution{.name = "sigma", .unit = "N/m", .has_errors = has_errors};
-  for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
-    const double ripple = cycle % 2 == 0 ? 1e5 : -1e5;
-    evolution.course.Add(cycle, (cycle <= 60 ? 5e7 : 4.5e7) + ripple, 1 / (2e5 * 2e5));
+/// A quantity by its name, described by hand.
+Evolution Of(std::string_view name, std::string unit, CourseDescription description) {
+  Evolution evolution{.unit = std::move(unit), .description = std::move(description)};
+  evolution.quantity = &*std::ranges::find(TrackedQuantities(), name, &TrackedQuantity::name);
+  for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
+    evolution.course.Add(cycle, cycle % 2 == 0 ? 5e7 : 4e7);
   }
-  evolution.description = FindChanges(evolution.course);
   return evolution;
 }
 
-TEST(Evolution, DrawsTimeHistoryBandAndChange) {
-  const std::vector<Evolution> evolutions = {Step(/*has_errors=*/true)};
-  const std::vector<io::PlotPanel> panels = EvolutionPanels(evolutions);
-  ASSERT_THAT(panels, SizeIs(1));
-  EXPECT_EQ(panels[0].y_label, "sigma [N/µm]");
-  const io::PlotSeries& course = panels[0].series[0];
-  ASSERT_THAT(course.x, SizeIs(100));
-  constexpr double kQuantile95 = 1.959963984540054;
-  constexpr double kRounding = 1e-9;
-  EXPECT_NEAR(course.upper[9] - course.y[9], kQuantile95 * 0.2, kRounding);
-  EXPECT_NEAR(course.y[9], 50.1, kRounding);
+std::vector<Evolution> RunIn() {
+  return {Of("friction_coefficient", "-",
+             {.first = 0.352,
+              .last = 0.6,
+              .settled_at = 480,
+              .steps = {},
+              .trends = {{1, 480, 0.352, 0.6, 1e-20}}}),
+          Of("slip_force", "N",
+             {.first = 35.2, .last = 60, .steps = {}, .trends = {{1, 480, 35.2, 60, 1e-20}}}),
+          Of("sigma", "N/m", {.first = 5e7, .last = 8e7, .steps = {{61, 5e7, 8e7, 0.003}}}),
+          Of("contact_radius", "m",
+             {.first = 250e-6, .last = 400e-6, .steps = {{61, 250e-6, 400e-6, 0.003}}}),
+          Of("alpha", "-", {.first = 0.33, .last = 0.34})};
+}
+
+TEST(Headline, SaysTheTestInOneLine) {
+  EXPECT_EQ(Headline(RunIn()), "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400 µm");
+  std::vector<Evolution> still = {Of("slip_force", "N", {.first = 15.0, .last = 15.1}),
+                                  Of("half_gap", "N", {.first = 14.0, .last = 14.1}),
+                                  Of("sigma", "N/m", {.first = 4.8e7, .last = 4.81e7})};
+  EXPECT_EQ(Headline(still), "Tc 15 N, unchanged; σ 48 N/µm, unchanged");
+  EXPECT_EQ(Headline({}), "");
+}
+
+TEST(Headline, NeverFallsByMoreThanAHundredPercent) {
+  const std::vector<Evolution> turned = {
+      Of("sigma", "N/m", {.first = 2.0, .last = -3.0, .steps = {{9, 2.0, -3.0, 1e-9}}})};
+  EXPECT_EQ(Headline(turned), "σ 2.00 → -3.00 N/m");
+  EXPECT_THAT(ChangeStatements(turned),
+              ElementsAre("sigma: a step at cycle 9, 2.00 → -3.00 N/m, p 1e-09"));
+}
+
+TEST(ChangeStatements, NameEachStepAndTrend) {
+  EXPECT_THAT(ChangeStatements(RunIn()),
+              ElementsAre("friction_coefficient: cycles 1 to 480, 0.352 → 0.600 (+70 %), p < 1e-12",
+                          "slip_force: cycles 1 to 480, 35.2 → 60.0 N (+70 %), p < 1e-12",
+                          "sigma: a step at cycle 61, 50.0 → 80.0 N/µm (+60 %), p 0.003",
+                          "contact_radius: a step at cycle 61, 250 → 400 µm (+60 %), p 0.003"));
+}
+
+TEST(ChangeStatements, OfManyAreTheLargest) {
+  CourseDescription course{.first = 1, .last = 2};
+  for (std::size_t k = 1; k <= 15; ++k) {
+    course.steps.push_back({k, 1.0, 1.0 + 0.03 * static_cast<double>(k), 1e-3});
+  }
+  const std::vector<std::string> lines =
+      ChangeStatements(std::vector<Evolution>{Of("energy", "J", course)});
+  ASSERT_THAT(lines, SizeIs(10));
+  EXPECT_THAT(lines[0], HasSubstr("at cycle 7,"));
+  EXPECT_THAT(lines[8], HasSubstr("at cycle 15,"));
+  EXPECT_EQ(lines[9], "and 6 smaller ones, which --json lists");
+}
+
+TEST(EvolutionPanels, DrawEachQuantityOverALogarithmicAxisOfCycles) {
+  const std::vector<io::PlotPanel> panels = EvolutionPanels(RunIn());
+  ASSERT_THAT(panels, SizeIs(4));  // slip_force says what friction_coefficient does
+  EXPECT_EQ(panels[0].y_label, "friction_coefficient");
+  EXPECT_TRUE(panels[0].log_x);
   ASSERT_THAT(panels[0].marks, SizeIs(1));
-  EXPECT_EQ(panels[0].marks[0].x, 61);
-  EXPECT_THAT(panels[0].marks[0].label, HasSubstr("step"));
+  EXPECT_EQ(panels[0].marks[0].label, "settled, 480");
+  EXPECT_EQ(panels[1].y_label, "sigma [N/µm]");
+  EXPECT_EQ(panels[1].marks[0].label, "step, 61");
+  const io::PlotSeries& course = panels[1].series[0];
+  ASSERT_THAT(course.x, SizeIs(200));
+  EXPECT_NEAR(course.y[1], 50.0, 1e-9);
+  Evolution one = RunIn()[2];
+  one.course = Course();
+  one.course.Add(1, 5e7);
+  EXPECT_THAT(EvolutionPanels(std::vector<Evolution>{one}), IsEmpty());
 }
 
-TEST(Evolution, WithoutErrorsHasTheLeastAndGreatestOfItsCyclesForABand) {
-  Evolution evolution{.name = "half_gap", .unit = "N"};
-  // Two bins' worth more than there are bins: each then stands for two cycles.
-  for (std::size_t cycle = 1; cycle <= 2 * Course::kMostBins; ++cycle) {
-    evolution.course.Add(cycle, cycle % 2 == 0 ? 11.0 : 10.0);
+TEST(FrettingLog, HasALoopACycle) {
+  std::vector<Cycle> cycles(2);
+  cycles[0].number = 1;
+  cycles[1].number = 10;
+  for (Cycle& cycle : cycles) {
+    cycle.record.displacement = {-2e-6, 2e-6, -2e-6};
+    cycle.record.force = {-30.0, 30.0, -30.0};
   }
-  evolution.description = FindChanges(evolution.course);
-  const std::vector<Evolution> evolutions = {evolution};
-  const io::PlotSeries course = EvolutionPanels(evolutions)[0].series[0];
-  ASSERT_THAT(course.x, SizeIs(Course::kMostBins));
-  for (std::size_t k = 0; k < course.x.size(); ++k) {
-    EXPECT_EQ(course.lower[k], 10.0);
-    EXPECT_EQ(course.upper[k], 11.0);
-  }
+  const io::PlotPanel panel = FrettingLog(cycles, /*is_torsional=*/false);
+  EXPECT_EQ(panel.x_label, "displacement [µm]");
+  EXPECT_EQ(panel.y_label, "force [N]");
+  ASSERT_THAT(panel.series, SizeIs(2));
+  EXPECT_EQ(panel.series[1].label, "cycle 10");
+  EXPECT_NEAR(panel.series[1].x[1], 2.0, 1e-12);
+  EXPECT_NE(panel.series[0].shade, panel.series[1].shade);
 }
 
-TEST(Evolution, HasTheBandOfOneCycleWhereAPointStandsForTwo) {
-  constexpr double kError = 2e5;
-  Evolution evolution{.name = "sigma", .unit = "N/m", .has_errors = true};
-  for (std::size_t cycle = 1; cycle <= 2 * Course::kMostBins; ++cycle) {
-    evolution.course.Add(cycle, 5e7, 1 / (kError * kError));
-  }
-  const std::vector<Evolution> evolutions = {evolution};
-  const io::PlotSeries course = EvolutionPanels(evolutions)[0].series[0];
-  ASSERT_THAT(course.x, SizeIs(Course::kMostBins));
-  constexpr double kQuantile95 = 1.959963984540054;
-  constexpr double kRounding = 1e-9;
-  for (std::size_t k = 0; k < course.x.size(); ++k) {  // [N/µm]
-    EXPECT_NEAR(course.upper[k] - course.y[k], kQuantile95 * 1e-6 * kError, kRounding);
-    EXPECT_NEAR(course.y[k] - course.lower[k], kQuantile95 * 1e-6 * kError, kRounding);
-  }
+CycleFit WithSlipForce(std::size_t number, double value, double error) {
+  CycleFit fit;
+  fit.number = number;
+  fit.slip_force = {value, error};
+  return fit;
 }
 
-TEST(Evolution, OfOneCycleIsNoPicture) {
-  Evolution evolution{.name = "sigma", .unit = "N/m"};
-  evolution.course.Add(1, 5e7);
-  const std::vector<Evolution> evolutions = {evolution};
-  EXPECT_THAT(EvolutionPanels(evolutions), SizeIs(0));
-  EXPECT_THROW(EvolutionPlot(evolutions, "", ""), InvalidArgument);
+// One over their squares is 0 or infinite.
+TEST(TrackedCourses, AcceptErrorsOfAnySize) {
+  TrackedCourses courses;
+  std::size_t number = 0;
+  for (const double error : {1e-200, 1e-160, 1.0, 1e160, 1e300}) {
+    for (int k = 0; k < 20; ++k) courses.Add(WithSlipForce(++number, 60.0, error));
+  }
+  const std::vector<Evolution> evolutions = courses.Describe(false);
+  ASSERT_THAT(evolutions, SizeIs(1));
+  for (const Course::Bin& bin : evolutions[0].course.bins()) {
+    EXPECT_TRUE(std::isfinite(bin.weight) && bin.weight > 0);
+    EXPECT_NEAR(bin.value, 60.0, 1e-12);
+  }
+  EXPECT_FALSE(evolutions[0].description.changed());
 }
 
-TEST(Evolution, DrawsEachSegmentAndNamesEachChange) {
-  Evolution evolution{.name = "alpha", .unit = "-"};
-  for (std::size_t cycle = 1; cycle <= 30; ++cycle) evolution.course.Add(cycle, 0.25);
-  evolution.description.stretches = {
-      {.first_cycle = 1, .last_cycle = 11, .at_start = 5.0, .at_end = 3.0, .time_constant = 10.0},
-      {.first_cycle = 12, .last_cycle = 30, .at_start = 2.0, .at_end = 1.0, .time_constant = {}}};
-  evolution.description.changes = {{.kind = ChangeKind::kEndOfRunningIn, .cycle = 12},
-                                   {.kind = ChangeKind::kTransition, .cycle = 15},
-                                   {.kind = ChangeKind::kBend, .cycle = 20}};
-  std::vector<Evolution> evolutions = {evolution, evolution};
-  evolutions[1].name = "half_gap";
-  evolutions[1].unit = "N";
-  const io::Plot plot = EvolutionPlot(evolutions, "title", "subtitle");
-  EXPECT_EQ(plot.title, "title");
-  EXPECT_EQ(plot.subtitle, "subtitle");
-  EXPECT_EQ(plot.height, 3 * 230);
-  ASSERT_THAT(plot.panels, SizeIs(2));
-  EXPECT_EQ(plot.panels[0].x_label, "");
-  EXPECT_EQ(plot.panels[1].x_label, "cycle");
-  EXPECT_EQ(plot.panels[0].y_label, "alpha");
-  EXPECT_EQ(plot.panels[1].y_label, "half_gap [mN]");
-  const io::PlotPanel& panel = plot.panels[0];
-  ASSERT_THAT(panel.series, SizeIs(3));
-  EXPECT_EQ(panel.series[0].label, "cycles, least and greatest");
-  EXPECT_EQ(panel.series[1].label, "stretches");
-  EXPECT_EQ(panel.series[2].label, "");
-  // A curve in forty steps: half way of 10 cycles, 5 − 2·(1 − e^−½)/(1 − e^−1).
-  ASSERT_THAT(panel.series[1].x, SizeIs(41));
-  EXPECT_NEAR(panel.series[1].x[20], 6.0, 1e-12);
-  EXPECT_NEAR(panel.series[1].y[20], 5 - 2 * std::expm1(-0.5) / std::expm1(-1.0), 1e-12);
-  EXPECT_THAT(panel.series[2].x, ElementsAre(12, 30));
-  EXPECT_THAT(panel.series[2].y, ElementsAre(2, 1));
-  EXPECT_NEAR(plot.panels[1].series[2].y[0], 2000.0, 1e-9);  // [mN]
-  ASSERT_THAT(panel.marks, SizeIs(3));
-  EXPECT_EQ(panel.marks[0].label, "running-in ends, 12");
-  EXPECT_EQ(panel.marks[1].label, "step, 15");
-  EXPECT_EQ(panel.marks[2].label, "other rate, 20");
-  EXPECT_EQ(panel.marks[2].x, 20.0);
+TEST(TrackedCourses, HoldEachQuantityOfACycleUnlessItIsOpen) {
+  CycleFit fit;
+  fit.number = 7;
+  fit.sigma = {1.5, 0.5};
+  fit.alpha = {2.5, 0.25};
+  fit.slip_force = {3.5, 0.125};
+  fit.friction_coefficient = 4.5;
+  fit.half_gap = 5.5;
+  fit.energy = 6.5;
+  fit.energy_ratio = 7.5;
+  fit.contact_radius = 8.5;
+  fit.rms = 2.0;
+  const auto held = [&](const std::vector<std::string>& flags) {
+    TrackedCourses courses;
+    fit.flags = flags;
+    courses.Add(fit);
+    std::vector<std::string> all;
+    for (const Evolution& evolution : courses.Describe(false)) {
+      const Course::Bin& bin = evolution.course.bins()[0];
+      EXPECT_EQ(bin.first_cycle, 7U);
+      all.push_back(fmt::format("{} {} {}", evolution.quantity->name, bin.value, bin.weight));
+    }
+    return all;
+  };
+  // Weights are one over the square of an error; of what is measured, of the rms.
+  const std::vector<std::string> whole = {"friction_coefficient 4.5 64",
+                                          "slip_force 3.5 64",
+                                          "half_gap 5.5 0.25",
+                                          "sigma 1.5 4",
+                                          "contact_radius 8.5 4",
+                                          "alpha 2.5 16",
+                                          "energy 6.5 0.25",
+                                          "energy_ratio 7.5 0.25"};
+  EXPECT_EQ(held({}), whole);
+  EXPECT_EQ(held({"glitches"}), whole);
+  EXPECT_THAT(held({"not_converged"}), IsEmpty());
+  EXPECT_THAT(held({"sigma_open"}), AllOf(SizeIs(6), Not(Contains(whole[3]))));
+  EXPECT_THAT(held({"alpha_open"}), AllOf(SizeIs(7), Not(Contains(whole[5]))));
+  EXPECT_THAT(held({"slip_force_open"}), AllOf(SizeIs(7), Not(Contains(whole[1]))));
+  fit.alpha.standard_error.reset();  // held: every cycle has one weight
+  EXPECT_THAT(held({}), Contains("alpha 2.5 1"));
 }
 
 }  // namespace

@@ -46,10 +46,5 @@ TEST(CleanRecord, WithNoiseOfTheDisplacementIsAdequate) {
   EXPECT_LE(doubted, kMostDoubted);
 }
 
-TEST(CleanRecord, WhoseExponentIsHeldElsewhereByABoundIsDoubted) {
-  const Outcome fit = FitOf({"--lambda", "1.5", "--cycles", "3"}, {"--bound", "alpha=0.4:0.5"});
-  EXPECT_NE(fit.Json()["adequacy"]["verdict"], "adequate");
-}
-
 }  // namespace
 }  // namespace mindahl::cli::clean_records_test

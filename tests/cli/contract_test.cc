@@ -11,8 +11,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Words kCommands = {"fit",      "simulate",  "validate", "contact", "convert",
-                         "tradeoff", "recommend", "plan",     "batch",   "track"};
+const Words kCommands = {"fit",      "simulate", "validate", "contact", "convert",
+                         "tradeoff", "plan",     "batch",    "track"};
 // Columns, units and model are "as for `fit`".
 const Words kLikeFit = {"batch", "track"};
 const char* const kCommonSection = "What is known of the contact";

@@ -56,8 +56,10 @@ TEST(Convert, PrintsParametersErrorsAndTheRange) {
   const Outcome outcome = RunCommand(Command({"--to", "dahl"}));
   EXPECT_EQ(outcome.status, kDone);
   EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_THAT(outcome.out, StartsWith("Dahl's own law, on the steady loop between ±1.2e-06 m\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("error at the amplitude: force 0 % of T*, energy 0 %\n"));
+  EXPECT_THAT(
+      outcome.out,
+      StartsWith(
+          "Dahl's own law; at 1.2e-06 m the force is within 0 % of T*, the energy off by 0 %\n"));
   EXPECT_THAT(outcome.out, HasSubstr("force and energy within 1 % from "));
   EXPECT_THAT(RunCommand(Command({"--to", "lammps"})).out, HasSubstr("not within 1 %"));
 }
@@ -107,7 +109,8 @@ TEST(Convert, WritesBoucAndWensLawWithItsOwnGammaAndBeta) {
   Words as_lines = words;
   as_lines.insert(as_lines.end(), {"--input-lines", "-"});
   const std::string lines = RunCommand(as_lines).out;
-  EXPECT_THAT(lines, StartsWith("# OpenSees"));
+  EXPECT_THAT(lines,
+              AllOf(StartsWith("# at 1.2e-06 m the force is within "), HasSubstr("\n# OpenSees")));
   std::istringstream text(lines.substr(lines.find("BoucWen 1 0.0 ") + 14));
   double ko = 0.0;
   double n = 0.0;
@@ -142,11 +145,21 @@ TEST(Convert, ToLuGreHasNoRate) {
   EXPECT_EQ(Parameter(report, "sigma1"), 0.0);
   EXPECT_EQ(Parameter(report, "sigma2"), 0.0);
   EXPECT_EQ(Parameter(report, "Fs"), Parameter(report, "Fc"));
-  const json over_range = RunCommand(Command({"--to", "lugre", "--least-amplitude", "6e-7",
-                                              "--largest-amplitude", "3e-6", "--json", "-"}))
-                              .Json();
-  EXPECT_NE(Parameter(over_range, "sigma0"), Parameter(report, "sigma0"));
-  EXPECT_GE(over_range["largest_error"]["force"], over_range["error_at_amplitude"]["force"]);
+}
+
+TEST(Convert, TakesAFit) {
+  const TemporaryDirectory directory;
+  const std::string fit = directory.path() / "fit.json";
+  ASSERT_EQ(RunCommand({"fit", SampleRecord(), "--json", fit}).status, kDone);
+  const json made = RunCommand({"convert", fit, "--to", "dahl", "--json", "-"}).Json();
+  const json fitted = json::parse(FileContent(fit));
+  EXPECT_EQ(made["from"]["sigma"], fitted["parameters"]["sigma"]["value"]);
+  EXPECT_EQ(made["from"]["slip_force"], fitted["parameters"]["slip_force"]["value"]);
+  EXPECT_GT(made["amplitude"], 0.0);
+  const Outcome none = RunCommand({"convert", "--to", "dahl"});
+  EXPECT_EQ(none.status, kBadInput);
+  EXPECT_THAT(none.Errors(),
+              ElementsAre(HasSubstr("--sigma missing: give it, or the JSON file of a fit")));
 }
 
 TEST(Convert, TakesItsOptionsFromAFile) {

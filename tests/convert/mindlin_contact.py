@@ -44,7 +44,8 @@ def converted(program, target, *options):
     lines = subprocess.run([*command, "--input-lines", "-"], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     stated = subprocess.run([*command, "--json", "-"], check=True, capture_output=True, text=True)
-    return [line for line in lines if not line.startswith(("#", "<!--"))], json.loads(stated.stdout)
+    lines = [line.split("  #")[0] for line in lines if not line.startswith(("#", "<!--"))]
+    return lines, json.loads(stated.stdout)
 
 
 def loop_error(displacement, force):

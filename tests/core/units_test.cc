@@ -72,6 +72,25 @@ TEST(Units, PressuresAreRecognisedAsNoForce) {
   EXPECT_FALSE(IsPressureUnit("mpa"));
 }
 
+TEST(ParseQuantity, TakesANumberOrAUnitOfItsKind) {
+  EXPECT_EQ(ParseQuantity("210GPa", "Pa"), 210e9);
+  EXPECT_EQ(ParseQuantity(" 50 N ", "N"), 50.0);
+  EXPECT_EQ(ParseQuantity("+2.1e11", "Pa"), 2.1e11);
+  EXPECT_EQ(ParseQuantity("0.3", "-"), 0.3);
+  EXPECT_DOUBLE_EQ(*ParseQuantity("48 N/um", "N/m"), 48e6);
+  EXPECT_DOUBLE_EQ(*ParseQuantity("4.2e-2 1/GPa", "1/Pa"), 4.2e-11);
+  EXPECT_EQ(ParseQuantity("3 N s/m", "N s/m"), 3.0);
+  for (const auto& [text, unit] : {std::pair("50 mm", "N"),
+                                   {"", "N"},
+                                   {"N", "N"},
+                                   {"5 N", "-"},
+                                   {"5 N", "N/m"},
+                                   {"1,5", "N"},
+                                   {"5 N N", "N"}}) {
+    EXPECT_FALSE(ParseQuantity(text, unit)) << text;
+  }
+}
+
 TEST(Units, AKipIsAThousandPounds) {
   EXPECT_DOUBLE_EQ(ForceUnit("kip")->ToSi(1.0), 1000 * ForceUnit("lbf")->ToSi(1.0));
 }

@@ -40,7 +40,7 @@ Json TermsTable() {
                     {"is_of_record", term.scope == identification::Scope::kRecord},
                     {"is_linear", term.entry == identification::Entry::kLinear},
                     {"presence", presences.at(static_cast<std::size_t>(term.presence))},
-                    {"option", term.option},
+                    {"option", term.group},
                     {"needs_time", term.needs_time}});
   }
   return rows;
@@ -77,13 +77,13 @@ Json CausesTable() {
                     {"unit", row.unit},
                     {"unit_by_sample", row.unit_by_sample},
                     {"meaning", row.meaning},
-                    {"option", row.option}});
+                    {"option", row.group}});
   }
   rows.push_back({{"code", identification::kHeavyTails},
                   {"unit", "-"},
                   {"unit_by_sample", ""},
                   {"meaning", identification::kHeavyTailsMeaning},
-                  {"option", identification::kHeavyTailsOption}});
+                  {"option", ""}});
   return rows;
 }
 

@@ -47,8 +47,7 @@ run(${CXX} -std=c++20 ${sanitizer} ${SOURCE_DIR}/examples/fit_to_json.cc -o ${us
 run(${user}/by_pkg_config ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
 
 foreach(file include/mindahl/identification/fit.h share/mindahl/schema/fit.json
-        share/man/man1/mindahl.1.gz share/bash-completion/completions/mindahl
-        share/zsh/site-functions/_mindahl)
+        share/man/man1/mindahl-fit.1)
   if(NOT EXISTS ${prefix}/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()

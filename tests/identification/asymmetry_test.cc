@@ -163,7 +163,7 @@ TEST(Asymmetry, IsWhatASymmetricFitOfAVirginLoopLooksFor) {
   const auto cause =
       std::ranges::find(symmetric.adequacy.causes, "unequal_directions", &Cause::code);
   ASSERT_NE(cause, symmetric.adequacy.causes.end());
-  EXPECT_EQ(cause->option, "--asymmetry fit --initial-state virgin");
+  EXPECT_EQ(cause->term, "asymmetry");
   const FitResult fit = FitOne(record, WithAsymmetry());
   EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   const ParameterEstimate& asymmetry = *fit.Find("asymmetry");

@@ -212,38 +212,37 @@ TEST(Covariates, AreOneChannelWhereATenthIsTheirOwn) {
 TEST(Covariates, ThatAreOneChannelAreOneCauseByTheLastOfThem) {
   const FitResult fit = Fitted(WithPressure());
   EXPECT_EQ(FirstOf(fit), "covariate");
-  EXPECT_EQ(fit.adequacy.causes.front().option, "--covariate bar");
+  EXPECT_EQ(fit.adequacy.causes.front().term, "bar");
   const auto count = std::ranges::count(fit.adequacy.causes, "covariate", &Cause::code);
   EXPECT_EQ(count, 1) << "neither the volts, nor what follows the force itself";
 }
 
 // --- advice
 
-std::string Accepted(const Stages& stages, std::string_view wanted) {
-  return AcceptedOptions(stages.problem, stages.options, wanted);
+std::string_view Accepted(const Stages& stages, std::string_view group) {
+  return AcceptedGroup(stages.problem, stages.options, group);
 }
 
-TEST(Advice, IsWithheldWhereTheProgramWouldRefuseIt) {
+TEST(AcceptedGroup, IsNoneWhereTheFitWouldRefuseIt) {
   Record record = With([](const Place&) { return 0.0; });
-  EXPECT_EQ(Accepted(Stages(record), "--viscous fit"), "--viscous fit");
-  EXPECT_EQ(Accepted(Stages(record), "--no-such-option"), "");
-  EXPECT_EQ(Accepted(Stages(record), "--viscous fit --no-such-option fit"), "");
+  EXPECT_EQ(Accepted(Stages(record), "viscous"), "viscous");
+  EXPECT_EQ(Accepted(Stages(record), ""), "");
   Record untimed = record;
   untimed.time.clear();
-  EXPECT_EQ(Accepted(Stages(untimed), "--viscous fit"), "");
-  EXPECT_EQ(Accepted(Stages(untimed), "--lag fit"), "--lag fit") << "in samples";
+  EXPECT_EQ(Accepted(Stages(untimed), "viscous"), "");
+  EXPECT_EQ(Accepted(Stages(untimed), "lag"), "lag") << "in samples";
   FitOptions dahl;
   dahl.model = &Model("dahl");
-  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "--asymmetry fit");
+  EXPECT_EQ(Accepted(Stages(record, dahl), "asymmetry"), "asymmetry");
   dahl.terms = {"rig_stiffness"};
-  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "");
-  EXPECT_EQ(Accepted(Stages(record, {}, InitialState::kSteady), "--asymmetry fit"), "");
+  EXPECT_EQ(Accepted(Stages(record, dahl), "asymmetry"), "");
+  EXPECT_EQ(Accepted(Stages(record, {}, InitialState::kSteady), "asymmetry"), "");
   FitOptions viscous;
   viscous.terms = {"viscous"};
-  EXPECT_EQ(Accepted(Stages(record, viscous), "--viscous fit --drift"), "--drift");
+  EXPECT_EQ(Accepted(Stages(record, viscous), "viscous"), "");
   FitOptions held;
   held.fixed["viscous"] = 1.0;
-  EXPECT_EQ(Accepted(Stages(record, held), "--viscous fit"), "") << "two values of one option";
+  EXPECT_EQ(Accepted(Stages(record, held), "viscous"), "");
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ std::vector<Case> LawsAndTerms() {
                             (term.presence == Presence::kReported && term.needs_time) ||
                             term.name == "force_drift";
       // A further coefficient of a term is fitted with it.
-      if (!is_asked || term.of_column || term.option.empty()) continue;
+      if (!is_asked || term.of_column || term.group.empty()) continue;
       cases.push_back({model, std::string(term.name)});
     }
   }

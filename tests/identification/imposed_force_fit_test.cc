@@ -145,7 +145,7 @@ TEST(ImposedForceFit, DriftOfTheDisplacementIsATermAndElseACause) {
   EXPECT_EQ(plain.adequacy.verdict, AdequacyVerdict::kDoubtful);
   ASSERT_FALSE(plain.adequacy.causes.empty());
   EXPECT_EQ(plain.adequacy.causes.front().code, "displacement_drift");
-  EXPECT_EQ(plain.adequacy.causes.front().option, "--drift");
+  EXPECT_EQ(plain.adequacy.causes.front().term, "displacement_drift");
   FitOptions options = OfDisplacement();
   options.terms = {"displacement_drift"};
   const FitResult fit = FitOne(loop, options);

@@ -11,8 +11,6 @@ namespace {
 using namespace models;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr IwanSpacing kSpacings[] = {IwanSpacing::kEqualForce, IwanSpacing::kOptimal};
-
 double Sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
@@ -42,70 +40,24 @@ double VirginError(const BranchLaw& law, const IwanElements& elements) {
 TEST(Iwan, StiffnessesSumToSigmaAndSlipForcesToTc) {
   for (const double alpha : {0.0, 1e-300, 1e-8, 0.1, 1.0 / 3, 0.999, 1.0, 1.001, 2.0, 50.0, 1e6}) {
     const BranchLaw law{4.8e8, alpha, 0.3};
-    for (const IwanSpacing spacing : kSpacings) {
-      for (const std::size_t n : {1U, 2U, 7U, 100U, 2000U}) {
-        const IwanElements elements = MakeIwanElements(law, n, spacing);
-        const double rounding = static_cast<double>(n + 1) * kEpsilon;
-        EXPECT_NEAR(Sum(elements.stiffness) / 4.8e8, 1, rounding) << alpha << " " << n;
-        EXPECT_NEAR(Sum(elements.slip_force) / 0.3, 1, rounding) << alpha << " " << n;
-        EXPECT_GE(std::ranges::min(elements.stiffness), 0) << alpha << " " << n;
-        EXPECT_GE(std::ranges::min(elements.slip_force), 0) << alpha << " " << n;
-      }
-    }
-  }
-}
-
-TEST(Iwan, EqualForcesAreEqual) {
-  constexpr double kSolved = 1e-13;  // 50 bits, of sums of up to Tc
-  for (const double alpha : {1e-8, 0.01, 1.0 / 3, 1.0, 1.0 + 1e-12, 2.0}) {
-    const IwanElements elements = MakeIwanElements({2, alpha, 3}, 40, IwanSpacing::kEqualForce);
-    for (const double slip_force : elements.slip_force) {
-      EXPECT_NEAR(slip_force, 3.0 / 40, 3 * kSolved) << alpha;
+    for (const std::size_t n : {1U, 2U, 7U, 100U, 2000U}) {
+      const IwanElements elements = MakeIwanElements(law, n);
+      const double rounding = static_cast<double>(n + 1) * kEpsilon;
+      EXPECT_NEAR(Sum(elements.stiffness) / 4.8e8, 1, rounding) << alpha << " " << n;
+      EXPECT_NEAR(Sum(elements.slip_force) / 0.3, 1, rounding) << alpha << " " << n;
+      EXPECT_GE(std::ranges::min(elements.stiffness), 0) << alpha << " " << n;
+      EXPECT_GE(std::ranges::min(elements.slip_force), 0) << alpha << " " << n;
     }
   }
 }
 
 TEST(Iwan, IsOneExactElementForJenkins) {
-  for (const IwanSpacing spacing : kSpacings) {
-    const IwanElements elements = MakeIwanElements({4, 0.0, 3}, 10, spacing);
-    EXPECT_EQ(elements.stiffness, std::vector<double>{4});
-    EXPECT_EQ(elements.slip_force, std::vector<double>{3});
-  }
+  const IwanElements elements = MakeIwanElements({4, 0.0, 3}, 10);
+  EXPECT_EQ(elements.stiffness, std::vector<double>{4});
+  EXPECT_EQ(elements.slip_force, std::vector<double>{3});
 }
 
-TEST(Iwan, EqualForcesErrByAQuarterOfAnElementToLeadingOrder) {
-  // The next term is smaller by y₁ = √(2/(αn)) times the relative change of φ'' = −αu^{2α−1} over
-  // y₁, |2α − 1|, up to a factor of order 1.
-  for (const double alpha : {1.0 / 3, 0.5, 1.0, 2.0}) {
-    const BranchLaw law{7, alpha, 3};
-    double last = 0.0;
-    for (const double n : {64.0, 256.0, 1024.0, 4096.0}) {
-      const double error = VirginError(
-          law, MakeIwanElements(law, static_cast<std::size_t>(n), IwanSpacing::kEqualForce));
-      const double expected = 3 / (4 * n);
-      const double next = std::abs(2 * alpha - 1) * std::sqrt(2 / (alpha * n));
-      EXPECT_NEAR(error / expected, 1, next + 1e-9) << alpha << " " << n;
-      // A fourth of it with four times as many: first order.
-      if (last > 0) {
-        EXPECT_NEAR(last / error, 4, 4 * next + 1e-8) << alpha << " " << n;
-      }
-      last = error;
-    }
-  }
-}
-
-TEST(Iwan, EqualForcesErrMostAtTheLastCornerForLargeAlpha) {
-  const BranchLaw law{1, 3.0, 1};
-  for (const std::size_t n : {64U, 256U}) {
-    const double error = VirginError(law, MakeIwanElements(law, n, IwanSpacing::kEqualForce));
-    // The last tangent is where 1 − F = (αu − u^α)/(α−1) = 1/n; without u^α:
-    const double expected = 2.0 / 3 * std::pow(3.0, -0.5) / static_cast<double>(n);
-    const double remaining = 2.0 / 3 / static_cast<double>(n);
-    EXPECT_NEAR(error / expected, 1, remaining * remaining);
-  }
-}
-
-TEST(Iwan, OptimalSpacingLeavesItsErrorAndSecondOrder) {
+TEST(Iwan, LeavesItsErrorAndSecondOrder) {
   for (const double alpha : {0.05, 1.0 / 3, 0.5, 1.0, 2.0}) {
     const BranchLaw law{7, alpha, 3};
     // At the last corner, exactly, and between tangents near u = 1, to leading order in 1/n.
@@ -113,8 +65,7 @@ TEST(Iwan, OptimalSpacingLeavesItsErrorAndSecondOrder) {
     const double expected = 3 * std::max(alpha / 2, last);
     double coarse = 0.0;
     for (const double n : {16.0, 64.0, 256.0}) {
-      const double error = VirginError(
-          law, MakeIwanElements(law, static_cast<std::size_t>(n), IwanSpacing::kOptimal));
+      const double error = VirginError(law, MakeIwanElements(law, static_cast<std::size_t>(n)));
       const double next = 2 * alpha / n;
       EXPECT_NEAR(error * n * n / expected, 1, next) << alpha << " " << n;
       if (coarse > 0) {
@@ -125,30 +76,20 @@ TEST(Iwan, OptimalSpacingLeavesItsErrorAndSecondOrder) {
   }
 }
 
-TEST(Iwan, OptimalSpacingBeatsEqualForces) {
-  for (const double alpha : {1.0 / 3, 1.0, 2.0}) {
-    const BranchLaw law{1, alpha, 1};
-    EXPECT_LT(10 * VirginError(law, MakeIwanElements(law, 100, IwanSpacing::kOptimal)),
-              VirginError(law, MakeIwanElements(law, 100, IwanSpacing::kEqualForce)));
-  }
-}
-
 TEST(Iwan, ErrorsDoubleAfterAReversal) {
   // The whole loop of a polygon that reaches slip: T = Tc − 2f(·/2), to the last corner.
   const BranchLaw law{1, 1.0 / 3, 1};
-  for (const IwanSpacing spacing : kSpacings) {
-    const IwanElements elements = MakeIwanElements(law, 20, spacing);
-    std::vector<double> drive = {5};
-    std::vector<double> corners = Corners(elements);
-    std::ranges::sort(corners);
-    for (const double corner : corners) drive.push_back(5 - 2 * corner);
-    std::vector<double> force(drive.size());
-    EvaluateIwanForce(elements, drive, force);
-    const auto exact = RespondBy("exact", "mindlin", law, {.displacement = drive});
-    const double virgin = VirginError(law, elements);
-    constexpr double kRounding = 1e-14;  // 20 elements, 20 steps
-    EXPECT_NEAR(LargestDifference(force, exact), 2 * virgin, kRounding);
-  }
+  const IwanElements elements = MakeIwanElements(law, 20);
+  std::vector<double> drive = {5};
+  std::vector<double> corners = Corners(elements);
+  std::ranges::sort(corners);
+  for (const double corner : corners) drive.push_back(5 - 2 * corner);
+  std::vector<double> force(drive.size());
+  EvaluateIwanForce(elements, drive, force);
+  const auto exact = RespondBy("exact", "mindlin", law, {.displacement = drive});
+  const double virgin = VirginError(law, elements);
+  constexpr double kRounding = 1e-14;  // 20 elements, 20 steps
+  EXPECT_NEAR(LargestDifference(force, exact), 2 * virgin, kRounding);
 }
 
 TEST(Iwan, IsMasingsLawWithItsReturnPoints) {
@@ -163,15 +104,15 @@ TEST(Iwan, IsMasingsLawWithItsReturnPoints) {
                                                      .samples_per_cycle = 14,
                                                      .seed = 3});
     const auto elements =
-        RespondBy("iwan-optimal", "mindlin", law, {.displacement = drive}, {.steps = 20'000});
+        RespondBy("iwan", "mindlin", law, {.displacement = drive}, {.steps = 20'000});
     const auto exact = RespondBy("exact", "mindlin", law, {.displacement = drive});
     EXPECT_LE(LargestDifference(elements, exact), kAccuracy);
   }
 }
 
 TEST(Iwan, RefusesNoElementAndSizesThatDiffer) {
-  EXPECT_THROW(MakeIwanElements({1, 0.5, 1}, 0, IwanSpacing::kOptimal), InvalidArgument);
-  EXPECT_THROW(MakeIwanElements({-1, 0.5, 1}, 4, IwanSpacing::kOptimal), InvalidArgument);
+  EXPECT_THROW(MakeIwanElements({1, 0.5, 1}, 0), InvalidArgument);
+  EXPECT_THROW(MakeIwanElements({-1, 0.5, 1}, 4), InvalidArgument);
   std::vector<double> force(2);
   EXPECT_THROW(EvaluateIwanForce({{1}, {1}}, std::vector<double>{0, 1, 2}, force), InvalidArgument);
   EXPECT_THROW(EvaluateIwanForce({{1, 2}, {1}}, std::vector<double>{0, 1}, force), InvalidArgument);

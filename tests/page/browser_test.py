@@ -244,6 +244,7 @@ def make_pages(program, scratch):
     fit("far_from_slip", {"likelihood"}, DATA / "far_from_slip.csv")
     fit("load_series", set(), *(DATA / f"load_series_{load}N.csv" for load in (20, 50, 120)),
         "--normal-load", "20,50,120", "--model", "mindlin")
+    fit("compared", set(), DATA / "partial_slip.csv", "--compare")
 
     cycles = scratch / "cycles.csv"
     worn = scratch / "worn.csv"

@@ -48,12 +48,12 @@ def arrays_of(path):
     ({"model": "dahl", "initial_state": "virgin"}, ["--model", "dahl", "--initial-state", "virgin"]),
     ({"fix": {"alpha": 1 / 3}, "bound": {"slip_force": (5, 50)}, "start": {"sigma": 3e7}},
      ["--fix", f"alpha={1 / 3!r}", "--bound", "slip_force=5:50", "--start", "sigma=3e7"]),
-    ({"rig_stiffness": 1e9, "drift": True, "cycles": (1, 2)},
-     ["--rig-stiffness", "1e9", "--drift", "--cycles", "1:2"]),
-    ({"slip_trend": 0.01, "inertia": 0.001, "viscous": 5.0},
-     ["--slip-trend", "0.01", "--inertia", "0.001", "--viscous", "5"]),
+    ({"rig_stiffness": 1e9, "terms": "force_drift", "cycles": (1, 2)},
+     ["--rig-stiffness", "1e9", "--terms", "force_drift", "--select", "cycles=1:2"]),
+    ({"fix": {"slip_trend": 0.01, "inertia": 0.001, "viscous": 5.0}},
+     ["--fix", "slip_trend=0.01", "--fix", "inertia=0.001", "--fix", "viscous=5"]),
     ({"time_window": (0.2, 2.5), "loss": "huber", "samples": (1, 400)},
-     ["--time-window", "0.2:2.5", "--loss", "huber", "--samples", "1:400"]),
+     ["--select", "time=0.2:2.5", "--loss", "huber", "--select", "samples=1:400"]),
 ])
 def test_a_fit_of_arrays_is_the_program_s_key_by_key(keywords, options):
     displacement, force, seconds = arrays_of(SPHERE)
@@ -375,31 +375,15 @@ def test_a_sampler_of_the_log_likelihood_finds_the_intervals():
 
 
 def test_every_option_of_the_program_s_fit_is_a_keyword():
-    options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help"), re.M))
+    options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help-all"), re.M))
     keywords = set(inspect.signature(mindahl.fit).parameters)
-    outputs = {"json", "residuals", "backbone", "plot", "strict", "report"}
-    general = {"help", "config", "version"}
-    sweeps = {"sweep", "response", "response-unit", "response-noise"}  # of no record: no part of fit()
+    outputs = {"json", "residuals", "plot", "strict", "report", "details"}
+    general = {"help", "help-all", "config", "version", "select"}  # select: cycles, samples, …
+    sweeps = {"sweep", "response", "response-unit"}  # of no record: no part of fit()
     missing = {option.replace("-", "_")
                for option in options - outputs - general - sweeps} - keywords
     assert len(options) > 30
     assert not missing
-
-
-@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
-def test_files_beyond_a_limit_are_refused_and_arrays_are_not_counted(sphere):
-    rows = len(sphere[0])
-    with pytest.raises(mindahl.InputError, match=f"has more than the {rows - 1} rows that max_rows"):
-        mindahl.fit(SPHERE, max_rows=rows - 1)
-    assert mindahl.fit(SPHERE, max_rows=rows).converged  # the header is no row
-    with pytest.raises(mindahl.InputError, match="max_rows"):
-        mindahl.fit([SPHERE, DATA / "far_from_slip.csv"], max_rows=rows + 100)  # all together
-    with pytest.raises(mindahl.InputError, match="max_memory"):
-        mindahl.fit(SPHERE, max_memory=1000)
-    time, displacement, force = sphere
-    assert mindahl.fit(displacement, force, time=time, max_rows=1, max_memory=1).converged
-    with pytest.raises(ValueError, match="max_rows = 0 is invalid"):
-        mindahl.fit(SPHERE, max_rows=0)
 
 
 def test_a_result_is_drawn(sphere):

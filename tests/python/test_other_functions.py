@@ -81,27 +81,21 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     joined = program_json("track", long_record, worn, "--join", "--output", tmp_path / "joined.csv")
     assert joined["input"]["unused_samples"] > 0
     assert mindahl.track([long_record, worn], join=True).to_dict()["input"] == joined["input"]
-    step, = tracked.quantities["slip_force"]["changes"]
-    assert step["kind"] == "transition"
+    step, = tracked.quantities["slip_force"]["steps"]
     assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)
-    assert any(line.startswith(f"slip_force [N]: at cycle {step['cycle']} (") for line in tracked.changes)
+    assert any(line.startswith(f"slip_force: a step at cycle {step['cycle']}, ") for line in tracked.changes)
+    assert tracked.headline.startswith("Tc ")
     assert not any("step" in line for line in mindahl.track(long_record).changes)
 
 
-def test_track_shares_an_alpha_and_counts_energies_as_the_program_does(long_record, tmp_path):
-    options = ("--output", tmp_path / "shared.csv", "--alpha", "shared")
-    expected = program_json("track", long_record, *options)
-    table = table_of(long_record, tmp_path, "--alpha", "shared")
-    tracked = mindahl.track(long_record, alpha="shared")
-    assert tracked.shared_alpha == expected["shared_alpha"]
+def test_track_counts_energies_and_takes_the_contact_as_the_program_does(long_record, tmp_path):
+    expected = program_json("track", long_record, "--output", tmp_path / "own.csv", "--compliance", "4e-11")
+    table = table_of(long_record, tmp_path, "--compliance", "4e-11")
+    tracked = mindahl.track(long_record, compliance=4e-11)
     assert tracked.energy_counts == expected["energy_counts"]
     assert tracked.energy_counts["measured"] == len(tracked["cycle"])
     assert_same_table(tracked, table)
-    assert set(tracked["alpha"]) == {tracked.shared_alpha["value"]}
-    time, displacement, force = read_columns(long_record)
-    of_arrays = mindahl.track(displacement, force, time=time, alpha="shared")
-    assert of_arrays.shared_alpha == tracked.shared_alpha
-    assert mindahl.track(long_record).shared_alpha is None
+    assert tracked["contact_radius"] == pytest.approx(tracked["sigma"] * 4e-11 / 8)
     worn = tmp_path / "untimed.csv"
     worn.write_text("displacement [m],force [N]\n0,1\n1e-6,2\n")
     with pytest.raises(ValueError, match="has a time"):
@@ -135,10 +129,7 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"model": "auto"}, "model auto: a model is chosen for a test"),
     ({"average": 0}, "average = 0 is invalid"),
-    ({"alpha": "both"}, "alpha = 'both' is invalid"),
-    ({"alpha": "shared", "fix": {"alpha": 0.3}}, "alpha.*shared: alpha is not fitted"),
     ({"average": 1000}, "average=1000: "),
     ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
     ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
@@ -206,7 +197,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
         assert moved[-1] == peeked
     # As above, times 1 + 2|A| and the largest torque over its mean.
     np.testing.assert_allclose(moved, force, rtol=0, atol=1e-12)
-    fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", asymmetry="fit",
+    fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", terms="asymmetry",
                       initial_state="virgin", reversal_gate=0)
     assert abs(fit.asymmetry.value + 0.2) < 1e-9
     assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9

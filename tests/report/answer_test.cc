@@ -87,8 +87,8 @@ const contact::KnownBody kPlane{.youngs_modulus = 210e9,
 TEST(Answer, NamesTheColumnsFirst) {
   ReportInput input = MadeInput();
   input.fit.force_sense = -1;
-  input.records[0].displacement = {.name = "Position [mm]", .number = 3, .unit = "mm"};
-  input.records[0].force = {.name = "", .number = 4, .unit = "N"};
+  input.records[0].displacement = {.name = "Position [mm]", .index = 3, .unit = "mm"};
+  input.records[0].force = {.name = "", .index = 4, .unit = "N"};
   EXPECT_THAT(Answer(input),
               StartsWith("columns       loop_1.csv: displacement 'Position [mm]' (3), force (4, "
                          "opposite sign) in N\n"));
@@ -200,7 +200,7 @@ TEST(Answer, PutsAUnitThatIsWrongFirst) {
   input.known = {.normal_load = 50.0, .body_1 = kBall, .body_2 = kPlane};
   input.fit.law.tangential_stiffness *= 1e-3;  // µm read as mm
   input.fit.parameters[0].value *= 1e-3;
-  input.records[0].displacement = {.name = "x", .number = 1, .unit = "mm"};
+  input.records[0].displacement = {.name = "x", .index = 1, .unit = "mm"};
   EXPECT_THAT(Answer(input), StartsWith("check"));
   EXPECT_THAT(LineOf(input, "check"),
               HasSubstr("times smaller than Hertz's: look at the unit of the displacement, mm"));

@@ -81,7 +81,7 @@ TEST(Json, GivesNoValueWhereTheSearchStoppedAtItsOwnLimit) {
 
 TEST(Json, NamesTheColumnsThatWereRead) {
   ReportInput input = MadeInput();
-  input.records[0].force = {.name = "F [kN]", .number = 3, .unit = "kN"};
+  input.records[0].force = {.name = "F [kN]", .index = 3, .unit = "kN"};
   const Json columns = Document(std::move(input))["input"]["columns"];
   EXPECT_EQ(columns["force"], Json({{"name", "F [kN]"}, {"index", 3}, {"unit", "kN"}}));
   EXPECT_TRUE(columns["normal_load"].is_null());

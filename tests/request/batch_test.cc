@@ -116,11 +116,6 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   EXPECT_FALSE(repeats.contains("sigma"));
 }
 
-TEST(Repeats, AreOnTheIndexPageInTheirUnits) {
-  const std::string page = IndexPage(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), {});
-  EXPECT_THAT(page, HasSubstr("40.5 N"));
-}
-
 TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
   const auto repeats = nlohmann::json::parse(
       ToJson(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), ""))["repeats"];
@@ -135,30 +130,6 @@ TEST(Repeats, ScatterByTheErrorOfRepeatsAndNotByThatOfTheModel) {
   EXPECT_EQ(repeats["slip_force"]["files"], 2) << "at a bound it has no standard error";
   EXPECT_NEAR(repeats["slip_force"]["stated_error"], 0.5, 10 * kRounding);
   EXPECT_NEAR(repeats["slip_force"]["common_error"], std::sqrt(36 - 0.25), 10 * kRounding);
-}
-
-TEST(BatchTable, HasTheNumbersOfEachFitInItsRow) {
-  std::vector<BatchEntry> entries = EntriesOf({{40, 3, 6, "identifiable", 41}, {48, 1, 2}});
-  entries.emplace_back();
-  entries.back().file = "c";
-  entries.back().fault = "no loop";
-  const auto column = [&](std::string_view name) {
-    const std::vector<BatchColumn> table = TableOf(entries);
-    return std::ranges::find(table, name, &BatchColumn::name)->cells;
-  };
-  EXPECT_EQ(column("slip_force"), (std::vector<BatchCell>{40.0, 48.0, {}}));
-  EXPECT_EQ(column("slip_force_error"), (std::vector<BatchCell>{3.0, 1.0, {}}));
-  EXPECT_EQ(column("slip_force_lower95"), (std::vector<BatchCell>{34.0, 46.0, {}}));
-  EXPECT_EQ(column("slip_force_upper95"), (std::vector<BatchCell>{46.0, 50.0, {}}));
-  EXPECT_EQ(column("half_gap"), (std::vector<BatchCell>{41.0, 0.0, {}}));
-  EXPECT_EQ(column("sigma"), (std::vector<BatchCell>{{}, {}, {}}));
-  EXPECT_EQ(column("done"),
-            (std::vector<BatchCell>{std::string("yes"), std::string("yes"), std::string("no")}));
-  EXPECT_EQ(column("fault").back(), BatchCell(std::string("no loop")));
-  EXPECT_THAT(ToText(entries, "t.csv"), StartsWith("2 of 3 files fitted, in t.csv\n"));
-  const std::string csv = TableCsv(entries);
-  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
-  EXPECT_FALSE(AllDone(entries));
 }
 
 TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
@@ -193,29 +164,6 @@ TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
   EXPECT_THAT(page, HasSubstr("d.csv:2:1: no number"));
   EXPECT_THAT(page, HasSubstr("more than the errors"));
   EXPECT_THAT(page, Not(HasSubstr("figure id")));  // of one file there is nothing to compare
-}
-
-TEST(BatchIndex, DrawsEachQuantityThatTwoFilesIdentifyUnderItsName) {
-  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}, {80, 1, 2}});
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    for (const char* name : {"sigma", "slip_force"}) {
-      if (k == 0 && std::string_view(name) == "sigma") continue;
-      identification::ParameterEstimate estimate;
-      estimate.name = name;
-      estimate.unit = "N";
-      estimate.value = 40;
-      estimate.lower95 = 39;
-      estimate.upper95 = 41;
-      estimate.status = identification::ParameterStatus::kFree;
-      estimate.identifiability = identification::Identifiability::kIdentifiable;
-      entries[k].parameters.push_back(estimate);
-    }
-  }
-  const std::string page = testing::Unbroken(IndexPage(entries));
-  for (const char* name : {"sigma", "slip_force"}) {
-    EXPECT_THAT(page, HasSubstr(std::string("-title\">") + name + "</h3>"));
-  }
-  EXPECT_THAT(page, Not(HasSubstr("-title\">alpha</h3>")));
 }
 
 /// A fit whose JSON has a number of its own at every place that a column is read from.
@@ -276,64 +224,6 @@ TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
   EXPECT_TRUE(json["repeats"].empty());
   EXPECT_TRUE(nlohmann::json::parse(ToJson(entries, ""))["output"].is_null());
   EXPECT_EQ(FitJson(entries[1]), "");
-}
-
-TEST(BatchText, StatesRepeatsInARowEach) {
-  // 44 ± √((32 + 15)/2), scatter √32 of errors √5, in common √7.5: as of the JSON above.
-  std::string text = ToText(EntriesOf({{40, 3, 3 * kNormal95, "identifiable", 41},
-                                       {48, 1, 4 * kNormal95, "effective", 43}}),
-                            "");
-  EXPECT_THAT(text, StartsWith("2 of 2 files fitted\n\nif these are repeats:\n"));
-  text = WithSingleBlanks(text);
-  // χ² = 64/10 of one degree of freedom: p = 0.0114.
-  EXPECT_THAT(text, HasSubstr("\n slip_force 2 44 4.8 5.7 2.2 2.7 as the errors say, p 0.011\n"));
-  EXPECT_THAT(text, HasSubstr("\n half_gap 2 42 1 1.4 - - without stated errors\n"));
-}
-
-TEST(BatchIndex, ShowsWhatIsHeldAndALowerLimit) {
-  identification::ParameterEstimate estimate;
-  estimate.name = "sigma";
-  estimate.unit = "N/m";
-  estimate.value = 4e7;
-  estimate.lower95 = 2.5e7;
-  estimate.status = identification::ParameterStatus::kFixed;
-  const auto page_of = [&] {
-    std::vector<BatchEntry> entries(1);
-    entries[0].parameters = {estimate};
-    return IndexPage(entries);
-  };
-  EXPECT_THAT(page_of(), HasSubstr("40 N/µm, held"));
-  estimate.status = identification::ParameterStatus::kFree;
-  estimate.identifiability = identification::Identifiability::kBoundedBelow;
-  EXPECT_THAT(page_of(), AllOf(HasSubstr("&gt; 25 N/µm"), Not(HasSubstr("40 N"))));
-}
-
-TEST(BatchIndex, DrawsTheIntervalsOfItsFilesOverTheirNumber) {
-  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2}, {70, 1, 2}, {80, 1, 2}});
-  for (std::size_t k = 0; k < 3; ++k) {
-    identification::ParameterEstimate& sigma = entries[k].parameters.emplace_back();
-    sigma.name = "sigma";
-    sigma.unit = "N/m";
-    sigma.value = 2e6 + 1e6 * static_cast<double>(k);
-    sigma.lower95 = sigma.value - 5e5;
-    if (k != 1) sigma.upper95 = sigma.value + 7.5e5;  // one without an end is not drawn
-    sigma.status = identification::ParameterStatus::kFree;
-    sigma.identifiability = identification::Identifiability::kIdentifiable;
-  }
-  const std::string page = testing::Unbroken(IndexPage(entries));
-  EXPECT_THAT(page, HasSubstr(">sigma [N/µm]</text>"));
-  // Two lines from the lower to the upper end, each with a marker at its value.
-  const std::regex lines("d=\"M([0-9.]+) ([0-9.]+)V([0-9.]+)M([0-9.]+) ([0-9.]+)V([0-9.]+)\"/>");
-  std::smatch line;
-  ASSERT_TRUE(std::regex_search(page, line, lines));
-  const auto at = [&line](std::size_t k) { return std::stod(line[k]); };
-  const double per_unit = (at(2) - at(5)) / 2;  // [px] between 1.5 and 3.5 N/µm
-  constexpr double kTenth = 0.1;                // [px]
-  EXPECT_NEAR(at(2) - at(3), 1.25 * per_unit, kTenth);
-  EXPECT_NEAR(at(5) - at(6), 1.25 * per_unit, kTenth);
-  EXPECT_THAT(page, HasSubstr(fmt::format("cx=\"{}\" cy=\"{:.1f}\"", line[1].str(),
-                                          at(2) - 0.5 * per_unit)));
-  EXPECT_GT(at(4), at(1));
 }
 
 }  // namespace

@@ -6,53 +6,83 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "io/temporary_directory.h"
 #include "mindahl/core/error.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::request::conversion_test {
 namespace {
 
-TEST(MakeConversion, RangesToWhereItIsAskedAndElseEndsAtTheAmplitude) {
-  ConversionRequest request;
-  request.law = {.tangential_stiffness = 4e7, .shape_exponent = 1.0 / 3, .slip_force = 40.0};
-  request.to = "lammps";
-  request.options.amplitude = 1e-6;
-  EXPECT_FALSE(MakeConversion(request).request.options.range);
-  request.largest_amplitude = 3e-6;
-  const auto above = MakeConversion(request).request.options.range;
-  ASSERT_TRUE(above);
-  EXPECT_EQ(above->lower, 1e-6);
-  EXPECT_EQ(above->upper, 3e-6);
-  request.largest_amplitude.reset();
-  request.least_amplitude = 2e-7;
-  const auto below = MakeConversion(request).request.options.range;
-  ASSERT_TRUE(below);
-  EXPECT_EQ(below->lower, 2e-7);
-  EXPECT_EQ(below->upper, 1e-6);
+ConversionRequest Request(double alpha, double amplitude, std::string to) {
+  return {.sigma = 4e7,
+          .alpha = alpha,
+          .slip_force = 40.0,
+          .amplitude = amplitude,
+          .to = std::move(to)};
+}
+
+TEST(MakeConversion, TakesLawAndAmplitudeFromAFit) {
+  const TemporaryDirectory directory;
+  const auto written = [&](const std::string& text) {
+    ConversionRequest request;
+    request.to = "lammps";
+    request.fit = directory.Write("fit.json", text).string();
+    return request;
+  };
+  const std::string parameters =
+      R"("parameters": {"sigma": {"value": 5e7}, "alpha": {"value": 0.5},
+                        "slip_force": {"value": 30}, "rig_stiffness": {"value": 1e8}},)";
+  const std::string fit = R"({"schema": "mindahl.fit/2", "model": "dahl", )" + parameters +
+                          R"("measured": {"amplitude": 2e-6}})";
+  const ConvertedContact made = MakeConversion(written(fit));
+  EXPECT_EQ(made.from, "dahl");
+  EXPECT_EQ(made.law.tangential_stiffness, 5e7);
+  EXPECT_EQ(made.law.shape_exponent, 0.5);
+  EXPECT_EQ(made.law.slip_force, 30.0);
+  // The rest of the amplitude is the rig's: T* of the contact's part is that of the rig.
+  const double peak =
+      models::SteadyPeakForce(*models::FindFrictionModel("dahl"), made.law, made.options.amplitude);
+  EXPECT_NEAR(made.options.amplitude + peak / 1e8, 2e-6, 1e-15);
+  ConversionRequest given = written(fit);
+  given.sigma = 6e7;
+  given.amplitude = 1e-6;
+  given.from = "masing";
+  EXPECT_EQ(MakeConversion(given).law.tangential_stiffness, 6e7);
+  EXPECT_EQ(MakeConversion(given).options.amplitude, 1e-6);
+  EXPECT_EQ(MakeConversion(given).from, "masing");
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      MakeConversion(written(text));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal(R"({"schema": "mindahl.fit/2", "parameters": {"sigma": {"value": null}}})"),
+              ::testing::HasSubstr("--sigma missing: "));
+  EXPECT_THAT(refusal("x,F\n1,2\n"), ::testing::HasSubstr("is not the result of a fit"));
+  EXPECT_THAT(refusal("{}"), ::testing::HasSubstr("is not the result of a fit"));
 }
 
 TEST(MakeConversion, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
-  ConversionRequest request;
-  request.law = {.tangential_stiffness = 4e7, .shape_exponent = 0.0, .slip_force = 40.0};
-  request.to = "lugre";
-  request.options.amplitude = 5e-7;  // half of what Jenkins' element slips at
-  const std::string text = ToText(MakeConversion(request));
-  EXPECT_THAT(text, ::testing::HasSubstr("energy lost where the contact loses none\n"));
+  // Half of what Jenkins' element slips at.
+  const std::string text = ToText(MakeConversion(Request(0.0, 5e-7, "lugre")));
+  EXPECT_THAT(text, ::testing::HasSubstr("the energy lost where the contact loses none\n"));
   EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("inf")));
 }
 
 /// A conversion set by hand, each of whose numbers is another.
 ConvertedContact MadeByHand() {
-  ConvertedContact made;
-  made.request.law = {2.5, 0.75, 1.5};
-  made.request.from = "dahl";
-  made.request.options = {.amplitude = 3.5, .range = {{3.25, 4.25}}, .tolerance = 0.0625};
-  made.target = {convert::Target::kIwan, "iwan", "Jenkins elements in parallel"};
+  ConvertedContact made{};
+  made.law = {2.5, 0.75, 1.5};
+  made.from = "dahl";
+  made.options = {.amplitude = 3.5, .tolerance = 0.0625};
+  made.target = *std::ranges::find(convert::Targets(), "iwan", &convert::TargetRow::name);
   methods::IwanElements elements;
   elements.stiffness = {5.5, 6.5};
   elements.slip_force = {7.5, 8.5};
   made.conversion.law = elements;
   made.conversion.at_amplitude = {0.125, -0.25};
-  made.conversion.largest = {0.375, 0.5};
   made.conversion.within = {{3.125, 3.75}};
   made.parameters = {{"k", 9.5, "N/m", "a stiffness"}, {"n", 10.5, "-", "an exponent"}};
   return made;
@@ -65,46 +95,43 @@ TEST(ConvertedContact, JsonHasEveryNumberUnderItsName) {
   EXPECT_EQ(json, nlohmann::json::parse(R"({
     "schema": "mindahl.convert/1",
     "from": {"law": "dahl", "sigma": 2.5, "alpha": 0.75, "slip_force": 1.5},
-    "to": "iwan", "amplitude": 3.5, "range": [3.25, 4.25], "tolerance": 0.0625,
+    "to": "iwan", "amplitude": 3.5, "tolerance": 0.0625,
     "parameters": {"k": {"value": 9.5, "unit": "N/m"}, "n": {"value": 10.5, "unit": "-"}},
     "elements": [{"stiffness": 5.5, "slip_force": 7.5}, {"stiffness": 6.5, "slip_force": 8.5}],
     "error_at_amplitude": {"force": 0.125, "energy": -0.25},
-    "largest_error": {"force": 0.375, "energy": 0.5},
     "within": [3.125, 3.75]})"));
-  made.request.options.range.reset();
   made.conversion.within.reset();
-  made.conversion.largest.energy = HUGE_VAL;
+  made.conversion.at_amplitude.energy = HUGE_VAL;
   made.conversion.law = convert::BoucWenLaw{};
   json = nlohmann::json::parse(ToJson(made));
-  EXPECT_TRUE(json["range"].is_null() && json["within"].is_null());
-  EXPECT_TRUE(json["largest_error"]["energy"].is_null());
+  EXPECT_TRUE(json["within"].is_null());
+  EXPECT_TRUE(json["error_at_amplitude"]["energy"].is_null());
   EXPECT_TRUE(json["elements"].empty());
 }
 
 TEST(ConvertedContact, TextHasEveryNumberInItsLine) {
   ConvertedContact made = MadeByHand();
-  EXPECT_EQ(ToText(made),
-            "Jenkins elements in parallel, on the steady loop between ±3.5 m\n\n"
-            "k                       9.5 N/m    a stiffness\n"
-            "n                      10.5 -      an exponent\n"
-            "\nelement  stiffness [N/m]   slip force [N]\n"
-            "      1              5.5              7.5\n"
-            "      2              6.5              8.5\n"
-            "\nerror at the amplitude: force 12.5 % of T*, energy -25 %\n"
-            "largest from 3.25 to 4.25 m: force 37.5 % of T*, energy 50 %\n"
-            "force and energy within 6.25 % from 3.125 to 3.75 m\n");
+  EXPECT_EQ(
+      ToText(made),
+      "Jenkins elements in parallel; at 3.5 m the force is within 12.5 % of T*, the energy off by "
+      "-25 %\n\n"
+      "k                         9.5 N/m    a stiffness\n"
+      "n                        10.5 -      an exponent\n"
+      "\nelement  stiffness [N/m]   slip force [N]\n"
+      "      1              5.5              7.5\n"
+      "      2              6.5              8.5\n"
+      "\nforce and energy within 6.25 % from 3.125 to 3.75 m\n");
+  EXPECT_THAT(InputLines(made)[0], ::testing::StartsWith("# at 3.5 m the force is within 12.5 %"));
   made.conversion.within.reset();
-  made.request.options.range.reset();
-  made.conversion.at_amplitude = {2e-12, 0.5e-12};  // the second is rounding
-  EXPECT_THAT(ToText(made),
-              ::testing::EndsWith("\nerror at the amplitude: force 2e-10 % of T*, energy 0 %\n"
-                                  "not within 6.25 % at the amplitude\n"));
+  made.conversion.at_amplitude = {2e-7, 0.5e-12};  // the second is rounding
+  EXPECT_THAT(
+      ToText(made),
+      ::testing::AllOf(::testing::HasSubstr("within 2e-05 % of T*, the energy off by 0 %\n"),
+                       ::testing::EndsWith("\nnot within 6.25 % at the amplitude\n")));
 }
 
 TEST(MakeConversion, IsOfTheLawThatItIsFrom) {
-  ConversionRequest request;
-  request.law = {.tangential_stiffness = 4e7, .shape_exponent = 0.5, .slip_force = 40.0};
-  request.options.amplitude = 1e-6;
+  ConversionRequest request = Request(0.5, 1e-6, "dahl");
   const auto is_unchanged = [&](const char* from, const char* to) {
     request.from = from;
     request.to = to;
@@ -126,10 +153,7 @@ TEST(MakeConversion, IsOfTheLawThatItIsFrom) {
 
 TEST(MakeConversion, RefusesWhatItsTargetHasNot) {
   const auto refusal = [](const char* to, const convert::NormalContact& normal) -> std::string {
-    ConversionRequest request;
-    request.law = {.tangential_stiffness = 4e7, .shape_exponent = 0.5, .slip_force = 40.0};
-    request.to = to;
-    request.options.amplitude = 1e-6;
+    ConversionRequest request = Request(0.5, 1e-6, to);
     request.normal = normal;
     try {
       MakeConversion(request);

@@ -44,8 +44,8 @@ TEST(FitRequest, RefusesAValueThatIsHeldOutsideItsBound) {
 }
 
 TEST(FitRequest, RefusesAWindowThatEndsBeforeItBegins) {
-  for (auto [option, window] : {std::pair("--load-window", &FitRequest::load_window),
-                                {"--time-window", &FitRequest::time_window}}) {
+  for (auto [option, window] : {std::pair("--select load", &FitRequest::load_window),
+                                {"--select time", &FitRequest::time_window}}) {
     FitRequest request;
     request.*window = {1.0, 2.0};
     EXPECT_NO_THROW(MakeFitOptions(request));
@@ -70,16 +70,6 @@ TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
       EXPECT_THAT(error.what(), HasSubstr("--confidence [-]"));
     }
   }
-}
-
-TEST(FitRequest, ChoosesNoModelForEachCycle) {
-  FitRequest request;
-  request.model = kAutomatic;
-  EXPECT_THROW(MakeCycleFitOptions(request), InputError);
-  request.model = "dahl";
-  EXPECT_EQ(MakeCycleFitOptions(request).model->name, "dahl");
-  request.covariates = {{.column = "pressure", .coefficient = {}}};
-  EXPECT_THROW(MakeCycleFitOptions(request), InputError);
 }
 
 TEST(FitRequest, KnowsTheMeanOfSeveralNormalLoads) {
@@ -108,9 +98,6 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   request.load_window = {10.0, 20.0};
   request.cycles = loop::CountRange{2, 5};
   request.samples = loop::CountRange{7, 90};
-  request.skip_cycles = 3;
-  request.starts = 4;
-  request.seed = 11;
   request.fix["alpha"] = 0.25;
   request.start["sigma"] = 3e7;
   request.bound["slip_force"] = {1.0, 5.0};
@@ -122,9 +109,9 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   request.contact.normal_loads = {{30.0, 1.0}, {40.0, 2.0}};
   request.covariates = {{.column = "pressure", .coefficient = {}},
                         {.column = "2", .coefficient = 0.75}};
-  request.terms["viscous"] = {};
-  request.terms["rig_stiffness"] = {.value = 8e7, .standard_uncertainty = 1e6, .form = ""};
-  request.terms["asymmetry"].value = 0.0625;
+  request.terms = {"viscous"};
+  request.rig_stiffness = {.value = 8e7, .standard_uncertainty = 1e6};
+  request.fix["asymmetry"] = 0.0625;
   const identification::FitOptions fit = MakeFitOptions(request);
   EXPECT_EQ(fit.model->name, "dahl");
   EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
@@ -138,9 +125,6 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   EXPECT_EQ(fit.preparation.cycles->last, 5U);
   EXPECT_EQ(fit.preparation.samples->first, 7U);
   EXPECT_EQ(fit.preparation.samples->last, 90U);
-  EXPECT_EQ(fit.preparation.skip_cycles, 3U);
-  EXPECT_EQ(fit.starts, 4U);
-  EXPECT_EQ(fit.seed, 11U);
   EXPECT_EQ(fit.start, request.start);
   EXPECT_EQ(fit.bounds.at("slip_force").lower, 1.0);
   EXPECT_EQ(fit.bounds.at("slip_force").upper, 5.0);
@@ -161,29 +145,6 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   EXPECT_EQ(fit.priors.at("sigma").standard_uncertainty, 1e6);
   EXPECT_EQ(fit.priors.at("rig_stiffness").value, 8e7);
   EXPECT_EQ(fit.priors.at("rig_stiffness").standard_uncertainty, 1e6);
-}
-
-TEST(FitRequest, LeavesToTheFitWhatIsNotAsked) {
-  const identification::FitOptions made = MakeFitOptions({});
-  EXPECT_EQ(made.model->name, "mindlin-dahl");
-  EXPECT_FALSE(made.initial_state || made.preparation.force_sense || made.force_noise ||
-               made.preparation.load_window || made.preparation.cycles ||
-               made.preparation.samples || made.preparation.reversal_gate ||
-               made.preparation.displacement_noise);
-  EXPECT_TRUE(made.offsets);
-  EXPECT_EQ(made.loss, identification::Loss::kNone);
-  FitRequest request;
-  request.initial_state = "steady";
-  request.force_sign = "same";
-  request.noise_in = "displacement";
-  request.loss = "huber";
-  const identification::FitOptions other = MakeFitOptions(request);
-  EXPECT_EQ(other.initial_state, models::InitialState::kSteady);
-  EXPECT_EQ(other.preparation.force_sense, 1);
-  EXPECT_EQ(other.preparation.excitation, loop::Channel::kForce);
-  EXPECT_EQ(other.loss, identification::Loss::kHuber);
-  request.loss = "tukey";
-  EXPECT_EQ(MakeFitOptions(request).loss, identification::Loss::kTukey);
 }
 
 std::string RefusalOf(const FitRequest& request) {
@@ -208,7 +169,6 @@ TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
               HasSubstr("it is held at a value that is given"));
   EXPECT_THAT(start("alpha", [](FitRequest& r) { r.model = "mindlin"; }),
               HasSubstr("--model mindlin prescribes it"));
-  EXPECT_EQ(start("alpha", [](FitRequest& r) { r.model = "auto"; }), "");
   EXPECT_EQ(start("force_offset", as_it_is), "");
   EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.offsets = "off"; }),
               HasSubstr("--offsets off holds it at 0"));
@@ -222,44 +182,105 @@ TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
                       r.noise_in = "displacement";
                     }),
               HasSubstr("that of a steady loop is its centre"));
-  EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --viscous fit"));
-  EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms["viscous"] = {}; }), "");
+  EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --terms viscous"));
+  EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms = {"viscous"}; }), "");
   EXPECT_THAT(start("rig_stiffness", as_it_is), HasSubstr("add --rig-stiffness fit"));
-  EXPECT_EQ(start("rig_stiffness", [](FitRequest& r) { r.model = "auto"; }), "");
-  EXPECT_THAT(start("displacement_drift", as_it_is),
-              EndsWith("add --drift --noise-in displacement"));
   EXPECT_THAT(start("displacement_drift", [](FitRequest& r) { r.noise_in = "displacement"; }),
-              EndsWith("add --drift"));
+              EndsWith("add --terms displacement_drift"));
 }
 
 TEST(FitRequest, RefusesTwoAnswersToOneQuestion) {
   FitRequest request;
-  request.terms["viscous"] = {};
-  request.fix["viscous"] = 2.0;
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--viscous fit contradicts --fix viscous"));
-  request.terms["viscous"].value = 3.0;
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--viscous and --fix viscous say the same"));
-  request = {};
   request.covariates = {{.column = "p", .coefficient = {}}, {.column = "p", .coefficient = {}}};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate: 'p' is given twice"));
   request.covariates = {{.column = "p", .coefficient = 2.0}};
   request.fix[identification::NameOfCovariate("p")] = 2.0;
   EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate p=2 and --fix"));
-  request.covariates = {{.column = "", .coefficient = {}}};
-  EXPECT_THAT(RefusalOf(request), HasSubstr("'' is no column"));
   request = {};
-  request.term_choice = "viscous,viscous";
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--terms: 'viscous' is given twice"));
-  request.term_choice = "viscous,auto";
-  EXPECT_THAT(RefusalOf(request), HasSubstr("'auto' stands alone"));
-  request.term_choice = "viscous";
-  EXPECT_EQ(RefusalOf(request), "");
-  request.terms["viscous"] = {};
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--terms viscous and --viscous say the same"));
-  request = {};
+  request.rig_stiffness = RigRequest{};
+  request.terms = {"rig_stiffness"};
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--terms rig_stiffness and --rig-stiffness"));
+  request.terms.clear();
+  request.fix["rig_stiffness"] = 8e7;
+  EXPECT_THAT(RefusalOf(request), HasSubstr("--rig-stiffness and --fix rig_stiffness"));
+  request.fix.clear();
   request.prior["rig_stiffness"] = {8e7, 1e6};
-  request.terms["rig_stiffness"] = {.value = 8e7, .standard_uncertainty = 1e6, .form = ""};
+  request.rig_stiffness = {.value = 8e7, .standard_uncertainty = 1e6};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--prior rig_stiffness and --rig-stiffness"));
+}
+
+TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
+  const auto made = [](std::vector<std::string> terms) {
+    FitRequest request;
+    request.terms = std::move(terms);
+    return MakeFitOptions(request);
+  };
+  EXPECT_THAT(made({}).terms, IsEmpty());
+  EXPECT_THAT(made({"none"}).terms, IsEmpty());
+  EXPECT_THAT(made({"auto"}).terms, IsEmpty());
+  EXPECT_THAT(made({"viscous", "slip_position"}).terms,
+              ElementsAre("viscous", "slip_slope", "plateau_slope"));
+  EXPECT_THAT(made({"lag", "oil pressure"}).covariates, ElementsAre("oil pressure"));
+  const auto refusal = [](std::vector<std::string> terms) {
+    FitRequest request;
+    request.terms = std::move(terms);
+    return RefusalOf(request);
+  };
+  EXPECT_THAT(refusal({"viscous", "viscous"}), HasSubstr("--terms: 'viscous' is given twice"));
+  EXPECT_THAT(refusal({"viscous", "auto"}), HasSubstr("'auto' stands alone"));
+  EXPECT_THAT(refusal({"viscos"}), HasSubstr("'viscos' is no term: did you mean 'viscous'?"));
+  EXPECT_THAT(refusal({"displacement_drift"}), HasSubstr("give force_drift"));
+}
+
+TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
+  const auto terms = [](const char* name, double value) {
+    FitRequest request;
+    request.fix[name] = value;
+    const identification::FitOptions made = MakeFitOptions(request);
+    EXPECT_EQ(made.fixed.at(name), value);
+    return made.terms;
+  };
+  EXPECT_THAT(terms("viscous", 3.0), IsEmpty());
+  EXPECT_THAT(terms("speed_exponent", 0.5), ElementsAre("viscous"));
+  EXPECT_THAT(terms("slip_speed_exponent", 0.5), ElementsAre("slip_speed"));
+  EXPECT_THAT(terms("ripple_period", 1e-3), SizeIs(4));
+}
+
+TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
+  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+      {"--rig-stiffness cannot", [](FitRequest& r) { r.rig_stiffness = RigRequest{}; }},
+      {"--covariate cannot",
+       [](FitRequest& r) { r.covariates = {{.column = "p", .coefficient = {}}}; }},
+      {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
+      {"displacement_drift alone is a term", [](FitRequest& r) { r.terms = {"lag"}; }},
+      {"--compare cannot", [](FitRequest& r) { r.compare = true; }},
+      {"--force-noise cannot", [](FitRequest& r) { r.force_noise = 0.5; }},
+      {"--displacement-noise [m]", [](FitRequest& r) { r.displacement_noise = 0.0; }}};
+  for (const auto& [words, change] : refused) {
+    FitRequest request;
+    change(request);
+    EXPECT_EQ(RefusalOf(request), "") << words;
+    request.noise_in = "displacement";
+    EXPECT_THAT(RefusalOf(request), HasSubstr(words));
+  }
+  FitRequest drift;
+  drift.noise_in = "displacement";
+  drift.terms = {"displacement_drift"};
+  EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("displacement_drift"));
+}
+
+TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
+  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+      {"--noise-in displacement", [](FitRequest& r) { r.noise_in = "displacement"; }},
+      {"--terms asymmetry", [](FitRequest& r) { r.terms = {"asymmetry"}; }},
+      {"--covariate", [](FitRequest& r) { r.terms = {"pressure"}; }},
+      {"--compare", [](FitRequest& r) { r.compare = true; }}};
+  for (const auto& [words, change] : refused) {
+    FitRequest request;
+    change(request);
+    EXPECT_THAT([&] { MakeCycleFitOptions(request); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr(words)));
+  }
 }
 
 TEST(FitRequest, TakesABoundWithBothItsEnds) {
@@ -282,84 +303,6 @@ TEST(FitRequest, TakesABoundWithBothItsEnds) {
       EXPECT_EQ(RefusalOf(counted).empty(), is_fine) << first << " " << last;
     }
   }
-}
-
-TEST(FitRequest, ChoosesTermsByDefaultUnlessAnythingElseIsSaid) {
-  EXPECT_TRUE(ChoosesTermsByDefault({}));
-  FitRequest held;
-  held.fix["alpha"] = 0.25;  // of the law, and no term
-  EXPECT_TRUE(ChoosesTermsByDefault(held));
-  const std::vector<std::function<void(FitRequest&)>> said = {
-      [](FitRequest& r) { r.term_choice = "none"; },
-      [](FitRequest& r) {
-        r.files = {"a", "b"};
-      },
-      [](FitRequest& r) { r.terms["viscous"] = {}; },
-      [](FitRequest& r) { r.covariates = {{.column = "p", .coefficient = {}}}; },
-      [](FitRequest& r) { r.fix["viscous"] = 1.0; },
-      [](FitRequest& r) { r.model = "auto"; },
-      [](FitRequest& r) { r.loss = "huber"; },
-      [](FitRequest& r) { r.noise_in = "displacement"; }};
-  for (std::size_t k = 0; k < said.size(); ++k) {
-    FitRequest request;
-    said[k](request);
-    EXPECT_FALSE(ChoosesTermsByDefault(request)) << k;
-  }
-}
-
-TEST(FitRequest, NamesItsTermsInTheirOrder) {
-  const auto named = [](const char* choice) {
-    FitRequest request;
-    request.term_choice = choice;
-    return NamedTerms(request);
-  };
-  EXPECT_THAT(named("viscous,inertia"), ElementsAre("viscous", "inertia"));
-  EXPECT_THAT(named("viscous"), ElementsAre("viscous"));
-  EXPECT_THAT(named("viscous,"), ElementsAre("viscous", ""));
-  for (const char* none : {"", "none", "auto"}) EXPECT_THAT(named(none), IsEmpty());
-}
-
-TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
-  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
-      {"--viscous cannot", [](FitRequest& r) { r.terms["viscous"] = {}; }},
-      {"--covariate cannot",
-       [](FitRequest& r) { r.covariates = {{.column = "p", .coefficient = {}}}; }},
-      {"--terms cannot", [](FitRequest& r) { r.term_choice = "auto"; }},
-      {"--model auto cannot", [](FitRequest& r) { r.model = "auto"; }},
-      {"--force-noise cannot", [](FitRequest& r) { r.force_noise = 0.5; }},
-      {"--displacement-noise [m]", [](FitRequest& r) { r.displacement_noise = 0.0; }},
-      {"--trim auto", [](FitRequest& r) { r.trim = "auto"; }}};
-  for (const auto& [words, change] : refused) {
-    FitRequest request;
-    change(request);
-    EXPECT_EQ(RefusalOf(request), "") << words;
-    request.noise_in = "displacement";
-    EXPECT_THAT(RefusalOf(request), HasSubstr(words));
-  }
-  FitRequest drift;
-  drift.noise_in = "displacement";
-  drift.terms["force_drift"] = {};
-  EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("displacement_drift"));
-  drift.noise_in = "force";
-  EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("force_drift"));
-}
-
-TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
-  const auto refusal = [](const auto& change) -> std::string {
-    FitRequest request;
-    change(request);
-    try {
-      MakeCycleFitOptions(request);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(refusal([](FitRequest& r) { r.noise_in = "displacement"; }),
-              HasSubstr("--noise-in displacement is not available in track"));
-  EXPECT_THAT(refusal([](FitRequest& r) { r.terms["asymmetry"] = {}; }),
-              HasSubstr("--asymmetry is not available in track"));
-  EXPECT_EQ(refusal([](FitRequest& r) { r.terms["viscous"] = {}; }), "");
 }
 
 // --- the contact

@@ -132,89 +132,6 @@ TEST(MakePlan, ExpectsTheErrorsOfItsProtocol) {
   EXPECT_EQ(json["protocol"]["samples_per_cycle"], 60);
 }
 
-TEST(PlanText, StatesErrorsOverTheirValuesAndOfAnExponentAsTheyAre) {
-  const Plan plan = Made(Known());
-  const identification::ExpectedFit& fit = plan.columns[0].loops[0];
-  const std::string text = ToText(plan);
-  const std::string row = text.substr(text.find("2e-06"));
-  std::istringstream cells(row);
-  double amplitude = 0.0;
-  double over_slip = 0.0;
-  std::string bar;
-  double sigma = 0.0;
-  std::string percent;
-  double alpha = 0.0;
-  double slip_force = 0.0;
-  std::string law;
-  cells >> amplitude >> over_slip >> bar >> sigma >> percent >> alpha >> slip_force >> percent >>
-      law;
-  constexpr double kTwoDigits = 0.05;
-  EXPECT_EQ(amplitude, 2e-6);
-  EXPECT_NEAR(over_slip, 2 / 1.5, 0.005);
-  EXPECT_NEAR(sigma / (100 * *fit.Find("sigma")->standard_error / 4e7), 1.0, kTwoDigits);
-  EXPECT_NEAR(alpha / *fit.Find("alpha")->standard_error, 1.0, kTwoDigits);
-  EXPECT_NEAR(slip_force / (100 * *fit.Find("slip_force")->standard_error / 40), 1.0, kTwoDigits);
-  EXPECT_EQ(law, "open");  // of a steady loop both laws are one curve
-}
-
-TEST(PlanText, SaysWhereWhatIsWantedIsReached) {
-  PlanRequest request = Known();
-  request.wanted = {{"slip_force", {.value = 0.01, .is_relative = true}}};
-  const Plan plan = Made(request);
-  ASSERT_TRUE(plan.established() && plan.columns[0].reached);
-  const double reached = plan.columns[0].reached->protocol.amplitude;
-  EXPECT_GE(reached, 0.1 * plan.slip);
-  EXPECT_LE(reached, 10 * plan.slip);
-  EXPECT_LE(*plan.columns[0].reached->Find("slip_force")->standard_error, 0.01 * 40);
-  const std::string text = ToText(plan);
-  std::istringstream words(text.substr(text.find("X >= ") + 5));
-  double amplitude = 0.0;
-  double over_slip = 0.0;
-  std::string unit;
-  words >> amplitude >> unit >> over_slip;
-  constexpr double kThreeDigits = 0.005;
-  EXPECT_NEAR(amplitude / reached, 1.0, kThreeDigits);
-  EXPECT_NEAR(over_slip / (reached / plan.slip), 1.0, kThreeDigits);
-  const auto json = nlohmann::json::parse(ToJson(plan));
-  EXPECT_EQ(json["reached"][0]["least_amplitude"], reached);
-  EXPECT_EQ(json["wanted"]["slip_force"]["standard_error"], 0.01);
-  EXPECT_TRUE(json["wanted"]["slip_force"]["relative"]);
-}
-
-TEST(PlanText, SaysHowManyCyclesWouldReachIt) {
-  PlanRequest request = Known();
-  request.wanted = {{"alpha", {.value = 1e-4}}};
-  const Plan plan = Made(request);
-  EXPECT_FALSE(plan.established());
-  const auto reached = nlohmann::json::parse(ToJson(plan))["reached"][0];
-  EXPECT_TRUE(reached["least_amplitude"].is_null());
-  EXPECT_EQ(reached["fewest_cycles"], plan.columns[0].fewest.cycles);
-  // Errors fall with the root of the cycles: those of three times (error/wanted)².
-  identification::Protocol looked = plan.columns[0].fewest;
-  looked.cycles = request.cycles;
-  const double error =
-      *identification::ExpectFit(plan.expected, looked).Find("alpha")->standard_error;
-  EXPECT_NEAR(plan.columns[0].fewest.cycles, std::ceil(3 * std::pow(error / 1e-4, 2)), 1.0);
-  EXPECT_THAT(ToText(plan), HasSubstr("steady: no amplitude reaches it with 3 cycles"));
-}
-
-TEST(PlanPlot, DrawsRelativeErrorsOverTheAmplitudeAtSlip) {
-  const Plan plan = Made(Known());
-  const io::Plot plot = ToPlot(plan);
-  ASSERT_EQ(plot.panels.size(), 1U);
-  const io::PlotSeries& sigma = plot.panels[0].series.at(0);
-  EXPECT_EQ(sigma.label, "sigma, relative");
-  ASSERT_FALSE(sigma.x.empty());
-  EXPECT_NEAR(sigma.x.back(), 10.0, 1e-12);
-  identification::Protocol widest = plan.columns[0].loops[0].protocol;
-  widest.amplitude = 10 * plan.slip;
-  const identification::ExpectedFit fit = identification::ExpectFit(plan.expected, widest);
-  constexpr double kRounding = 1e-9;
-  EXPECT_NEAR(sigma.y.back() / (*fit.Find("sigma")->standard_error / 4e7), 1.0, kRounding);
-  EXPECT_NEAR(plot.panels[0].series.at(1).y.back() / *fit.Find("alpha")->standard_error, 1.0,
-              kRounding);
-}
-
 TEST(MakePlan, OfALoadSeriesIsOfTheLawAtTheMeanLoad) {
   PlanRequest request = Known();
   request.load_ratios = {0.5, 1.0, 3.0};
@@ -310,49 +227,6 @@ TEST(PlanJson, HasEveryNumberUnderItsName) {
   EXPECT_EQ(json["expected"]["rig_stiffness"], 8.5);
   EXPECT_EQ(json["expected"]["autocorrelation"], 0.25);
   EXPECT_EQ(json["protocol"]["load_ratios"], (std::vector<double>{0.5, 2.0}));
-}
-
-TEST(PlanText, HasEveryNumberInItsRow) {
-  Plan plan = MadeByHand();
-  std::string text = ToText(plan);
-  EXPECT_THAT(text, StartsWith("expected: sigma = 2.5 N/m, alpha = 0.75, Tc = 1.5 N; noise 0.125 N "
-                               "and 0.0625 m a\nsample; a sine of 3.5 cycles, 60 samples each\n\n"
-                               "standard errors      | virgin"));
-  EXPECT_THAT(text, EndsWith("Slip begins at 0.5 m.\n"));
-  // σ at an error of its value is open, and at one below it is said in percent.
-  EXPECT_THAT(WithSingleBlanks(text),
-              HasSubstr("\n1.25 2.5 | - 0.25 2.5 % decided | - 0.25 - open \n"));
-  EXPECT_THAT(WithSingleBlanks(text),
-              HasSubstr("\n2.25 4.5 | 1e+02 % 0.25 2.5 % decided | 1e+02 % 0.25 - open \n"));
-  EXPECT_THAT(WithSingleBlanks(text),
-              HasSubstr("\nX [m] X/slip | sigma alpha Tc law | sigma alpha Tc law \n"));
-  plan.expected.rig.stiffness = 8.5;
-  plan.expected.autocorrelation = 0.25;
-  plan.expected.load_exponent = 0.375;
-  plan.request.load_ratios = {0.5, 2.0};
-  text = ToText(plan);
-  EXPECT_THAT(text, HasSubstr("Tc = 1.5 N, rig 8.5 N/m; noise"));
-  EXPECT_THAT(text, HasSubstr("sample, autocorrelated by 0.25 from one to the next; a sine"));
-  EXPECT_THAT(text, HasSubstr("\n\nat 0.5, 2 times the load of this contact, sigma as the load to "
-                              "0.375\n\n"));
-  EXPECT_THAT(text, EndsWith("Slip begins at 0.5 m at that load.\n"));
-}
-
-TEST(PlanText, SaysOfEachStateWhatReachesWhatIsWanted) {
-  Plan plan = MadeByHand();
-  plan.request.wanted = {{"alpha", {.value = 0.5}},
-                         {"sigma", {.value = 0.25, .is_relative = true}}};
-  EXPECT_FALSE(plan.established());
-  EXPECT_THAT(ToText(plan), EndsWith("\nwanted: alpha to 0.5, sigma to 25 %\n"
-                                     "  virgin: no amplitude determines it\n"
-                                     "  steady: no amplitude determines it\n"));
-  plan.columns[1].reached = plan.columns[1].loops[1];
-  plan.columns[0].fewest = {.amplitude = 7.5, .cycles = 9.0};
-  EXPECT_TRUE(plan.established());
-  EXPECT_THAT(ToText(plan),
-              EndsWith("  virgin: no amplitude reaches it with 3.5 cycles; X = 7.5 m "
-                       "would with 9\n"
-                       "  steady: X >= 2.25 m, 4.5 times the displacement at slip\n"));
 }
 
 TEST(MakePlan, RefusesWhatItCannotPlan) {

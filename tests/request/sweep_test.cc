@@ -89,53 +89,6 @@ FittedSweep MadeByHand() {
   return fitted;
 }
 
-TEST(FittedSweep, JsonHasEveryNumberUnderItsName) {
-  auto json = nlohmann::json::parse(ToJson(MadeByHand()));
-  json.erase("version");
-  EXPECT_EQ(json, nlohmann::json::parse(R"({
-    "schema": "mindahl.sweep/1",
-    "input": {"files": ["s.csv"], "points": 3, "amplitude": "force", "response": "stiffness"},
-    "sweep": "tangent", "confidence": 0.5,
-    "parameters": {
-      "sigma": {"value": 2.5, "unit": "N/m", "standard_error": 0.25, "ci95": [2.25, 2.875],
-                "status": "free", "identifiability": "identifiable"},
-      "alpha": {"value": 0.75, "unit": "-", "standard_error": null, "ci95": [null, null],
-                "status": "fixed", "identifiability": null},
-      "slip_force": {"value": 8.5, "unit": "N", "standard_error": null, "ci95": [7.5, null],
-                     "status": "free", "identifiability": "bounded_below"}},
-    "residuals": {"rms": 0.125, "r_squared": 0.9375, "degrees_of_freedom": 11,
-                  "correlation_p_value": 0.25},
-    "adequacy": {"verdict": "adequate"},
-    "solver": {"solver": "ceres::Solve", "converged": true, "message": "solved"}})"));
-  FittedSweep other = MadeByHand();
-  other.sweep.over_force = false;
-  other.sweep.is_compliance = true;
-  other.asked.stiffness = identification::SweepStiffness::kSecant;
-  other.fit.correlation_p_value = 0.001;
-  json = nlohmann::json::parse(ToJson(other));
-  EXPECT_EQ(json["input"]["amplitude"], "displacement");
-  EXPECT_EQ(json["input"]["response"], "compliance");
-  EXPECT_EQ(json["sweep"], "secant");
-  EXPECT_EQ(json["adequacy"]["verdict"], "doubtful");
-}
-
-TEST(FittedSweep, TextHasEveryParameterAndWhatIsDoubtful) {
-  FittedSweep fitted = MadeByHand();
-  EXPECT_EQ(ToText(fitted),
-            "stiffness of 3 points over the force amplitude, tangent\n\n"
-            "  sigma                  2.5 N/m   (2.25 … 2.875)  identifiable\n"
-            "  alpha                 0.75 -     held\n"
-            "  slip_force             8.5 N     (7.5 … …)  bounded below\n"
-            "\n  residuals 0.125 N/m rms, R² 0.9375\n");
-  fitted.sweep.is_compliance = true;
-  fitted.fit.correlation_p_value = 0.0025;
-  fitted.fit.converged = false;
-  EXPECT_THAT(ToText(fitted),
-              AllOf(StartsWith("compliance of 3 points"), HasSubstr("residuals 0.125 m/N rms"),
-                    HasSubstr("\n  doubtful: neighbouring residuals are correlated (p = 0.0025)"),
-                    EndsWith("\n  not converged: solved\n")));
-}
-
 TEST(FittedSweep, IsDoubtfulBelowAChanceOfOneInAHundred) {
   FittedSweep fitted = MadeByHand();
   fitted.fit.parameters.pop_back();  // the open slip force

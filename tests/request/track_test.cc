@@ -60,7 +60,7 @@ TEST(TrackedTest, StatesWhatItsCyclesLoseAndWhichOfThemCount) {
   test.samples = 812;
   test.unused_samples = 5;
   test.output = "t.csv";
-  const auto json = nlohmann::json::parse(ToJson(test, test.courses.Describe()));
+  const auto json = nlohmann::json::parse(ToJson(test, test.courses.Describe(test.is_torsional)));
   EXPECT_NEAR(json["accumulated_energy"], 2 * (3.0 + 5 + 4 + 7), 1e-12);
   EXPECT_EQ(json["energy_counts"]["measured"], 3);
   EXPECT_EQ(json["energy_counts"]["replaced"], 1);
@@ -70,29 +70,11 @@ TEST(TrackedTest, StatesWhatItsCyclesLoseAndWhichOfThemCount) {
   EXPECT_EQ(json["flags"]["not_closed"], 1);
   EXPECT_EQ(json["flags"]["not_converged"], 0);
   EXPECT_EQ(json["input"]["unused_samples"], 5);
-  const std::string text = ToText(test, test.courses.Describe());
-  EXPECT_THAT(text, StartsWith("8 cycles of 812 samples, 4 fits in t.csv\n"));
-  EXPECT_THAT(text, HasSubstr("5 samples at the ends belong to no whole cycle\n38 J dissipated in "
-                              "all, counting 1 "));
+  const std::string text = ToText(test, test.courses.Describe(test.is_torsional));
+  EXPECT_THAT(text, HasSubstr("8 cycles of 812 samples, 4 fits in t.csv, 38 J dissipated in all, "
+                              "counting 1 "));
+  EXPECT_THAT(text, HasSubstr("5 samples at the ends belong to no whole cycle\n"));
   EXPECT_THAT(text, HasSubstr("2 cycles have a flag:"));
-}
-
-TEST(TrackedTest, HasEverySegmentAndChangeOfAQuantity) {
-  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
-  std::vector<campaign::CourseDescription> courses(tracked.size());
-  const auto sigma = std::ranges::find(tracked, "sigma", &campaign::TrackedQuantity::name);
-  courses[static_cast<std::size_t>(sigma - tracked.begin())] = {
-      .stretches = {{1, 20, 1.5, 2.5, 3.5, 0.125, true, 4.5}, {21, 60, 5.5, 6.5, 7.5, 0.25}},
-      .changes = {{campaign::ChangeKind::kTransition, 21, 19, 24, 8.5, 9.5, 0.375}}};
-  const TrackedTest test = Lossy({Losing(1.0)}, 1);
-  const auto json = nlohmann::json::parse(ToJson(test, courses));
-  EXPECT_EQ(json["quantities"], nlohmann::json::parse(R"({"sigma": {"unit": "N/m",
-      "stretches": [{"first_cycle": 1, "last_cycle": 20, "at_start": 1.5, "at_end": 2.5,
-                     "slope": 3.5, "slope_p_value": 0.125, "trends": true, "time_constant": 4.5},
-                    {"first_cycle": 21, "last_cycle": 60, "at_start": 5.5, "at_end": 6.5,
-                     "slope": 7.5, "slope_p_value": 0.25, "trends": false, "time_constant": null}],
-      "changes": [{"kind": "transition", "cycle": 21, "ci95": [19, 24], "before": 8.5,
-                   "after": 9.5, "p_value": 0.375}]}})"));
 }
 
 TEST(TrackedTest, IsEstablishedUnlessNoFitConverged) {
@@ -144,33 +126,26 @@ TrackedTest Stepping() {
 }
 
 std::string PageOf(const TrackedTest& test) {
-  return testing::Unbroken(ToPage(test, test.courses.Describe()));
+  return testing::Unbroken(ToPage(test, test.courses.Describe(test.is_torsional)));
 }
 
 TEST(TestPage, SaysWhatChangedAndEscapesItsFiles) {
   const std::string page = PageOf(Stepping());
   EXPECT_THAT(page, HasSubstr("<h1>&lt;script&gt;.csv: 100 cycles</h1>"));
-  EXPECT_THAT(page, HasSubstr("<li>sigma [N/m]: at cycle 61 ("));
+  EXPECT_THAT(page, HasSubstr("<li>sigma: a step at cycle 61, 50.0 → 45.0 N/µm"));
   EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-1\">"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">alpha_open</th><td class=\"number\">7</td>"));
   EXPECT_THAT(page, HasSubstr("250 mJ dissipated in all;"));
-  EXPECT_THAT(page, Not(HasSubstr("shared")));
+  EXPECT_THAT(page, HasSubstr("σ -9.6 %"));
   EXPECT_THAT(page, Not(HasSubstr("<script")));
 }
 
-TEST(TestPage, ReportsSharedAlphaAndSourceOfEnergies) {
+TEST(TestPage, ReportsTheSourceOfEnergies) {
   TrackedTest test =
       Lossy({Losing(1.0, {"not_closed"}), Losing(3.0), Losing(9.0, {"not_closed"})}, 1);
   test.files = {"a.csv"};
-  campaign::PooledValue alpha;
-  alpha.Add(0.3, 0.01);
-  alpha.Add(0.4, 0.01);
-  test.shared_alpha = alpha;
-  const std::string page = PageOf(test);
-  EXPECT_THAT(page, HasSubstr("shared alpha 0.35 ± 0.05, from 2 cycles"));
-  EXPECT_THAT(
-      page,
-      HasSubstr("counting 1 unclosed cycles by the median of those before them and 1 as zero"));
+  EXPECT_THAT(PageOf(test), HasSubstr("counting 1 unclosed cycles by the median of those before "
+                                      "them and 1 as zero"));
 }
 
 TEST(TestPage, OfFitsThatAllFailedSaysSo) {
@@ -184,19 +159,23 @@ TEST(TestPage, OfFitsThatAllFailedSaysSo) {
   EXPECT_THAT(page, Not(HasSubstr("<figure")));
 }
 
-/// The descriptions of σ and Tc of a test, set by hand.
-std::vector<campaign::CourseDescription> DescribedByHand() {
-  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
-  std::vector<campaign::CourseDescription> courses(tracked.size());
-  const auto of = [&](std::string_view name) -> campaign::CourseDescription& {
-    const auto found = std::ranges::find(tracked, name, &campaign::TrackedQuantity::name);
-    return courses[static_cast<std::size_t>(found - tracked.begin())];
+/// σ and Tc of a test, described by hand.
+std::vector<campaign::Evolution> DescribedByHand() {
+  const auto of = [](std::string_view name, std::string unit,
+                     campaign::CourseDescription description) {
+    return campaign::Evolution{.quantity = &*std::ranges::find(campaign::TrackedQuantities(), name,
+                                                               &campaign::TrackedQuantity::name),
+                               .unit = std::move(unit),
+                               .course = {},
+                               .description = std::move(description)};
   };
-  of("sigma") = {
-      .stretches = {{1, 20, 1.5, 2.5, 3.5, 1e-5, true, {}}, {21, 60, 5.5, 6.5, 7.5, 0.25}},
-      .changes = {{campaign::ChangeKind::kTransition, 21, 19, 24, 8.5, 9.5, 0.375}}};
-  of("slip_force") = {.stretches = {{1, 60, 40.5, 40.25, -0.5, 1e-6}}, .changes = {}};
-  return courses;
+  return {of("slip_force", "N m", {.first = 40.5, .last = 40.25}),
+          of("sigma", "N m/rad",
+             {.first = 1.5,
+              .last = 6.5,
+              .settled_at = 30,
+              .steps = {{21, 8.5, 9.5, 0.375}},
+              .trends = {{1, 20, 1.5, 2.5, 1e-5}}})};
 }
 
 TEST(TrackedTest, TextHasEveryNumberInItsLine) {
@@ -204,29 +183,20 @@ TEST(TrackedTest, TextHasEveryNumberInItsLine) {
   test.cycles = 60;
   test.samples = 812;
   test.resumed = 7;
-  test.is_torsional = true;
-  const std::string text = ToText(test, DescribedByHand());
-  EXPECT_EQ(text,
-            "60 cycles of 812 samples, 2 fits\n"
+  EXPECT_EQ(ToText(test, DescribedByHand()),
+            "Tc 40.5 N m, unchanged; σ +333 %, settled at cycle 30\n"
+            "60 cycles of 812 samples, 2 fits, 8 J dissipated in all\n"
             "7 of them existed already\n"
-            "8 J dissipated in all\n"
             "\n1 cycle has a flag:\n"
             "  sigma_open               1   the cycle does not determine sigma\n"
-            "\n  over the test                       at first       at last\n"
-            "  sigma [N m/rad]                          1.5           6.5\n"
-            "  slip_force [N m]                        40.5         40.25\n"
-            "\nChanges:\n"
-            "  sigma                 from cycle 1 to 20 a trend, 1.5 to 2.5, p 1e-05\n"
-            "  sigma                 at cycle 21 (19 to 24) a step, 8.5 to 9.5, p 0.4\n"
-            "\nBeyond chance, but less than 1 %:\n"
-            "  slip_force            from cycle 1 to 60 a trend, 40.5 to 40.25, p 1e-06\n");
-  std::vector<campaign::CourseDescription> still = DescribedByHand();
-  still[0] = {.stretches = {{1, 60, 1.5, 2.5, 3.5, 0.25}}, .changes = {}};
-  EXPECT_THAT(ToText(test, still),
-              HasSubstr("\n\nNothing changed beyond chance by 1 % or more.\n\nBeyond chance, but"));
-  EXPECT_THAT(Changes(test, DescribedByHand()),
-              ElementsAre("sigma [N m/rad]: from cycle 1 to 20 a trend, 1.5 to 2.5, p 1e-05",
-                          "sigma [N m/rad]: at cycle 21 (19 to 24) a step, 8.5 to 9.5, p 0.4"));
+            "\n                                         first          last   settled\n"
+            "  slip_force [N m]                        40.5         40.25         -\n"
+            "  sigma [N m/rad]                          1.5           6.5        30\n"
+            "\nChanges beyond chance:\n"
+            "  sigma: cycles 1 to 20, 1.50 → 2.50 N m/rad (+67 %), p 1e-05\n"
+            "  sigma: a step at cycle 21, 8.50 → 9.50 N m/rad (+12 %), p 0.4\n");
+  EXPECT_THAT(ToText(test, {DescribedByHand()[0]}),
+              HasSubstr("\n\nNo step of 2 % and no trend of 1 % is beyond chance.\n"));
 }
 
 TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
@@ -239,25 +209,21 @@ TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
   test.reversal_gate = 0.25;
   test.is_gate_certain = false;
   test.output = "t.csv";
-  campaign::PooledValue alpha;
-  alpha.Add(0.0, 1.0);
-  alpha.Add(4.0, 1.0);
-  test.shared_alpha = alpha;
   auto json = nlohmann::json::parse(ToJson(test, DescribedByHand()));
-  for (const char* key : {"version", "quantities", "flags"}) json.erase(key);
-  // Two values 4 apart, with errors of 1, have Q = 8, τ² = 7 and a mean known to √(1/2 + 7/2).
-  const auto scatter = json["shared_alpha"]["scatter"].get<double>();
-  EXPECT_NEAR(scatter, std::sqrt(7.0), 1e-14);
-  json["shared_alpha"].erase("scatter");
-  EXPECT_NEAR(json["shared_alpha"]["p_value"].get<double>(), std::erfc(2.0), 1e-14);
-  json["shared_alpha"].erase("p_value");
+  for (const char* key : {"version", "flags", "headline"}) json.erase(key);
   EXPECT_EQ(json, nlohmann::json::parse(R"({
     "schema": "mindahl.track/1",
     "input": {"files": ["a.csv", "b.csv"], "samples": 812, "cycles": 60, "unused_samples": 5,
               "broken_rows": 4},
     "reversals": {"gate": 0.25, "certain": false}, "output": "t.csv", "fits": 2, "flagged": 1,
     "accumulated_energy": 8, "energy_counts": {"measured": 2, "replaced": 0, "left_out": 0},
-    "shared_alpha": {"value": 2, "standard_error": 2, "cycles": 2}})"));
+    "quantities": {
+      "slip_force": {"unit": "N m", "first": 40.5, "last": 40.25, "settled_at": null, "steps": [],
+                     "trends": []},
+      "sigma": {"unit": "N m/rad", "first": 1.5, "last": 6.5, "settled_at": 30,
+                "steps": [{"cycle": 21, "before": 8.5, "after": 9.5, "p_value": 0.375}],
+                "trends": [{"first_cycle": 1, "last_cycle": 20, "from": 1.5, "to": 2.5,
+                            "p_value": 1e-5}]}}})"));
 }
 
 TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
@@ -272,15 +238,16 @@ TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
   test.cycles = 30;
   const auto labels = [&] {
     std::vector<std::string> all;
-    for (const io::PlotPanel& panel : ToPlot(test, test.courses.Describe()).panels) {
+    for (const io::PlotPanel& panel :
+         ToPlot(test, test.courses.Describe(test.is_torsional)).panels) {
       all.push_back(panel.y_label);
     }
     return all;
   };
   EXPECT_THAT(labels(), ElementsAre("slip_force [N]"));
-  const io::Plot plot = ToPlot(test, test.courses.Describe());
+  const io::Plot plot = ToPlot(test, test.courses.Describe(test.is_torsional));
   EXPECT_EQ(plot.title, "a.csv");
-  EXPECT_EQ(plot.subtitle, "30 cycles: nothing changed beyond chance by 1 % or more");
+  EXPECT_EQ(plot.subtitle, "Tc 40 N, unchanged");
   TrackedTest loaded;
   loaded.files = {"a.csv"};
   for (std::size_t k = 1; k <= 30; ++k) {
@@ -293,8 +260,8 @@ TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
   loaded.cycles = 30;
   test = std::move(loaded);
   EXPECT_THAT(labels(), ElementsAre("friction_coefficient"));
-  EXPECT_EQ(ToPlot(test, test.courses.Describe()).subtitle,
-            "30 cycles: dashed where it changed beyond chance");
+  EXPECT_EQ(ToPlot(test, test.courses.Describe(test.is_torsional)).subtitle,
+            "μ 0.500 → 0.250, settled at cycle 16");
 }
 
 /// Jenkins' loop of 20 N, of cycles of 40 samples between ±1 µm at a load of 50 N.
@@ -342,7 +309,7 @@ TEST(TrackRun, CountsTheSamplesAndCyclesOfItsRecords) {
 TEST(TrackRun, TakesTheLoadThatIsGiven) {
   const std::vector<io::NamedRecord> records = {LoopOf("a", 5)};
   TrackRequest request;
-  request.normal_load = 80.0;
+  request.fit.contact.known.normal_load = contact::UncertainValue{80.0};
   std::vector<campaign::CycleFit> fits;
   TrackRun run(request, {.fits = [&](std::span<const campaign::CycleFit> done) {
                  fits.insert(fits.end(), done.begin(), done.end());
@@ -350,10 +317,11 @@ TEST(TrackRun, TakesTheLoadThatIsGiven) {
   run.Read(records);
   ASSERT_EQ(fits.size(), 4U);
   EXPECT_EQ(fits[0].normal_load, 80.0);
+  EXPECT_FALSE(fits[0].contact_radius);
   ASSERT_TRUE(fits[0].friction_coefficient);
   EXPECT_NEAR(*fits[0].friction_coefficient, 0.25, 0.01);
   EXPECT_THROW(TrackRun(request, {}).Read({}), InputError);
-  request.normal_load = 0.0;
+  request.fit.contact.known.normal_load = contact::UncertainValue{0.0};
   EXPECT_THROW(Validate(request), InvalidArgument);
 }
 

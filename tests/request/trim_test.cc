@@ -9,7 +9,7 @@
 #include "support/histories.h"
 #include "support/prelude.h"
 
-// --trim auto: a fit of a record without what is no part of its test, and what is said of it.
+// --trim on: a fit of a record without what is no part of its test, and what is said of it.
 namespace mindahl::request::trim_test {
 namespace {
 
@@ -59,7 +59,7 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
   file.displacement.unit = "m";
   file.force.unit = "N";
   request.files = {"a.csv"};
-  request.trim = kAutomatic;
+  request.trim = "on";
   return FitRecords(request, {file}, [](std::string_view) {});
 }
 
@@ -96,31 +96,6 @@ TEST(TrimmedFit, HasSignGapAndScaleOfTheTestAndNamesTheRowsOfATravel) {
   EXPECT_EQ(report.left_out[0].first, 1U);
   EXPECT_GE(report.left_out[0].last, 150U);
   EXPECT_EQ(report.left_out[1].last, record.size());
-}
-
-TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {
-  const auto message = [](FitRequest request) {
-    request.trim = kAutomatic;
-    try {
-      MakeFitOptions(request);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  FitRequest request;
-  EXPECT_EQ(message(request), "");
-  request.cycles = {.first = 2, .last = 3};
-  EXPECT_THAT(message(request), HasSubstr("--cycles cannot be combined with --trim auto"));
-  request = {};
-  request.samples = {.first = 2, .last = 30};
-  EXPECT_THAT(message(request), HasSubstr("--samples cannot be combined"));
-  request = {};
-  request.skip_cycles = 1;
-  EXPECT_THAT(message(request), HasSubstr("--skip-cycles cannot be combined"));
-  request = {};
-  request.noise_in = "displacement";
-  EXPECT_THAT(message(request), HasSubstr("--noise-in displacement cannot be combined"));
 }
 
 }  // namespace

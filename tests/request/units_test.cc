@@ -119,9 +119,9 @@ report::Report Ask(const Question& question, const UnitScale& scale) {
   return FitRecords(request, std::move(files), [](std::string_view) {});
 }
 
-FitRequest WithTerms(std::initializer_list<std::string_view> names) {
+FitRequest WithTerms(std::vector<std::string> names) {
   FitRequest request;
-  for (const std::string_view name : names) request.terms[name] = {};
+  request.terms = std::move(names);
   return request;
 }
 
@@ -147,15 +147,13 @@ std::vector<Question> Questions() {
   forced.noise_in = "displacement";
   FitRequest robust;
   robust.loss = "huber";
-  FitRequest of_position = WithTerms({"slip_trend"});
-  of_position.terms["slip_slope"].form = "quadratic";
-  FitRequest automatic;
-  automatic.model = "auto";
+  FitRequest compared;
+  compared.compare = true;
   return {
       {"plain", plain({}), one},
       {"dahl", plain(dahl), one},
       {"robust", plain(robust), one},
-      {"model_auto", plain(automatic), one},
+      {"compared", plain(compared), one},
       {"displacement_fitted", plain(forced), one, true},
       {"noise_given",
        [](const UnitScale& scale) {
@@ -176,9 +174,9 @@ std::vector<Question> Questions() {
        },
        one},
       {"forces_of_motion", plain(WithTerms({"viscous", "inertia", "force_drift"})), one},
-      {"forces_of_position", plain(WithTerms({"plateau_slope", "plateau_curvature"})), one},
-      {"slip_of_position", plain(of_position), one},
-      {"slip_of_speed", plain(WithTerms({"slip_speed_exponent"})), one},
+      {"forces_of_position", plain(WithTerms({"plateau_slope"})), one},
+      {"slip_of_position", plain(WithTerms({"slip_trend", "slip_position_quadratic"})), one},
+      {"slip_of_speed", plain(WithTerms({"slip_speed"})), one},
       {"rig", plain(WithTerms({"rig_stiffness"})), one},
       {"lag", plain(WithTerms({"lag"})), one},
       {"backlash", plain(WithTerms({"backlash"})), one},

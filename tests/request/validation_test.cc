@@ -91,32 +91,5 @@ TEST(Validation, JsonHasEveryNumberUnderItsName) {
     "failed_cases": ["one", "two"], "failed_coverages": ["three"]})"));
 }
 
-TEST(Validation, TextHasEveryNumberInItsRow) {
-  Validation validation = MadeByHand();
-  std::string text = ToText(validation);
-  text = WithSingleBlanks(text);
-  EXPECT_THAT(text, StartsWith("Mindlin loops of 14 contacts (seed 9), fitted with free alpha: 30 "
-                               "fits\n"));
-  EXPECT_THAT(text, HasSubstr("\n0.125 0.25 7 1.0e-01 2.0e-01 3.0e-01 4.0e-01 5.0e-01 6.0e-01 3 "
-                              "93.8 % 7.5 SE 2\n"));
-  // Without noise there are no intervals, and the worst is the largest of the three errors.
-  EXPECT_THAT(text, HasSubstr("\n0 1.5 8 1.0e-02 9.0e-02 3.0e-02 4.0e-02 5.0e-02 6.0e-02 0 - "
-                              "9.0e-02 0\n"));
-  EXPECT_THAT(text, HasSubstr("\n0.5 2.5 0 - - - - - - 0 - - 0\n"));
-  for (double identification::ValidationRow::*worst :
-       {&identification::ValidationRow::worst_alpha_error,
-        &identification::ValidationRow::worst_slip_force_error}) {
-    Validation other = validation;
-    other.report.rows[1].*worst = 0.5;
-    EXPECT_THAT(ToText(other), HasSubstr("  5.0e-01      0\n"));
-  }
-  EXPECT_THAT(text, HasSubstr("intervals: sigma 95.0 % of 100, alpha (Dahl) 25.0 % of 40.\n"));
-  EXPECT_THAT(text, EndsWith("FAILED: 2 of 30 fits\nFAILED: 1 of the coverages\n"));
-  validation.report.failures = 0;
-  EXPECT_THAT(ToText(validation), EndsWith("false alarm 0.001.\nFAILED: 1 of the coverages\n"));
-  validation.report.failed_coverages.clear();
-  EXPECT_THAT(ToText(validation), EndsWith("\npassed: every case within its tolerance\n"));
-}
-
 }  // namespace
 }  // namespace mindahl::request::validation_test

@@ -33,7 +33,7 @@ SAME = 1e-9         # relative, of a number
 EQUIVALENT = 0.02   # of the half width of an interval
 LEVELS, SEEDS = 3, 3
 PARAMETERS = ("sigma", "alpha", "slip_force")
-LAW_ALONE = ["--model", "mindlin-dahl", "--terms", "none"]
+LAW_ALONE = ["--model", "mindlin-dahl", "--terms", "none", "--trim", "off"]
 
 SEAL = {"time": (0, 1e-3), "displacement": (4, 1e-3), "force": (6, 1.0)}
 DAMPER = {"time": (0, 1.0), "displacement": (1, 1e-3), "force": (2, 1.0)}
@@ -109,7 +109,8 @@ def make_measured(inputs):
                 write_record(file, {key: values[part] for key, values in columns.items()})
                 cases[name] = ["fit", str(file), *LAW_ALONE, "--json", "-"]
                 if window == "whole":
-                    cases[name + "/terms"] = ["fit", str(file), "--model", "mindlin-dahl", "--terms", "auto", "--json", "-"]
+                    cases[name + "/terms"] = ["fit", str(file), "--model", "mindlin-dahl", "--terms", "auto",
+                                                "--trim", "off", "--json", "-"]
     return cases
 
 
@@ -148,7 +149,8 @@ def make_loops(inputs, program):
                                 "15", "--amplitude", repr(amplitude), "--cycles", "2", "--samples-per-cycle", "200",
                                 "--noise-force", "0.075", "--seed", str(seed), "-o", str(file)],
                                check=True, capture_output=True)
-                cases[name] = ["fit", str(file), "--model", model, "--terms", "none", "--json", "-"]
+                cases[name] = ["fit", str(file), "--model", model, "--terms", "none", "--trim", "off",
+                                "--json", "-"]
     steady = str(inputs / "data__steady.csv")
     # A lone name in braces stands for a file that the run writes.
     cases["command/track"] = ["track", steady, "--output", "{table}"]

@@ -45,6 +45,8 @@ struct CycleFit {
   std::optional<double> rms;
   /// Tc/N, where the load is known and Tc identifiable.
   std::optional<double> friction_coefficient;
+  /// σG*/8 [m], where the compliance is known.
+  std::optional<double> contact_radius;
   std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
   std::uint64_t checksum = 0;         ///< like Cycle::checksum, up to the cycle's last sample
   /// Holds the warnings about this cycle, each one of CycleFlags().
@@ -71,7 +73,9 @@ class CycleFitter {
  public:
   /// @param options  of each cycle: steady unless another state is given; with the splitting gate
   /// @throws InvalidArgument as Fitter
-  explicit CycleFitter(identification::FitOptions options);
+  /// @param compliance  G* [1/Pa], where it is known
+  explicit CycleFitter(identification::FitOptions options,
+                       std::optional<double> compliance = std::nullopt);
 
   /// A cycle that cannot be fitted is one with the flag not_converged. Every number is finite: one
   /// that overflows is empty.
@@ -81,6 +85,7 @@ class CycleFitter {
   CycleFit FitAlone(const Cycle& cycle);
 
   identification::Fitter fitter_;
+  std::optional<double> compliance_;
 };
 
 /// Describes a column of numbers of the table, and how to get it from a fit.

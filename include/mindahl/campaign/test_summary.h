@@ -7,40 +7,8 @@
 #include <string>
 
 #include "mindahl/campaign/cycle_fit.h"
-#include "mindahl/identification/fit_options.h"
 
 namespace mindahl::campaign {
-
-/// One value of a quantity that cycles have in common, from sums: in memory that their number does
-/// not change. Of values yₖ with standard errors eₖ, wₖ = 1/eₖ²,
-///   ȳ = Σwy/Σw,   Q = Σw(y − ȳ)²,   τ² = max(0, (Q − (n − 1))/(Σw − Σw²/Σw)),
-///   e(ȳ)² = 1/Σw + τ²·Σw²/(Σw)²
-/// τ the scatter between cycles beyond their errors (DerSimonian & Laird 1986, eq. 8).
-class PooledValue {
- public:
-  /// @param value           finite
-  /// @param standard_error  > 0
-  /// @throws InvalidArgument for what breaks these
-  void Add(double value, double standard_error);
-
-  [[nodiscard]] std::size_t count() const { return count_; }
-  // Require at least one value:
-  [[nodiscard]] double mean() const;
-  [[nodiscard]] double scatter() const;         ///< τ
-  [[nodiscard]] double standard_error() const;  ///< standard error of the mean, scatter included
-  /// Returns P(χ²(n − 1) ≥ Q): the chance of such a scatter from the stated errors alone.
-  [[nodiscard]] double p_value() const;
-
- private:
-  [[nodiscard]] double ChiSquared() const;
-
-  std::size_t count_ = 0;
-  double origin_ = 0.0;  // the first value: sums of what is left lose no digits
-  double weights_ = 0.0;
-  double squared_weights_ = 0.0;
-  double values_ = 0.0;
-  double squares_ = 0.0;
-};
 
 /// Counts the fits in a sum of energies by how the energy of each was obtained.
 struct EnergyCounts {
@@ -76,24 +44,6 @@ class DissipatedEnergy {
   EnergyCounts counts_;
   std::deque<double> of_a_step_;  // [J], of the last that were measured
 };
-
-// One shape exponent for all cycles of a test: a first pass fits each with its own, their mean is
-// held in a second.
-
-/// @param fit    of the cycles, by which alpha must be fitted
-/// @param files  that are read, each twice; none of records in memory
-/// @throws InputError where alpha is held or prescribed, or a file can be read only once
-void RequireThatAlphaCanBeShared(const identification::FitOptions& fit,
-                                 std::span<const std::string> files);
-
-/// Takes the exponent of a cycle that determines it.
-void PoolAlpha(const CycleFit& fit, PooledValue& alpha);
-
-/// @throws InputError where no cycle determined alpha
-void RequireSharedAlpha(const PooledValue& alpha);
-
-/// Makes "alpha 0.333 ± 0.001 shared, of 298 cycles that scatter by 0 beyond their errors, p = 0.4"
-std::string SharedAlphaInWords(const PooledValue& alpha);
 
 /// Compares the scatter of repeats of a test with their stated errors.
 struct Repeats {

@@ -5,7 +5,7 @@
 #include <deque>
 #include <functional>
 #include <future>
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,11 +19,12 @@ namespace mindahl::campaign {
 struct TrackOptions {
   /// Options of each fit. The reversal gate splits the record; without one it is 0.
   identification::FitOptions fit;
-  std::size_t together = 1;  ///< cycles in a row that are one fit, >= 1
-  std::size_t every = 1;     ///< one fit of so many that there could be, >= 1
-  std::size_t threads = 1;   ///< worker threads that fit, in addition to the calling one, >= 1
-  std::size_t skipped = 0;   ///< fits at the beginning that are not made: a multiple of kBatch
-  std::uint64_t seed = 0;    ///< initial value of the checksums, as CycleSplitter takes it
+  std::optional<double> compliance = std::nullopt;  ///< G* [1/Pa], for the contact radius
+  std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
+  std::size_t every = 1;    ///< one fit of so many that there could be, >= 1
+  std::size_t threads = 1;  ///< worker threads that fit, in addition to the calling one, >= 1
+  std::size_t skipped = 0;  ///< fits at the beginning that are not made: a multiple of kBatch
+  std::uint64_t seed = 0;   ///< initial value of the checksums, as CycleSplitter takes it
 };
 
 /// Fits of a batch begin one where the last one ended, the first anew: whatever the number of
@@ -31,7 +32,7 @@ struct TrackOptions {
 inline constexpr std::size_t kBatch = 64;
 
 /// Takes the samples of a long record and gives the fits of its cycles, in their order and by whole
-/// batches but for the last. Memory: of two batches a thread, and one cycle.
+/// batches but for the last. Memory: of a batch a thread, and one cycle.
 class Tracker {
  public:
   using Done = std::function<void(std::span<const CycleFit>)>;
@@ -39,10 +40,11 @@ class Tracker {
   /// @param done  called by Add() and Finish(), in the thread that calls these
   /// @throws InvalidArgument for options that break a rule
   Tracker(TrackOptions options, Done done);
-  ~Tracker();
+  Tracker(const Tracker&) = delete;
+  Tracker& operator=(const Tracker&) = delete;
 
   /// @param samples, lines  as CycleSplitter takes them
-  /// Waits where two batches a thread are at work or on their way.
+  /// Waits where a batch a thread is at work.
   void Add(const loop::RecordView& samples, std::span<const std::size_t> lines);
 
   /// Declares that the samples that follow are from another file.
@@ -52,12 +54,14 @@ class Tracker {
   /// Fits what is left.
   void Finish();
 
+  /// Returns the loops of the cycles 1, 10, 100, … so far, thinned to what a figure shows.
+  [[nodiscard]] const std::vector<Cycle>& log() const { return log_; }
+
   /// Returns the number of whole cycles so far, fitted or not.
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
  private:
-  class Workers;
-
+  void Log(const Cycle& cycle);
   void Begin();
   void Deliver();
 
@@ -69,7 +73,7 @@ class Tracker {
   std::size_t pieces_ = 0;                                // that the splitter gave
   std::size_t fits_ = 0;                                  // of those, to be made or skipped
   std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
-  std::unique_ptr<Workers> workers_;
+  std::vector<Cycle> log_;
 };
 
 }  // namespace mindahl::campaign

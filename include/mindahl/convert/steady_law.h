@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <variant>
 
@@ -34,15 +33,18 @@ using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
 /// Computes the force [N] on the rising branch of the steady loop between ±amplitude, at distances
 /// from its start at −amplitude. The falling branch is its image through the centre.
 /// @param amplitude  X [m], finite, > 0
-/// @param distance   [m], in 0 … 2X
+/// @param distance   [m], in 0 … 2X, ascending
 /// @param force      written; same size
 /// @throws InvalidArgument for an invalid law or amplitude, and sizes that differ
 /// Error below 1e-13 of the slip force, of Bouc's and Wen's below 1e-8.
 void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
                           std::span<double> force);
 
+/// Returns T* [N], the force at +amplitude. Throws and errs as EvaluateRisingBranch().
+double PeakForce(const SteadyLaw& law, double amplitude);
+
 /// Returns W [J] lost per cycle of the steady loop between ±amplitude. Relative error as of
-/// SteadyLoopEnergy, of Bouc's and Wen's below 1e-6.
+/// SteadyLoopEnergy, of Bouc's and Wen's below 1e-6 for X > 0.01·Tc/k.
 double LoopEnergy(const SteadyLaw& law, double amplitude);
 
 /// Holds the differences of one law's steady loop from another's.
@@ -51,10 +53,18 @@ struct LoopError {
   double energy = 0.0;  ///< W over that of the reference, less 1 [-]; infinite where that is 0
 };
 
-/// Compares two laws at some 129 places of the branch, densest after the reversal, at the corners
-/// where elements slip and between them; then around the worst.
+/// Compares two laws at 513 places of the branch, densest after the reversal, and where one of them
+/// bends.
 /// @throws InvalidArgument for an invalid law or amplitude
-/// The largest difference to 1e-3 of itself.
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude);
+
+/// Fits Bouc's and Wen's law at a given β to a loop's amplitude, peak force and energy for each n,
+/// and takes the n whose force differs least.
+BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta);
+
+/// Returns the law of a model's form, at a shape exponent, whose steady loop at an amplitude has
+/// the peak force and the energy of a contact's.
+models::BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
+                                    const models::FrictionModel& model, double shape_exponent);
 
 }  // namespace mindahl::convert

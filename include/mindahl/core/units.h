@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +31,15 @@ std::optional<Unit> ForceUnit(std::string_view symbol);
 /// Finds N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m.
 std::optional<Unit> TorqueUnit(std::string_view symbol);
 
-/// True for a pressure, which no quantity is: Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2.
+/// Reads a number in `unit`, or one with a unit of the same kind: "210GPa" and "2.1e11" in Pa,
+/// "50 N", "48 N/um" in N/m; "inf" is a number. Empty where the text is neither.
+/// @param unit  N, m, s, Pa, rad, N m, a quotient of two of them, or 1 over one; "-" takes numbers
+std::optional<double> ParseQuantity(std::string_view text, std::string_view unit);
+
+/// Returns where the unit of a quantity begins: at its end where it has none.
+std::size_t BeginOfUnit(std::string_view text);
+
+/// True for a pressure, which no column is: Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2.
 bool IsPressureUnit(std::string_view symbol);
 
 /// Finds a unit of time: s/sec, ms, us/µs, min.

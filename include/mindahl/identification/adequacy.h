@@ -103,14 +103,11 @@ struct Cause {
   double explains = 0.0;    ///< fraction of the residuals' variance [–]
   double size = 0.0;        ///< its value in `unit`; of several numbers the first
   std::string_view unit;    ///< "s", "samples", "N s/m" …
-  std::string option;       ///< command-line option that fits it; empty where there is none yet
+  std::string term;         ///< name in `--terms` that fits it, or a column's; empty: none does
   /// Largest shift that it would cause in σ, α or Tc [half width of their 95 % intervals].
   double moves = 0.0;
-  bool is_measured = false;  ///< seen in the record without the model, and named first
-
-  /// True if `option` is "--covariate NAME=C": the column follows the contact, and its factor has
-  /// to be known.
-  [[nodiscard]] bool has_known_factor() const { return option.find("=C") != std::string::npos; }
+  bool is_measured = false;       ///< seen in the record without the model, and named first
+  bool has_known_factor = false;  ///< the column follows the contact: its factor has to be known
 };
 
 /// Holds whether, and why not, the model describes the records: docs/identification.md.

@@ -84,4 +84,12 @@ TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOp
 TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
                           const TermSelectionOptions& selection = {});
 
+/// Returns the terms that may explain what a fit misses, at most `most`, the best first: scored as
+/// SelectTerms() scores its candidates, by one Gauss-Newton step; a gap that was measured comes
+/// first. None of them is fitted.
+/// @param options  of the fit
+std::vector<std::string> LikelyTerms(std::span<const loop::RecordView> records,
+                                     const FitOptions& options, const FitResult& fit,
+                                     std::size_t most);
+
 }  // namespace mindahl::identification

@@ -141,9 +141,8 @@ struct Term {
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
-  std::string_view option = {};          ///< command-line option that adds it; empty: none
-  std::string_view argument = {};        ///< its argument; empty: a flag
-  std::string_view help = {};
+  /// Name of the group of terms that it leads, as `--terms` takes it; empty: it comes with another.
+  std::string_view group = {};
 
   /// True if a value of zero or below is outside its domain, as of an exponent of the speed.
   [[nodiscard]] constexpr bool must_be_positive() const { return positive || lowest > 0; }
@@ -170,6 +169,7 @@ const Term* TermOfParameter(std::string_view parameter);
 struct TermGroup {
   std::string_view name;
   std::vector<std::string_view> terms;  ///< names in FitOptions::terms
+  std::string_view meaning;             ///< in a line of the help
   bool is_tried = true;                 ///< false if it is added only where it is named
 };
 

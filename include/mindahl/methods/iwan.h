@@ -16,30 +16,17 @@ struct IwanElements {
   [[nodiscard]] std::size_t size() const { return stiffness.size(); }
 };
 
-/// Names how the slip displacements of the elements of a branch law are placed.
-enum class IwanSpacing {
-  kEqualForce,  ///< each element has the slip force Tc/n
-  kOptimal,     ///< √u falls evenly: as good as n elements allow, but for the last
-};
-
 /// Makes elements whose virgin curve is the polygon of tangents to f at u₀ = 1 > u₁ > … > uₙ = 0:
 ///   stiffness kᵢ = σ(uᵢ₋₁^α − uᵢ^α),  slip force Tc(Fᵢ − Fᵢ₋₁),  F(u) = (f − xf')/Tc
 /// so that the stiffness at rest and the slip force are those of the law. Between tangents a short
-/// way h apart the polygon lies |f''|h²/8 above f.
-/// - Equal slip forces leave y = √(2/(αn)) elastic and err by Tc/(4n) there to leading order in
-///   1/√n, for 0 < α <= 2: first order. For α > 2 the last corner errs more, by
-///   Tc·(1 − 1/α)·α^{1/(1−α)}/n.
-/// - Errors even out where √|f''|·dx is constant, which is √uᵢ = 1 − i/n for every α
-///   (φ'' = −αu^{2α−1}, dy = −u^{−α}du), and leaves Tc·α/(2n²) to leading order in 1/n. At the last
-///   corner, next to slip, it is Tc·α^{1/(1−α)}/n², which is the more for α < 1/2: 0.192 against
-///   0.167 for Mindlin.
-///
-/// A reversal doubles these; those of reversals that are remembered add up. α = 0 is one element,
-/// exact.
+/// distance h apart the polygon lies |f''|h²/8 above f. Errors even out where √|f''|·dx is
+/// constant, which is √uᵢ = 1 − i/n for every α (φ'' = −αu^{2α−1}, dy = −u^{−α}du), and leaves
+/// Tc·α/(2n²) to leading order in 1/n. At the last corner, next to slip, it is Tc·α^{1/(1−α)}/n²,
+/// which is the more for α < 1/2: 0.192 against 0.167 for Mindlin. A reversal doubles these; those
+/// of reversals that are remembered add up. α = 0 is one element, exact.
 /// @param elements  >= 1
 /// @throws InvalidArgument for an invalid law or no element
-IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements,
-                              IwanSpacing spacing);
+IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements);
 
 /// Computes the force [N] along a displacement [m] of elements unloaded at 0: each keeps its force
 /// as its memory.

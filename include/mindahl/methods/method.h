@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -16,8 +15,8 @@ namespace mindahl::methods {
 /// An imposed displacement [m]; the contact is unloaded at 0.
 struct Drive {
   std::span<const double> displacement;
-  /// Amplitude [m] at each sample where it changes along the way, else empty. Only a model that
-  /// refers to its steady loop looks at it.
+  /// Amplitude [m] at each sample where it changes along the path, else empty. Used only by a model
+  /// that refers to its steady loop.
   std::span<const double> envelope = {};
 };
 
@@ -27,7 +26,7 @@ models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Driv
 
 /// Sets how finely a method resolves.
 struct Resolution {
-  /// Substeps a sample, elements or nodes: what the method says. >= 1
+  /// Substeps a sample, elements or intervals: what the method says. >= 1
   std::size_t steps = 1;
   /// Largest local error of T/Tc in a step of an adaptive method, >= kLeastTolerance.
   double tolerance = 1e-6;
@@ -36,21 +35,13 @@ struct Resolution {
 /// 4 ε: what rounding does to u in [0, 1] over the stages of one step.
 inline constexpr double kLeastTolerance = 4 * std::numeric_limits<double>::epsilon();
 
-/// Force [N] along a drive, from displacement to force: reversals and branches are found within.
-/// The spans must have one length.
+/// Computes the force [N] along a drive; reversals and branches are found within. The spans must
+/// have one length.
 using Evaluator = std::function<void(const Drive& drive, std::span<double> force)>;
 
-class OperationCount;
-
-/// A way to evaluate a friction model along a drive.
-///
-/// Each is given the reversals and the loops that close (the rules are the model's, and so is
-/// the memory); what differs is how a branch is followed. The order below is that of the largest
-/// force error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is
-/// not Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
-/// coming, so that next to slip higher orders fall to 1/(1−α), 1.5 for Mindlin. A step later the
-/// contact slips, exactly so, and what follows has the full order again. Every method is kept from
-/// |T| > Tc by clamping u to [0, 1]; the elements of Iwan add up to Tc, to rounding.
+/// A way to evaluate a friction model along a drive. The reversals and the loops that close are the
+/// model's; what differs is how a branch is followed. Every method keeps |T| <= Tc; the elements of
+/// Iwan add up to Tc, to rounding.
 struct Method {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< in reports
@@ -59,25 +50,20 @@ struct Method {
   std::size_t default_steps = 1;
   bool adaptive = false;     ///< uses Resolution::tolerance
   bool masing_only = false;  ///< serves only models whose memory is kReturnPoint
-  /// Order of the error in 1/steps before gross slip; 0 when no step makes one.
-  double order = 0.0;
   Evaluator (*prepare)(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution) = nullptr;
-  /// Adds what an evaluation takes, samples read and written aside: CountOperations().
-  void (*count)(const models::FrictionModel& model, const models::BranchLaw& law,
-                const Resolution& resolution, const Drive& drive, OperationCount& count) = nullptr;
+  /// Returns what an evaluation along the whole drive takes [ns], samples read and written aside.
+  double (*cost)(const models::FrictionModel& model, const models::BranchLaw& law,
+                 const Resolution& resolution, const Drive& drive) = nullptr;
 };
 
 /// - exact: the closed form (models/response.h)
-/// - euler, rk4: explicit, fixed steps of the displacement; orders 1 and 4
-/// - dopri5: Dormand–Prince 5(4), error-controlled, `steps` its least number a sample; order 5 in
-///   these where they are what limits it
-/// - backward-euler: implicit, order 1, never oversteps Tc
-/// - exponential: Rosenbrock–Euler with the local Jacobian, order 2; exact for α = 1
-/// - iwan, iwan-optimal: `steps` Jenkins elements (methods/iwan.h); orders 1 and 2
+/// - dopri5: the branch law as a differential equation, dT/dx = σ(v − s(T−T₀)/(span·Tc))^α on each
+///   branch (Peyret et al. eqs 10, 26, 27), by Dormand–Prince 5(4) with controlled error, `steps`
+///   its least number a sample
+/// - iwan: `steps` Jenkins elements (methods/iwan.h); order 2 in 1/steps
 /// - table: the branch law between `steps` equal intervals of y/(1+y), linear; order 2 while u > 0
-///   at a fixed distance, min(2, 1/|1−α|) for any 0 < α: for α < 1/2 slip is a corner inside the
-///   last interval's chord, for α > 3/2 the interval to infinity is one. Exact for α = 2
+///   at a fixed distance, min(2, 1/|1−α|) for any 0 < α; exact for α = 2
 std::span<const Method> Methods();
 
 /// Returns nullptr when there is no such method.
@@ -90,51 +76,16 @@ const Method* FindMethod(std::string_view name);
 Evaluator Prepare(const Method& method, const models::FrictionModel& model,
                   const models::BranchLaw& law, const Resolution& resolution);
 
-/// Names the operations of which a method for the force along a drive is made. The counts are
-/// properties of the drive and of the method, whatever machine runs them and however busy it is.
-enum class Operation : std::size_t {
-  kSample,       ///< a displacement read and a force written
-  kPlace,        ///< the branch found that a sample lies on
-  kReversal,     ///< a branch opened
-  kLinear,       ///< the branch law, α = 0
-  kRoot,         ///< the branch law, α = 1/3: a square root and a division
-  kPower,        ///< the branch law, any other α: two transcendentals
-  kElement,      ///< an element of Iwan's, moved on
-  kSum,          ///< the sum of their forces
-  kLookUp,       ///< the branch law from a table
-  kStep,         ///< a step of fixed size
-  kStage,        ///< a rate of a differential equation, whatever α, put to use
-  kTrial,        ///< a step whose error is controlled, taken or not
-  kCubicRoot,    ///< u^α of a differential equation, α = 1/3
-  kRatePower,    ///< u^α, any other α but 0 and 1
-  kExponential,  ///< exponential of an exponential step
-  kIteration,    ///< iteration of Newton's rule in an implicit step
-};
-
-inline constexpr std::size_t kOperations = static_cast<std::size_t>(Operation::kIteration) + 1;
-
-/// Returns "sample", "place", "reversal", …
-std::string_view NameOf(Operation operation);
-
-/// Counts the operations of each kind along a whole drive.
-class OperationCount {
- public:
-  [[nodiscard]] double operator[](Operation operation) const {
-    return count_[static_cast<std::size_t>(operation)];
-  }
-  void Add(Operation operation, double times = 1.0) {
-    count_[static_cast<std::size_t>(operation)] += times;
-  }
-
- private:
-  std::array<double, kOperations> count_{};
-};
-
-/// Counts the operations of an evaluation along a drive, by running it where they depend on it.
+/// Returns the cost [ns/sample] of an evaluation by what it does along the drive: the same in every
+/// run, whatever machine runs it and however busy it is. What an operation takes is a regression of
+/// the times of bench/methods_bench on the machine that docs/tradeoff.md names; another machine
+/// takes about in proportion.
 /// @throws InvalidArgument as Prepare()
-/// Cost: that of one evaluation at most.
-OperationCount CountOperations(const Method& method, const models::FrictionModel& model,
-                               const models::BranchLaw& law, const Resolution& resolution,
-                               const Drive& drive);
+/// Takes one evaluation at most.
+double CostOf(const Method& method, const models::FrictionModel& model,
+              const models::BranchLaw& law, const Resolution& resolution, const Drive& drive);
+
+/// Time that reading a displacement and writing a force takes [ns].
+inline constexpr double kCostOfSample = 1.5;
 
 }  // namespace mindahl::methods

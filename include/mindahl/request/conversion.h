@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mindahl/convert/conversion.h"
@@ -11,23 +9,26 @@
 
 namespace mindahl::request {
 
-/// Laws that a conversion may start from.
-inline constexpr std::array<std::string_view, 2> kLawsToConvert = {"masing", "dahl"};
-
 /// Holds the law to convert and its target: docs/contract.md, `mindahl convert`.
 struct ConversionRequest {
-  models::BranchLaw law;
-  std::string from = "masing";  ///< one of kLawsToConvert
-  std::string to;               ///< name of one of convert::Targets()
-  convert::ConversionOptions options;
-  std::optional<double> least_amplitude;    ///< [m]; with the other, the options' range
-  std::optional<double> largest_amplitude;  ///< [m]
-  convert::NormalContact normal;
+  std::string fit = {};  ///< file of `mindahl fit --json`: law and amplitude, unless given
+  std::optional<double> sigma = {};       ///< [N/m]
+  std::optional<double> alpha = {};       ///< [-]; default 1/3
+  std::optional<double> slip_force = {};  ///< [N]
+  std::optional<double> amplitude = {};   ///< X [m] of the contact's steady loop
+  std::string from = {};                  ///< "masing", "dahl" or "": that of the fit, else masing
+  std::string to = {};                    ///< name of one of convert::Targets()
+  convert::ConversionOptions options = {};
+  convert::NormalContact normal = {};
 };
 
+/// A contact written for a target; of the request law and amplitude are known.
 struct ConvertedContact {
-  ConversionRequest request;
+  models::BranchLaw law;
+  std::string from;
   convert::TargetRow target;
+  convert::ConversionOptions options = {};
+  convert::NormalContact normal = {};
   convert::Conversion conversion = {};
   std::vector<convert::Parameter> parameters = {};
 };
@@ -42,7 +43,8 @@ std::string ToJson(const ConvertedContact& converted);
 /// Returns the text that `mindahl convert` prints.
 std::string ToText(const ConvertedContact& converted);
 
-/// Returns the lines that the target reads.
+/// Returns the lines that the target reads, with the error at the amplitude as a comment where it
+/// has comments.
 /// @throws InputError for a discrete-element code without a normal load
 std::vector<std::string> InputLines(const ConvertedContact& converted);
 

@@ -35,18 +35,16 @@ inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virg
 inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
 inline constexpr std::array<std::string_view, 2> kNoiseIn = {"force", "displacement"};
 inline constexpr std::array<std::string_view, 2> kOnOff = {"on", "off"};
-inline constexpr std::array<std::string_view, 2> kTrims = {"off", "auto"};
 inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "cauchy", "tukey"};
 
-/// Models that can be fitted, and kAutomatic.
+/// Models that can be fitted, kAutomatic first.
 std::vector<std::string_view> ModelNames();
 
-/// Says whether a term is fitted, held or stated with an uncertainty.
-struct TermRequest {
-  std::optional<double> value = {};  ///< at which it is held; empty: it is fitted
-  /// Standard uncertainty of the value, with which rig_stiffness alone is fitted; empty: exact.
+/// A stiffness of the rig that is known, stated with an uncertainty, or fitted.
+struct RigRequest {
+  std::optional<double> value = {};  ///< [N/m]; empty: it is fitted
+  /// Standard uncertainty of the value, with which it is fitted; empty: exact.
   std::optional<double> standard_uncertainty = {};
-  std::string form = {};  ///< "linear" or "quadratic", of --slip-position alone
 };
 
 /// A column in proportion to which a force is added.
@@ -61,26 +59,23 @@ struct FitRequest {
   std::vector<std::string> files;
   io::RecordColumns columns;
   bool join = false;                                    // the files are pieces of one record
-  std::uint64_t max_rows = 20'000'000;                  // of all files together
   std::optional<std::uint64_t> max_memory;              // [bytes]; else what the process may have
   std::optional<identification::Interval> time_window;  // [s]
-  std::string model = "mindlin-dahl";
+  std::string model = "auto";
   std::string initial_state = "auto";
   std::string force_sign = "auto";
   std::string noise_in = "force";
   std::string offsets = "on";
-  std::map<std::string_view, TermRequest> terms;  // by its name
-  /// kAutomatic, kNoTerms or names of what is fitted; empty: as ChoosesTermsByDefault() says.
-  std::string term_choice;
+  bool compare = false;                     // all models, with and without a rig
+  std::optional<RigRequest> rig_stiffness;  // empty: rigid
+  /// kNoTerms or kAutomatic alone, or names of groups of terms and of columns; empty: none.
+  std::vector<std::string> terms;
   std::vector<CovariateRequest> covariates;
   std::optional<identification::Interval> load_window;  // [N]
   std::optional<loop::CountRange> cycles;
   std::optional<loop::CountRange> samples;
-  std::size_t skip_cycles = 0;
-  std::string trim = "off";
+  std::string trim = "on";
   std::string loss = "none";
-  std::size_t starts = identification::FitOptions{}.starts;
-  std::uint64_t seed = identification::FitOptions{}.seed;
   std::map<std::string, double> fix;
   std::map<std::string, double> start;
   std::map<std::string, identification::Interval> bound;
@@ -92,19 +87,17 @@ struct FitRequest {
   ContactOptions contact;
 };
 
-/// True if terms are added, where --terms is not given, to a law that is of no quantitative use by
-/// itself: of one record, where neither a term or a column is asked for, nor a choice of models, a
-/// robust loss or a fit of the displacement.
-bool ChoosesTermsByDefault(const FitRequest& request);
+/// True if the terms are those that the record requires.
+bool ChoosesTerms(const FitRequest& request);
 
-/// Returns the names that --terms gives; none where terms are chosen or none.
+/// Returns the groups of terms that are named; none where terms are chosen or none.
 std::vector<std::string> NamedTerms(const FitRequest& request);
 
 /// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
 /// contradict each other
 identification::FitOptions MakeFitOptions(const FitRequest& request);
 
-/// Returns the options for fits of one cycle after the other: no choice of model, no covariates.
+/// Returns the options for fits of one cycle after the other: no covariates.
 /// @throws InvalidArgument or InputError likewise
 identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 

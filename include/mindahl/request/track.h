@@ -49,19 +49,16 @@ struct TrackedTest {
   std::map<std::string, std::size_t> flags;
   campaign::TrackedCourses courses;
   campaign::DissipatedEnergy energy;
-  std::optional<campaign::PooledValue> shared_alpha;  ///< empty where each cycle has its own
+  std::vector<campaign::Cycle> log = {};  ///< loops of the cycles 1, 10, 100, …
 };
 
 /// Holds what is asked for of a test of many cycles. Its files are those of `fit`.
 struct TrackRequest {
-  FitRequest fit = {};  ///< of each cycle
-  std::optional<double> normal_load =
-      {};                   ///< [N] of all cycles; default the column's mean over each
+  FitRequest fit = {};      ///< model of each cycle, and what is known of the contact
   std::size_t average = 1;  ///< cycles in a row that are fitted together
   std::size_t every = 1;    ///< one fit of so many that there could be
   std::size_t threads = 1;
   io::BrokenRows broken_rows = io::BrokenRows::kRefuse;
-  bool shares_alpha = false;  ///< one for all cycles: the mean of a first pass
 };
 
 /// @throws InputError or InvalidArgument naming the option
@@ -83,12 +80,8 @@ class TrackRun {
   /// @param request  valid; kept by reference
   TrackRun(const TrackRequest& request, TrackEvents events);
 
-  /// Fits every cycle with an alpha of its own, for what they have in common, which Read() holds.
-  /// @param records  in memory; none: the files of the request
-  /// @throws InputError as Read(), and where no cycle determines alpha
-  void PoolAlpha(std::span<const io::NamedRecord> records = {});
-
   /// Reads and fits all cycles.
+  /// @param records  in memory; none: the files of the request
   /// @throws InputError naming the place in a file
   void Read(std::span<const io::NamedRecord> records = {});
 
@@ -133,26 +126,19 @@ class TrackRun {
 };
 
 /// Returns the JSON of schema mindahl.track/1, as `mindahl track --json` writes it.
-/// @param described  of the test's time histories, by Describe()
-std::string ToJson(const TrackedTest& test,
-                   const std::vector<campaign::CourseDescription>& described);
+/// @param evolutions  of the test's courses, by Describe()
+std::string ToJson(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions);
 
 /// Returns the summary that `mindahl track` prints, likewise.
-std::string ToText(const TrackedTest& test,
-                   const std::vector<campaign::CourseDescription>& described);
-
-/// Returns the changes of all quantities, one sentence each.
-std::vector<std::string> Changes(const TrackedTest& test,
-                                 const std::vector<campaign::CourseDescription>& described);
+std::string ToText(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions);
 
 /// Returns the page of the test, as report::ToPage() makes one of a fit.
-std::string ToPage(const TrackedTest& test,
-                   const std::vector<campaign::CourseDescription>& described,
+std::string ToPage(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions,
                    const report::Provenance& provenance = {});
 
 /// Returns the time histories, one below the other.
 /// @throws InvalidArgument where none has two cycles
-io::Plot ToPlot(const TrackedTest& test, const std::vector<campaign::CourseDescription>& described);
+io::Plot ToPlot(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions);
 
 /// Collects the answers for several separate tests in one table.
 class SeparateTests {

@@ -17,6 +17,7 @@ struct TradeoffRequest {
   std::vector<std::string> excitations;  ///< names of ExcitationNames(); empty: all
   std::vector<double> displacement;      ///< [m] a path of the user's instead of these
   std::string path_name;                 ///< title of that path
+  double tolerance = 0.01;               ///< largest error that is allowed [-], in (0, 1]
 };
 
 /// Returns the names of the excitations, in their order.
@@ -27,23 +28,21 @@ struct MeasuredExcitation {
   std::string name;
   std::string title;
   std::size_t samples = 0;
-  tradeoff::CostFloor floor;
   std::vector<tradeoff::WorkPrecision> points;
-  std::vector<bool> front = {};  ///< true on the Pareto front of the largest force error
+  std::size_t cheapest = 0;              ///< point whose force is within the tolerance
+  std::size_t cheapest_with_energy = 0;  ///< and the dissipated energy too
 };
 
 struct Tradeoff {
   models::BranchLaw law;
+  double tolerance = 0.01;
   std::vector<MeasuredExcitation> excitations = {};
-  std::vector<tradeoff::ModelRegion> regions = {};  ///< none for α >= 1
-  tradeoff::ModelRegionOptions studied = {};
 };
 
-/// Runs and times every method along the excitations, and finds the amplitudes at which each model
-/// is good enough.
-/// @param progress  called with the step that begins now
+/// Runs and times every model and method along the excitations, and finds the cheapest within the
+/// tolerance.
 /// @throws InputError or InvalidArgument naming the option
-Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Tell& progress = {});
+Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn);
 
 /// Returns the JSON of schema mindahl.tradeoff/1, as `mindahl tradeoff --json` writes it.
 std::string ToJson(const Tradeoff& study);
@@ -53,9 +52,6 @@ std::string ToText(const Tradeoff& study);
 
 /// Returns every point as CSV.
 std::string PointsCsv(const Tradeoff& study);
-
-/// Returns the amplitudes at which models serve as CSV.
-std::string RegionsCsv(const Tradeoff& study);
 
 /// Returns errors against cost, one panel an excitation: a curve for each method with its
 /// resolutions, a marker for each model.

@@ -1,7 +1,5 @@
 #include "identification/diagnosis/adequacy.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -24,27 +22,10 @@ bool FollowsContact(std::span<const double> column, std::span<const double> fitt
 
 namespace {
 
-/// An option with what is given to it.
-struct Advised {
-  std::string_view option;
-  std::string_view words;  // "--lag fit"
-};
-
-std::vector<Advised> OptionsAmong(std::string_view words) {
-  std::vector<Advised> found;
-  while (!words.empty()) {
-    const std::size_t next = std::min(words.find(" --"), words.size());
-    const std::string_view one = words.substr(0, next);
-    found.push_back({one.substr(0, one.find(' ')), one});
-    words.remove_prefix(std::min(next + 1, words.size()));
-  }
-  return found;
-}
-
-const Term* TermOfOption(std::string_view option, loop::Channel response) {
-  const auto terms = Terms(response);
-  const auto term = std::ranges::find(terms, option, &Term::option);
-  return term == terms.end() ? nullptr : &*term;
+const Term* TermOfGroup(std::string_view group) {
+  const auto terms = Terms();
+  const auto term = std::ranges::find(terms, group, &Term::group);
+  return term == terms.end() ? FindTerm(FindTermGroup(group)->terms.front()) : &*term;
 }
 
 bool HasTimes(const ScaledRecords& data) {
@@ -65,13 +46,8 @@ bool TellsAsymmetry(const Problem& problem) {
          problem.state.Any(models::InitialState::kVirgin) || problem.parameters.any_zero_is_known();
 }
 
-bool IsAccepted(const Problem& problem, std::string_view option) {
+bool IsAccepted(const Problem& problem, const Term* term) {
   const ScaledRecords& data = *problem.data;
-  if (option == "--loss") return true;
-  // In a fit of the displacement the terms of the force do not exist.
-  if (data.is_forced()) return option == "--drift";
-  const Term* const term = TermOfOption(option, loop::Channel::kForce);
-  if (term == nullptr) return false;
   if (term->needs_time && !HasTimes(data)) return false;
   if (term->motion != ContactMotion::kMeasured) {
     const std::size_t moved = problem.parameters.PositionOfMotion();
@@ -86,30 +62,18 @@ bool IsAccepted(const Problem& problem, std::string_view option) {
 
 }  // namespace
 
-std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
-                            std::string_view wanted) {
-  std::string accepted;
-  bool has_asymmetry =
-      std::ranges::find(options.terms, TermOf(TermId::kAsymmetry).name) != options.terms.end();
-  for (const Advised& advised : OptionsAmong(wanted)) {
-    if (!IsAccepted(problem, advised.option)) return "";
-    const Term* const term = TermOfOption(advised.option, loop::Channel::kForce);
-    const bool is_named = term != nullptr && !term->of_column;
-    const std::string name(is_named ? term->name : "");
-    if (is_named && options.fixed.contains(name)) return "";  // two values of one option
-    // A term that is fitted already is not advised.
-    if (is_named && std::ranges::find(options.terms, name) != options.terms.end()) continue;
-    has_asymmetry = has_asymmetry || (is_named && term->id == TermId::kAsymmetry);
-    accepted += accepted.empty() ? "" : " ";
-    accepted += advised.words;
+std::string_view AcceptedGroup(const Problem& problem, const FitOptions& options,
+                               std::string_view group) {
+  // In a fit of the displacement the terms of the force do not exist.
+  if (group.empty() || problem.data->is_forced()) {
+    return group == "displacement_drift" ? group : std::string_view();
   }
-  // Another term may let the steady loop win, with which an asymmetry of Masing's law is refused.
-  if (!accepted.empty() && has_asymmetry && problem.model->memory == models::Memory::kReturnPoint &&
-      !options.initial_state && options.initial_states.empty() &&
-      !problem.parameters.any_zero_is_known()) {
-    accepted += " --initial-state virgin";
-  }
-  return accepted;
+  if (group == "covariate") return group;
+  const Term* const term = TermOfGroup(group);
+  const std::string name(term->name);
+  const bool is_there =
+      options.fixed.contains(name) || std::ranges::find(options.terms, name) != options.terms.end();
+  return !is_there && IsAccepted(problem, term) ? group : std::string_view();
 }
 
 bool AreHeavy(const std::optional<HeavyTails>& tails, const Thresholds& thresholds) {
@@ -144,25 +108,6 @@ bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
     begin += record.size();
   }
   return FollowsContact(column, fitted_force);
-}
-
-/// Returns the option to type: with the name of a covariate, quoted where it has blanks; of a
-/// column that follows the contact's force with a factor that has to be known.
-std::string OptionOf(const Problem& problem, const Solution& solution, const FitOptions& options,
-                     const DepartureFit& fit) {
-  const Departure& departure = Departures()[fit.departure];
-  if (!fit.covariate) {
-    // In a fit of the displacement a drift is the displacement's.
-    const bool is_of_force = departure.term == "force_drift";
-    if (problem.data->is_forced() && is_of_force) return "";
-    return AcceptedOptions(problem, options, departure.option);
-  }
-  const std::string_view name = problem.data->covariates[*fit.covariate].name;
-  const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
-  const bool is_known = CovariateFollowsContact(problem, solution, *fit.covariate);
-  return AcceptedOptions(
-      problem, options,
-      fmt::format("--covariate {}{}{}{}", quote, name, is_known ? "=C" : "", quote));
 }
 
 double SizeOf(const DepartureFit& fit) {
@@ -256,9 +201,9 @@ namespace {
 /// what no option fits come last, a fault of the sensor after a force of the same position.
 int RankOf(const Cause& cause) {
   if (cause.is_measured) return 0;
-  if (cause.code == "covariate") return cause.has_known_factor() ? 4 : 1;
+  if (cause.code == "covariate") return cause.has_known_factor ? 4 : 1;
   if (cause.code == "displacement_sensor") return 6;
-  if (cause.option.empty()) return 5;
+  if (cause.term.empty()) return 5;
   if (cause.code == "channel_lag") return 4;
   return cause.code == "slip_position_quadratic" ? 3 : 2;
 }
@@ -279,8 +224,8 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
 }
 
 /// Adds heavy tails that noise alone does not make to the causes.
-void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tails,
-                   const FitOptions& options, Adequacy& adequacy) {
+void AddHeavyTails(const std::optional<HeavyTails>& tails, const FitOptions& options,
+                   Adequacy& adequacy) {
   const Thresholds& thresholds = options.thresholds;
   if (AreHeavy(tails, thresholds)) {
     adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tails->p_value));
@@ -289,7 +234,7 @@ void AddHeavyTails(const Problem& problem, const std::optional<HeavyTails>& tail
                                .explains = tails->explains,
                                .size = tails->fraction,
                                .unit = "-",
-                               .option = AcceptedOptions(problem, options, kHeavyTailsOption)});
+                               .term = {}});
   }
   Order(adequacy.causes, thresholds);
 }
@@ -324,15 +269,19 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
               .explains = fit.explains,
               .size = SizeOf(fit),
               .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
-              .option = OptionOf(problem, solution, options, fit),
+              .term = std::string(AcceptedGroup(problem, options, departure.group)),
               .is_measured = fit.is_measured});
+    if (fit.covariate && !cause.term.empty()) {
+      cause.term = problem.data->covariates[*fit.covariate].name;
+      cause.has_known_factor = CovariateFollowsContact(problem, solution, *fit.covariate);
+    }
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;
       cause.moves =
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
-  AddHeavyTails(problem, heavy_tails, options, adequacy);
+  AddHeavyTails(heavy_tails, options, adequacy);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }

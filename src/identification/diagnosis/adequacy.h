@@ -17,13 +17,10 @@
 
 namespace mindahl::identification {
 
-/// Returns the options, as a cause names them, that the program accepts in addition to those of the
-/// fit: as they are, with what they need in addition, or nothing where they would be refused. Every
-/// advice is checked here, against what the fit's own requirements refuse.
-/// @param wanted  words of the command line, e.g. "--viscous fit --speed-exponent fit"; may be
-/// empty
-std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
-                            std::string_view wanted);
+/// Returns the group of terms, or nothing where the fit has it or its requirements refuse it.
+/// @param group  as a cause names it; may be empty
+std::string_view AcceptedGroup(const Problem& problem, const FitOptions& options,
+                               std::string_view group);
 
 /// True if noise hardly makes what all omitted terms, or the best of them, explain.
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);

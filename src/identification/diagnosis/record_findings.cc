@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "identification/diagnosis/grade.h"
+#include "identification/intervals.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"

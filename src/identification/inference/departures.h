@@ -17,9 +17,8 @@ struct Departure {
   std::string_view code;
   std::string_view meaning;  // of the size, with its sign; L is the half range of displacement
   std::string_view unit;     // of the size, which is the first column's; empty where it says little
-  std::string_view option;   // of the command line; empty where there is none
-  /// Names the term of a fit that is the same, where it is not that of its last option; it is not
-  /// looked for where that is fitted.
+  std::string_view group = {};  // of terms that fits it; empty where there is none
+  /// Names the term of a fit that is the same: it is not looked for where that is fitted.
   std::string_view term = {};
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
   /// No size is negative, as none of a mass: a negative one is no cause, unless a rig is fitted,

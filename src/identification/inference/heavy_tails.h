@@ -14,7 +14,6 @@ namespace mindahl::identification {
 inline constexpr std::string_view kHeavyTails = "heavy_tails";
 inline constexpr std::string_view kHeavyTailsMeaning =
     "fraction of the readings that are far off both their neighbours";
-inline constexpr std::string_view kHeavyTailsOption = "--loss huber";
 
 /// Readings far off in the residuals of a fit.
 struct HeavyTails {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/solve/search.h"
 

@@ -70,9 +70,9 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   const Parameters& parameters = candidate.problem.parameters;
   std::pmr::vector<std::size_t> terms(memory);
   for (const std::size_t p : parameters.free()) {
-    // Only terms that an option names; their further coefficients stay with them.
+    // Only terms that lead a group; its further coefficients stay with them.
     const Term& term = *parameters[p].term;
-    const bool is_on_demand = term.presence == Presence::kOnDemand && !term.option.empty();
+    const bool is_on_demand = term.presence == Presence::kOnDemand && !term.group.empty();
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
   if (terms.empty()) return;

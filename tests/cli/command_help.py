@@ -18,40 +18,6 @@ class Option:
     def text(self):
         return " ".join(self.description)
 
-    @property
-    def choices(self):
-        match = re.search(r"\{([^}]*)\}", self.taken)
-        return match.group(1).split(",") if match else []
-
-    @property
-    def default(self):
-        """Of a choice or a number; "" where the text says it, or there is none."""
-        match = re.fullmatch(r"(?!NAME=)(?:TEXT:\{[^}]*\}|[A-Z]+)=([\w.-]+)", self.taken)
-        return match.group(1) if match else ""
-
-    @property
-    def argument(self):
-        """What stands for the value in a text: MODEL, FILE, LO:HI; "" of a flag."""
-        if self.choices:
-            return self.name.lstrip("-").upper().replace("-", "_")
-        taken = re.sub(r"( REQUIRED| \.\.\.)+$", "", self.taken)
-        if "NAME=" in taken or "|" in taken:
-            return taken
-        taken = taken.partition("=")[0]
-        return {"UINT": "N", "INT": "N", "FLOAT": "X"}.get(taken, taken)
-
-    @property
-    def is_repeatable(self):
-        return " ..." in self.taken
-
-    @property
-    def is_required(self):
-        return self.taken.endswith("REQUIRED")
-
-    @property
-    def takes_file(self):
-        return self.argument in ("FILE", "PATH")
-
 
 @dataclasses.dataclass
 class Help:
@@ -126,13 +92,10 @@ def parse(command, text):
 def texts_of(program):
     """The help text of the program itself, under "", and of every command that it lists."""
     def run(*words):
-        return subprocess.run([program, *words, "--help"], check=True, capture_output=True,
+        return subprocess.run([program, *words], check=True, capture_output=True,
                               encoding="utf-8").stdout
-    texts = {"": run()}
+    texts = {"": run("--help")}
     for command in parse("", texts[""]).commands:
-        texts[command] = run(command)
+        texts[command] = run(command, "--help-all")
     return texts
 
-
-def helps_of(program):
-    return [parse(command, text) for command, text in texts_of(program).items()]
