@@ -23,6 +23,10 @@ bool TurnsWithMotion(const ParameterEstimate& estimate);
 
 using ParameterEstimates = std::vector<ParameterEstimate>;
 
+/// Longest linear step of θ that an interval takes: beyond a factor of e³ it says only that little
+/// is known.
+inline constexpr double kFarthestStep = 3.0;
+
 /// Begins the interval anew with one part. An end that is not finite is open.
 void SetInterval(ParameterEstimate& estimate, IntervalPart part);
 

@@ -200,14 +200,13 @@ struct Alternative {
 /// slides has carried.
 void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
                          FitResult& fit) {
-  constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
   const loop::LoopFacts& facts = fit.WidestRecord().facts;
   const bool slides = loop::Slides(facts);
   for (const Alternative& alternative : alternatives) {
     for (const auto& [name, difference] : alternative.law) {
       const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
       if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
-      const double step = std::clamp(difference, -kFarthest, kFarthest);
+      const double step = std::clamp(difference, -kFarthestStep, kFarthestStep);
       const bool is_shape = name == "alpha";
       double value =
           is_shape ? std::max(0.0, estimate->value + step) : estimate->value * std::exp(step);

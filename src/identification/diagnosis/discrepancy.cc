@@ -280,8 +280,7 @@ void CoverShape(const FittedProblem& fitted, const Thresholds& thresholds,
     const std::size_t place = problem.parameters.PlaceAmongFree(p);
     if (place >= spread.size() || !estimate.lower95 || !estimate.upper95) continue;
     const Parameter& parameter = problem.parameters[p];
-    constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
-    const double step = std::min(spread[place], kFarthest);
+    const double step = std::min(spread[place], kFarthestStep);
     const double one = parameter.ToValue(solution.theta[p] - step);
     const double other = parameter.ToValue(solution.theta[p] + step);
     const double least = p == kShape ? 0.0 : std::numeric_limits<double>::lowest();

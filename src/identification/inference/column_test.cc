@@ -345,16 +345,13 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
     const std::size_t place = problem.parameters.PlaceAmongFree(p);
     for (const DepartureFit& fit : fits) {
       if (place == fit.step.size()) continue;
-      // Beyond a factor of e³ a linear step says only that little is known; short of it, it errs
-      // by the like of its square.
-      constexpr double kFarthest = 3.0;
-      const double step = std::clamp(fit.step[place], -kFarthest, kFarthest);
+      const double step = std::clamp(fit.step[place], -kFarthestStep, kFarthestStep);
       // σ and Tc are in proportion to the force; parts of the record may have their own.
       const bool is_of_force = p == kStiffness || p == kSlipForce;
       const double apart = Departures()[fit.departure].apart * std::abs(fit.size);
-      const double half = quantile * std::min(fit.error[place], kFarthest) +
-                          std::min(step * step, kFarthest) +
-                          (is_of_force ? std::min(apart, kFarthest) : 0.0);
+      const double half = quantile * std::min(fit.error[place], kFarthestStep) +
+                          std::min(step * step, kFarthestStep) +  // by which a linear step errs
+                          (is_of_force ? std::min(apart, kFarthestStep) : 0.0);
       const double one = parameter.ToValue(solution.theta[p] + step - half);
       const double other = parameter.ToValue(solution.theta[p] + step + half);
       const auto [lower, upper] = std::minmax(one, other);

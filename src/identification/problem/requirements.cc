@@ -70,7 +70,7 @@ std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOption
 constexpr std::size_t kChords = 10;
 
 /// Stiffness [N/m] of a record's chords, as documented; 0 where it has no whole stroke.
-double StiffnessOfLoop(const loop::PreparedRecord& record, double sense) {
+double StiffnessOfLoop(const loop::PreparedRecord& record, double sense, double main_stroke) {
   const std::span<const double> displacement = record.displacement();
   const std::span<const double> force = record.record.force;
   std::vector<double> rise(kChords, 0.0);
@@ -79,8 +79,7 @@ double StiffnessOfLoop(const loop::PreparedRecord& record, double sense) {
     const std::size_t begin = record.reversals[k];
     const std::size_t end = record.reversals[k + 1];
     const double stroke = displacement[end] - displacement[begin];
-    constexpr double kMainStroke = 0.75;  // of the widest, 2X
-    if (!(std::abs(stroke) >= kMainStroke * 2 * record.measures.amplitude)) continue;
+    if (!(std::abs(stroke) >= main_stroke * 2 * record.measures.amplitude)) continue;
     std::size_t chord = 0;
     for (std::size_t i = begin + 1; i <= end && chord < kChords; ++i) {
       const double share = (displacement[i] - displacement[begin]) / stroke;
@@ -173,7 +172,8 @@ void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRe
   const auto rig = options.fixed.find("rig_stiffness");
   if (rig == options.fixed.end() || !(rig->second > 0)) return;  // one with a prior is fitted
   for (const loop::PreparedRecord& record : records.records) {
-    const double stiffness = StiffnessOfLoop(record, records.force_sense);
+    const double stiffness =
+        StiffnessOfLoop(record, records.force_sense, options.thresholds.main_stroke);
     if (rig->second > stiffness) continue;
     ThrowInvalid("rig_stiffness [N/m]", rig->second,
                  fmt::format("must be > {:.4g}, the stiffness that the loop itself has after its "
