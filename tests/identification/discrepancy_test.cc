@@ -84,23 +84,6 @@ TEST(Discrepancy, ReachesToBothSidesOfASlipForceThatIsOffTheGap) {
   }
 }
 
-TEST(Discrepancy, SlipForceIncludesThatOfTheOtherLawWhichTheRecordPrefers) {
-  // Dahl's own law from the unloaded contact, that bulges: Masing's reaches a lower asymptote.
-  constexpr BranchLaw kRound{4e7, 1.5, 40.0};
-  const History displacement = Cycling(Wave::kSine, 2 * kReach, 5.0, 300);
-  Record record = MakeRecord(displacement, Respond(Model("dahl"), kRound, displacement));
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] *= 1 + 0.1 * std::pow(record.displacement[i] / (2 * kReach), 2);
-  }
-  const FitResult fit = FitNoisy(record);
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  ASSERT_TRUE(fit.law_choice && fit.law_choice->preferred == fit.law_choice->alternative);
-  ASSERT_TRUE(slip_force.includes_discrepancy);
-  EXPECT_TRUE(Contains(slip_force, fit.law_choice->law.slip_force))
-      << *slip_force.lower95 << " " << *slip_force.upper95 << " " << fit.law_choice->law.slip_force;
-  EXPECT_THAT(fit.FindFinding("other_law_fits_better")->parameters, ElementsAre("sigma"));
-}
-
 TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
   const auto width = [](double b) {
     const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");

@@ -42,7 +42,6 @@ void ExpectSame(const FitResult& one, const FitResult& other) {
   EXPECT_EQ(one.residuals.samples, other.residuals.samples);
   EXPECT_EQ(one.residuals.effective_samples, other.residuals.effective_samples);
   EXPECT_EQ(one.residuals.durbin_watson, other.residuals.durbin_watson);
-  EXPECT_EQ(one.starts.size(), other.starts.size());
   ASSERT_EQ(one.mindlin_test.has_value(), other.mindlin_test.has_value());
   if (one.mindlin_test) {
     EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
@@ -164,8 +163,6 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     EXPECT_EQ(estimate.rms, full.rms);
     EXPECT_EQ(estimate.converged, full.converged);
     EXPECT_TRUE(estimate.correlation.empty());
-    EXPECT_TRUE(estimate.starts.empty());
-    EXPECT_TRUE(errors.starts.empty());
     EXPECT_EQ(errors.correlation.size(), full.correlation.size());
     EXPECT_EQ(errors.adequacy.tried, 0U);
     EXPECT_EQ(errors.records.front().facts.closed, full.records.front().facts.closed);

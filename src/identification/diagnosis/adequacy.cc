@@ -261,6 +261,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
+  Order(adequacy.causes, thresholds);
   if (!options.terms.empty() || !options.covariates.empty()) DropLesserCauses(adequacy.causes);
   return adequacy;
 }
