@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"
@@ -25,18 +27,61 @@ Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
-/// Returns what a record has that is widest; null of a fit that failed.
-template <typename Get>
-Json OfWidest(const Report& report, Get get) {
+template <typename Value>
+Json JsonOf(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return Name(value);
+  } else if constexpr (std::is_convertible_v<Value, std::optional<double>> &&
+                       !std::is_integral_v<Value>) {
+    return NumberOrNull(value);
+  } else {
+    return value;
+  }
+}
+
+/// Returns a member of a member.
+template <auto kFirst, auto... kMore, typename Whole>
+decltype(auto) Member(const Whole& whole) {
+  if constexpr (sizeof...(kMore) == 0) {
+    return std::invoke(kFirst, whole);
+  } else {
+    return Member<kMore...>(std::invoke(kFirst, whole));
+  }
+}
+
+template <auto... kMembers>
+Json Of(const Report& report) {
+  return JsonOf(Member<kMembers...>(report));
+}
+
+template <auto... kMembers>
+Json OfResiduals(const Report& report) {
+  return report.failed() ? Json() : JsonOf(Member<kMembers...>(report.fit.residuals));
+}
+
+template <auto... kMembers>
+Json OfAdequacy(const Report& report) {
+  return IsJudged(report) ? JsonOf(Member<kMembers...>(report.fit.adequacy)) : Json();
+}
+
+/// Returns a fact of the widest record; null where that closes no cycle.
+template <auto... kMembers>
+Json OfCycles(const Report& report) {
+  if (report.failed() || !report.fit.WidestRecord().facts.closed) return nullptr;
+  return JsonOf(Member<kMembers...>(report.fit.WidestRecord().facts));
+}
+
+/// Returns the same, else what is measured without a closed cycle.
+template <auto kFact, auto kMeasure>
+Json OfLoop(const Report& report) {
   if (report.failed()) return nullptr;
-  return NumberOrNull(get(report.fit.WidestRecord()));
+  const RecordFit& widest = report.fit.WidestRecord();
+  return NumberOrNull(widest.facts.closed ? widest.facts.*kFact : widest.measures.*kMeasure);
 }
 
-std::string WhyNotClosed(const Report&) { return "no cycle is closed"; }
-
-std::string WhyNotJudged(const Report&) {
-  return "there are too few samples to identify anything in addition to the model";
-}
+constexpr std::string_view kNotClosed = "no cycle is closed";
+constexpr std::string_view kNotJudged =
+    "there are too few samples to identify anything in addition to the model";
 
 // --- input
 
@@ -53,11 +98,21 @@ Json Columns(const Report& report) {
           {"normal_load", ColumnJson(first.normal_load ? &*first.normal_load : nullptr)}};
 }
 
-template <typename Get>
-std::size_t SumOver(const Report& report, Get get) {
+/// Returns the sum over the records of what one of them has.
+template <auto... kMembers>
+Json SumOver(const Report& report) {
   std::size_t sum = 0;
-  for (std::size_t r = 0; r < report.records.size(); ++r) sum += get(r);
+  for (const RecordFit& record : report.fit.records) sum += Member<kMembers...>(record);
   return sum;
+}
+
+Json Samples(const Report& report) {
+  std::size_t samples = 0;
+  for (const io::RecordFile& file : report.records) {
+    samples += file.record.size() + (file.piece ? file.piece->left_out : 0);
+  }
+  for (const LeftOut& part : report.left_out) samples += part.samples;
+  return samples;
 }
 
 Json LeftOutJson(const Report& report) {
@@ -117,12 +172,6 @@ Json Correlations(const Report& report) {
 
 // --- adequacy and what is measured
 
-template <typename Get>
-Json IfJudged(const Report& report, Get get) {
-  if (!IsJudged(report)) return nullptr;
-  return get(report.fit.adequacy);
-}
-
 Json Causes(const Report& report) {
   Json causes = Json::array();
   for (const identification::Cause& cause : report.fit.adequacy.causes) {
@@ -132,21 +181,6 @@ Json Causes(const Report& report) {
                       {"explains", NumberOrNull(cause.explains)}});
   }
   return causes;
-}
-
-/// Returns a fact of the widest record where it closes a cycle, else what is measured without one.
-template <typename Fact, typename Measure>
-Json Measured(const Report& report, Fact fact, Measure measure) {
-  return OfWidest(report, [&](const RecordFit& record) {
-    return record.facts.closed ? std::optional<double>(record.facts.*fact)
-                               : std::optional<double>(record.measures.*measure);
-  });
-}
-
-Json IfClosed(const Report& report, std::optional<double> (*get)(const loop::LoopFacts&)) {
-  return OfWidest(report, [&](const RecordFit& record) {
-    return record.facts.closed ? get(record.facts) : std::nullopt;
-  });
 }
 
 Json MeasuredCycles(const Report& report) {
@@ -176,11 +210,6 @@ Json Alternatives(const Report& report) {
   return list;
 }
 
-std::string WhyNoPreferredLaw(const Report& report) {
-  return report.fit.law_choice ? "the record does not distinguish the laws"
-                               : "Masing's law and Dahl's own are not compared";
-}
-
 Json Contact(const Report& report) {
   Json contact = Json::object();
   for (const ContactQuantity& quantity : report.contact) {
@@ -192,12 +221,8 @@ Json Contact(const Report& report) {
   return contact;
 }
 
-std::string WhyAlphaNotTested(const Report& report) {
-  const ParameterEstimate* alpha = report.fit.Find("alpha");
-  if (report.is_torsional()) return "of a torque against an angle";
-  if (alpha == nullptr || alpha->status == ParameterStatus::kFixed) return "alpha is held";
-  return alpha->is_known() ? "alpha is at a bound" : "alpha is not identifiable";
-}
+constexpr std::string_view kNotTested =
+    "alpha is held, at a bound or not identifiable, or it is a torque";
 
 Json ConsideredTerms(const Report& report) {
   Json list = Json::array();
@@ -228,7 +253,7 @@ std::vector<std::pair<std::string, std::string>> ReasonsOf(const Report& report)
   }
   reasons.emplace_back("", "not a finite number");
   for (const Field& field : Fields()) {
-    if (field.why_null != nullptr) reasons.emplace_back(field.path, field.why_null(report));
+    if (!field.why_null.empty()) reasons.emplace_back(field.path, field.why_null);
   }
   for (const ParameterEstimate& estimate : report.fit.parameters) {
     const std::string path = "parameters." + estimate.name;
@@ -270,35 +295,26 @@ void FindNulls(const Json& value, const std::string& path,
 
 const std::vector<Field>& Fields() {
   using R = const Report&;
+  using identification::Adequacy;
+  using identification::FitResult;
+  using identification::ResidualStatistics;
+  using identification::SolverReport;
+  using loop::LoopFacts;
+  using loop::LoopMeasures;
   static const std::vector<Field> fields = {
       {"schema", "", "mindahl.fit/2", [](R) { return Json("mindahl.fit/2"); }},
       {"version", "", "of the program", [](R) { return Json(Version()); }},
-      {"input.files", "", "names of the records", [](R report) { return Json(report.files); }},
-      {"input.columns", "",
-       "`name`, `index` from 1 and `unit` of displacement, force, time and normal_load in the "
-       "first "
-       "file",
-       Columns, [](R) { return std::string("the file has none, or it is not used"); }},
-      {"input.samples", "", "samples of all files, including those that do not count",
-       [](R report) {
-         return Json(SumOver(report, [&](auto r) {
-           const io::RecordFile& file = report.records[r];
-           return file.record.size() + (file.piece ? file.piece->left_out : 0);
-         }));
-       }},
+      {"input.files", "", "names of the records", Of<&Report::files>},
+      {"input.columns", "", "`name`, `index` from 1 and `unit` of each in the first file", Columns,
+       "the file has none, or it is not used"},
+      {"input.samples", "", "samples of all files, including those that do not count", Samples},
       {"input.cycles", "", "complete cycles of all records",
-       [](R report) {
-         return Json(
-             SumOver(report, [&](auto r) { return report.fit.records[r].measures.cycles; }));
-       }},
+       SumOver<&RecordFit::measures, &LoopMeasures::cycles>},
       {"input.reversals", "", "turning points of all records",
-       [](R report) {
-         return Json(
-             SumOver(report, [&](auto r) { return report.fit.records[r].reversals.size(); }));
-       }},
+       SumOver<&RecordFit::reversals, &std::vector<std::size_t>::size>},
       {"input.left_out", "",
        "samples that do not count: `file`, `samples`, `first` and `last` line, `why`", LeftOutJson,
-       [](R) { return std::string("they are not in a row"); }},
+       "they are not in a row"},
       {"model", "", "the law that was fitted",
        [](R report) { return Json(report.fit.model->name); }},
       {"initial_state", "", "`virgin`, `steady` or `mixed`",
@@ -309,88 +325,55 @@ const std::vector<Field>& Fields() {
        "by name: `value`, `unit`, `ci95`, `standard_error`, `status`, `identifiability`",
        Parameters},
       {"correlation", "-", "of the errors of two parameters, by their names", Correlations,
-       [](R) { return std::string("one of the two is not fitted, or has no error"); }},
+       "one of the two is not fitted, or has no error"},
       {"residuals.rms", "response", "rms of fitted less measured",
-       [](R report) { return NumberOrNull(report.fit.residuals.rms); }},
-      {"residuals.max_abs", "response", "the largest",
-       [](R report) { return NumberOrNull(report.fit.residuals.max_abs); }},
+       OfResiduals<&ResidualStatistics::rms>},
+      {"residuals.max_abs", "response", "the largest", OfResiduals<&ResidualStatistics::max_abs>},
       {"residuals.r_squared", "-", "fraction of the variance that the fit explains",
-       [](R report) { return NumberOrNull(report.fit.residuals.r_squared); }},
+       OfResiduals<&ResidualStatistics::r_squared>},
       {"residuals.durbin_watson", "-", "2 of white residuals, towards 0 of autocorrelated ones",
-       [](R report) { return NumberOrNull(report.fit.residuals.durbin_watson); }},
+       OfResiduals<&ResidualStatistics::durbin_watson>},
       {"residuals.effective_samples", "-", "independent samples of equal information",
-       [](R report) { return NumberOrNull(report.fit.residuals.effective_samples); }},
+       OfResiduals<&ResidualStatistics::effective_samples>},
       {"solver.solver", "", "`tiny_solver` or `solve` of Ceres, `none`",
-       [](R report) { return Json(report.fit.solver.solver); }},
+       Of<&Report::fit, &FitResult::solver, &SolverReport::solver>},
       {"solver.termination", "", "as Ceres reports it",
-       [](R report) { return Json(report.fit.solver.termination); }},
+       Of<&Report::fit, &FitResult::solver, &SolverReport::termination>},
       {"solver.converged", "", "true if the search converged",
-       [](R report) { return Json(report.fit.converged); }},
+       Of<&Report::fit, &FitResult::converged>},
       {"solver.iterations", "", "of all searches from the best start",
-       [](R report) { return Json(report.fit.solver.iterations); }},
+       Of<&Report::fit, &FitResult::solver, &SolverReport::iterations>},
       {"solver.final_cost", "response²", "half the weighted sum of squares",
-       [](R report) { return NumberOrNull(report.fit.solver.final_cost); }},
+       Of<&Report::fit, &FitResult::solver, &SolverReport::final_cost>},
       {"adequacy.verdict", "", "`adequate`, `doubtful` or `inadequate`",
-       [](R report) {
-         return IfJudged(report, [](const auto& adequacy) { return Json(Name(adequacy.verdict)); });
-       },
-       WhyNotJudged},
+       OfAdequacy<&Adequacy::verdict>, kNotJudged},
       {"adequacy.use", "",
        "`quantitative` up to 5 % of misfit over half gap, `indicative` up to 15 %, `none`",
-       [](R report) {
-         return IfJudged(report, [](const auto& adequacy) { return Json(Name(adequacy.use)); });
-       },
-       WhyNotJudged},
+       OfAdequacy<&Adequacy::use>, kNotJudged},
       {"adequacy.p_value", "-", "probability of such residuals from noise alone",
-       [](R report) {
-         return IfJudged(report, [](const auto& a) { return NumberOrNull(a.p_value); });
-       },
-       WhyNotJudged},
+       OfAdequacy<&Adequacy::p_value>, kNotJudged},
       {"adequacy.misfit_over_noise", "-", "rms of what the model misses over that of the noise",
-       [](R report) {
-         return IfJudged(report, [](const auto& a) { return NumberOrNull(a.misfit_over_noise); });
-       },
-       WhyNotJudged},
+       OfAdequacy<&Adequacy::misfit_over_noise>, kNotJudged},
       {"adequacy.misfit_over_half_gap", "-", "the same over the measured half gap",
-       [](R report) {
-         return IfJudged(report,
-                         [](const auto& a) { return NumberOrNull(a.misfit_over_half_gap); });
-       },
-       [](R report) {
-         return IsJudged(report) ? std::string("no half gap is measured") : WhyNotJudged(report);
-       }},
+       OfAdequacy<&Adequacy::misfit_over_half_gap>, "it is not judged, or no half gap is measured"},
       {"adequacy.causes", "",
        "terms that the residuals look like: `code`, `term`, `delta_aicc`, `explains`", Causes,
-       [](R) { return std::string("no term takes it into account"); }},
+       "no term takes it into account"},
       {"measured.half_gap.value", "N", "half the force between the strokes, at their middle",
-       [](R report) { return IfClosed(report, [](const auto& facts) { return facts.half_gap; }); },
-       WhyNotClosed},
+       OfCycles<&LoopFacts::half_gap>, kNotClosed},
       {"measured.half_gap.standard_deviation", "N", "between cycles",
-       [](R report) {
-         return IfClosed(report, [](const auto& f) { return f.half_gap_standard_deviation; });
-       },
-       [](R) { return std::string("there are fewer than two cycles of the widest amplitude"); }},
+       OfCycles<&LoopFacts::half_gap_standard_deviation>,
+       "there are fewer than two cycles of the widest amplitude"},
       {"measured.amplitude", "m", "half the travel of the widest cycles",
-       [](R report) {
-         return Measured(report, &loop::LoopFacts::amplitude, &loop::LoopMeasures::amplitude);
-       }},
+       OfLoop<&LoopFacts::amplitude, &LoopMeasures::amplitude>},
       {"measured.peak_force", "N", "half the range of the force",
-       [](R report) {
-         return Measured(report, &loop::LoopFacts::peak_force, &loop::LoopMeasures::peak_force);
-       }},
+       OfLoop<&LoopFacts::peak_force, &LoopMeasures::peak_force>},
       {"measured.energy_per_cycle", "J", "enclosed by a cycle",
-       [](R report) {
-         return IfClosed(report, [](const auto& f) { return std::optional(f.energy_per_cycle); });
-       },
-       WhyNotClosed},
+       OfCycles<&LoopFacts::energy_per_cycle>, kNotClosed},
       {"measured.energy_ratio", "-", "energy over 4·amplitude·peak force",
-       [](R report) {
-         return IfClosed(report, [](const auto& f) { return std::optional(f.energy_ratio); });
-       },
-       WhyNotClosed},
+       OfCycles<&LoopFacts::energy_ratio>, kNotClosed},
       {"measured.asymmetry", "-", "distance of one stroke from the other turned about the centre",
-       [](R report) { return IfClosed(report, [](const auto& facts) { return facts.asymmetry; }); },
-       WhyNotClosed},
+       OfCycles<&LoopFacts::asymmetry>, kNotClosed},
       {"measured.slides", "", "true if the loop slides",
        [](R report) {
          return report.failed() ? Json() : Json(loop::Slides(report.fit.WidestRecord().facts));
@@ -398,7 +381,7 @@ const std::vector<Field>& Fields() {
       {"measured.cycles", "",
        "each cycle of the widest record: `start`, `amplitude`, `peak_force`, `half_gap`, `energy`, "
        "`energy_ratio`",
-       MeasuredCycles, [](R) { return std::string("the cycle does not show it"); }},
+       MeasuredCycles, "the cycle does not show it"},
       {"law.decided", "", "true if the record distinguishes Masing's law and Dahl's own",
        [](R report) { return Json(report.fit.law_choice && report.fit.law_choice->decided); }},
       {"law.preferred", "", "`mindlin-dahl` or `dahl`",
@@ -406,7 +389,7 @@ const std::vector<Field>& Fields() {
          const auto& choice = report.fit.law_choice;
          return choice && choice->preferred != nullptr ? Json(choice->preferred->name) : Json();
        },
-       WhyNoPreferredLaw},
+       "the record does not distinguish the laws, or they are not compared"},
       {"law.alternatives", "", "the other law: `law`, `sigma`, `alpha`, `slip_force`",
        Alternatives},
       {"law.delta_aicc", "-", "AICc of the other law less that of the fitted one",
@@ -414,25 +397,18 @@ const std::vector<Field>& Fields() {
          const auto& choice = report.fit.law_choice;
          return choice ? NumberOrNull(choice->delta_aicc) : Json();
        },
-       [](R report) {
-         return report.fit.law_choice
-                    ? std::string("both give the same steady loop of one amplitude")
-                    : WhyNoPreferredLaw(report);
-       }},
+       "both give the same steady loop of one amplitude, or they are not compared"},
       {"contact", "", "by name: `value`, `ci95`, `unit`; empty of a torque", Contact},
-      {"mapping.alpha_minus_third", "-", "α − 1/3",
-       [](R report) { return NumberOrNull(report.alpha.minus_third); }, WhyAlphaNotTested},
+      {"mapping.alpha_minus_third", "-", "α − 1/3", Of<&Report::alpha, &AlphaTest::minus_third>,
+       kNotTested},
       {"mapping.p_value", "-", "two-sided p-value of α = 1/3",
-       [](R report) { return NumberOrNull(report.alpha.p_value); }, WhyAlphaNotTested},
+       Of<&Report::alpha, &AlphaTest::p_value>, kNotTested},
       {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)",
        [](R report) {
          const ContactQuantity* ratio = report.Find("sigma_over_hertz_mindlin");
          return ratio != nullptr ? NumberOrNull(ratio->value) : Json();
        },
-       [](R report) {
-         const ContactQuantity* ratio = report.Find("sigma_over_hertz_mindlin");
-         return ratio != nullptr ? ratio->why : std::string("of a torque against an angle");
-       }},
+       "as of contact.sigma_over_hertz_mindlin; not of a torque"},
       {"terms.mode", "", "`none`, `auto` or `named`",
        [](R report) {
          if (report.terms && !report.terms->considered.empty()) return Json("auto");
@@ -448,9 +424,8 @@ const std::vector<Field>& Fields() {
        }},
       {"next", "",
        "`text`, `options`, `misfit_before`, `misfit_after` over the half gap, of what was tried",
-       Next, [](R) { return std::string("nothing that was tried helps by a tenth"); }},
-      {"confidence", "-", "of every interval",
-       [](R report) { return Json(report.fit.confidence); }},
+       Next, "nothing that was tried helps by a tenth"},
+      {"confidence", "-", "of every interval", Of<&Report::fit, &FitResult::confidence>},
       {"warnings", "", "`code` and `message` of what a person should act on",
        [](R report) {
          Json list = Json::array();
@@ -473,8 +448,7 @@ Json JsonDocument(const Report& report) {
       place = &(*place)[std::string(path.substr(0, dot))];
       if (dot != std::string_view::npos) path.remove_prefix(dot + 1);
     }
-    const bool is_of_residuals = field.path.starts_with("residuals.");
-    *place = report.failed() && is_of_residuals ? Json() : field.get(report);
+    *place = field.get(report);
   }
   Json nulls = Json::array();
   FindNulls(document, "", ReasonsOf(report), nulls);

@@ -21,8 +21,7 @@ struct Field {
   std::string_view meaning;  ///< in words
   /// Makes the value, null where there is none; it may be a list or an object of any depth.
   Json (*get)(const Report&);
-  /// Says why it, or a member of it, is null.
-  std::string (*why_null)(const Report&) = nullptr;
+  std::string_view why_null = {};  ///< why it, or a member of it, is null
 };
 
 const std::vector<Field>& Fields();
