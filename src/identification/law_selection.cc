@@ -56,11 +56,10 @@ bool MayFollowOtherLaw(const FitResult& fit, const FitOptions& options) {
                            fit.Find("asymmetry") == nullptr &&
                            std::ranges::none_of(fit.records, &RecordFit::load_varies);
   if (!is_compared) return false;
-  if (fit.law_choice && fit.law_choice->preferred == fit.law_choice->alternative &&
-      fit.law_choice->preferred != nullptr) {
-    return true;
-  }
-  return !fit.converged || fit.adequacy.verdict != AdequacyVerdict::kAdequate;
+  if (!fit.law_choice) return !fit.converged;
+  const models::FrictionModel* preferred = fit.law_choice->preferred;
+  if (preferred != nullptr) return preferred == fit.law_choice->alternative;
+  return fit.adequacy.verdict != AdequacyVerdict::kAdequate;
 }
 
 bool IsBetterLaw(const FitResult& other, const FitResult& than, const Thresholds& thresholds) {

@@ -27,8 +27,9 @@ std::set<std::string> Difference(const std::set<std::string>& all,
 
 std::set<std::string> OptionsOfHelp(const std::string& command) {
   std::set<std::string> options =
-      Matches(RunCommand({command, "--help"}).out, "\n  (?:-[a-z],)?(--[a-z][a-z0-9-]*)");
+      Matches(RunCommand({command, "--help-all"}).out, "\n  (?:-[a-z],)?(--[a-z][a-z0-9-]*)");
   options.erase("--help");
+  options.erase("--help-all");
   return options;
 }
 

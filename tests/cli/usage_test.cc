@@ -28,7 +28,7 @@ TEST(Help, OfEveryCommandExitsWithZeroAndGoesToStdout) {
 
 TEST(Help, OfCommandsWithPhysicalOptionsStatesTheirUnits) {
   const auto expect_all = [](const char* command, const Words& texts) {
-    const std::string help = RunCommand({command, "--help"}).out;
+    const std::string help = RunCommand({command, "--help-all"}).out;
     for (const std::string& text : texts) EXPECT_THAT(help, HasSubstr(text)) << command;
   };
   expect_all("fit", {"[N/m]", "[N]", "[m]", "[Pa]", "[1/Pa]", "compliance", "um, nm, in"});
@@ -408,7 +408,7 @@ TEST_F(Config, GivesOptionsWithAndWithoutTheCommandsSection) {
     const Outcome outcome = FitWith(toml);
     ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
     EXPECT_EQ(outcome.Json()["model"], "mindlin");
-    EXPECT_EQ(outcome.Json()["contact"]["normal_load"], 50.0);
+    EXPECT_EQ(outcome.Json()["contact"]["normal_load"]["value"], 50.0);
   }
 }
 

@@ -105,14 +105,14 @@ TEST(FitRecords, RefusesALoadWindowThatHoldsNoSample) {
   FitRequest request;
   request.load_window = {90, 110};
   EXPECT_EQ(RefusalOf({file}, request),
-            "a.csv: --load-window 90:110 holds no sample: the normal load runs from 80 to 120 N");
+            "a.csv: --select load=90:110 holds no sample: the normal load runs from 80 to 120 N");
   request.load_window = {121, 130};
   EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
   request.load_window = {60, 79};
   EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
   request.load_window = {60, 80};
   EXPECT_THAT(RefusalOf({file}, request), Not(HasSubstr("holds no sample")));
-  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("--load-window needs a normal load"));
+  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("--select load=LO:HI needs a normal load"));
 }
 
 TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {

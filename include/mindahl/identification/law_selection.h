@@ -5,8 +5,8 @@
 namespace mindahl::identification {
 
 /// True if a record that Masing's law was fitted to may follow Dahl's own: that is preferred by the
-/// comparison of a fit at Depth::kFull, or the model is not adequate. False where the two cannot be
-/// compared: where σ or Tc is held, slip forces differ or the load varies.
+/// comparison of a fit at Depth::kFull, or that is undecided and the model not adequate. False
+/// where the two cannot be compared: where σ or Tc is held, slip forces differ or the load varies.
 /// @param options  of the fit
 bool MayFollowOtherLaw(const FitResult& fit, const FitOptions& options);
 
