@@ -105,7 +105,8 @@ struct Part {
 
 /// Follows the turning points from an end of the test's strokes outwards, as long as none leaves
 /// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
-/// left is travel unless it has as many strokes of that range as make a test.
+/// left is travel unless it has as many strokes, as wide or wider, as make a test: a random motion
+/// is one.
 /// @param travel  [m] by which travel leaves the positions
 template <typename Places>
 Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel) {
@@ -122,12 +123,12 @@ Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel
     highest = std::max(highest, at);
   }
   if (place == places.end()) return outside;
-  std::size_t like_those = 0;
+  std::size_t as_wide = 0;
   for (auto next = std::next(place); next != places.end(); ++place, ++next) {
     const double range = std::abs(next->displacement - place->displacement);
-    if (range > strokes.range / 2 && range < strokes.range + travel) ++like_those;
+    if (range > strokes.range / 2) ++as_wide;
   }
-  outside.is_travel = like_those < TestPartRules().fewest;
+  outside.is_travel = as_wide < TestPartRules().fewest;
   return outside;
 }
 

@@ -112,7 +112,8 @@ TEST(FitRecords, RefusesALoadWindowThatHoldsNoSample) {
   EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
   request.load_window = {60, 80};
   EXPECT_THAT(RefusalOf({file}, request), Not(HasSubstr("holds no sample")));
-  EXPECT_THAT(RefusalOf({LoopFile()}, request), HasSubstr("--select load=LO:HI needs a normal load"));
+  EXPECT_THAT(RefusalOf({LoopFile()}, request),
+              HasSubstr("--select load=LO:HI needs a normal load"));
 }
 
 TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {

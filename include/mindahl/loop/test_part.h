@@ -42,7 +42,7 @@ struct TestPart {
 ///    repeat - four or more of one range, to a tenth, that fill their time and that no jump between
 ///    two samples makes - are the test's. From them outwards amplitude and mean may change slowly;
 ///    what leaves all positions so far by more than a quarter of a stroke at once is travel, unless
-///    it has four such strokes itself;
+///    it has four strokes itself that are as wide or wider, as a random motion has;
 ///  - rest: the displacement stays within 1 % of half its range, or within the noise that makes no
 ///    reversal, for longer than half a usual stroke. One sample of it stays.
 ///
