@@ -105,6 +105,8 @@ struct TestPartRules {
   /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
   /// growing amplitude and a nested loop are inside.
   double travel = 0.25;
+  /// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
+  double small_part = 0.125;
   /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.
   std::size_t classes = 64;
   /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.

@@ -105,11 +105,13 @@ struct Part {
 
 /// Follows the turning points from an end of the test's strokes outwards, as long as none leaves
 /// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
-/// left is travel unless it has as many strokes, as wide or wider, as make a test: a random motion
-/// is one.
+/// left is travel unless it has as many strokes, as wide or wider, as make a test, and more than a
+/// small part of all: a random motion is a test, the swings of a broken specimen are none.
 /// @param travel  [m] by which travel leaves the positions
+/// @param count   number of the strokes of the record
 template <typename Places>
-Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel) {
+Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel,
+             std::size_t count) {
   double lowest = strokes.lowest;
   double highest = strokes.highest;
   auto place = places.begin();
@@ -128,7 +130,9 @@ Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel
     const double range = std::abs(next->displacement - place->displacement);
     if (range > strokes.range / 2) ++as_wide;
   }
-  outside.is_travel = as_wide < TestPartRules().fewest;
+  const TestPartRules rules;
+  const auto small_part = static_cast<std::size_t>(rules.small_part * static_cast<double>(count));
+  outside.is_travel = as_wide < std::max(rules.fewest, small_part);
   return outside;
 }
 
@@ -204,10 +208,11 @@ class TestSearch {
       return std::ranges::lower_bound(places, sample, {}, &Place::sample);
     };
     const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
-    const Part before = Outside(std::ranges::subrange(begin, places.rend()), *strokes, travel);
+    const Part before =
+        Outside(std::ranges::subrange(begin, places.rend()), *strokes, travel, places.size());
     if (before.is_travel) CutBefore(LeftOutReason::kTravel, from + before.sample);
-    const Part after =
-        Outside(std::ranges::subrange(turn(strokes->last), places.end()), *strokes, travel);
+    const Part after = Outside(std::ranges::subrange(turn(strokes->last), places.end()), *strokes,
+                               travel, places.size());
     if (after.is_travel) CutAfter(LeftOutReason::kTravel, from + after.sample + 1);
   }
 
