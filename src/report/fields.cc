@@ -281,10 +281,12 @@ const std::vector<Field>& Fields() {
        Columns, [](R) { return std::string("the file has none, or it is not used"); }},
       {"input.samples", "", "samples of all files, including those that do not count",
        [](R report) {
-         return Json(SumOver(report, [&](auto r) {
-           const io::RecordFile& file = report.records[r];
-           return file.record.size() + (file.piece ? file.piece->left_out : 0);
-         }));
+         std::size_t left_out = 0;
+         for (const LeftOut& part : report.left_out) left_out += part.samples;
+         return Json(left_out + SumOver(report, [&](auto r) {
+                       const io::RecordFile& file = report.records[r];
+                       return file.record.size() + (file.piece ? file.piece->left_out : 0);
+                     }));
        }},
       {"input.cycles", "", "complete cycles of all records",
        [](R report) {
