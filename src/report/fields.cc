@@ -305,9 +305,11 @@ const std::vector<Field>& Fields() {
       {"schema", "", "mindahl.fit/2", [](R) { return Json("mindahl.fit/2"); }},
       {"version", "", "of the program", [](R) { return Json(Version()); }},
       {"input.files", "", "names of the records", Of<&Report::files>},
-      {"input.columns", "", "`name`, `index` from 1 and `unit` of displacement, force, time and normal_load in the first "
-       "file", Columns,
-       "the file has none, or it is not used"},
+      {"input.columns", "",
+       "`name`, `index` from 1 and `unit` of displacement, force, time and normal_load in the "
+       "first "
+       "file",
+       Columns, "the file has none, or it is not used"},
       {"input.samples", "", "samples of all files, including those that do not count", Samples},
       {"input.cycles", "", "complete cycles of all records",
        SumOver<&RecordFit::measures, &LoopMeasures::cycles>},
