@@ -116,7 +116,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   AddColumnOptions(command, options->columns);
   expected
       .Add("--rig-stiffness", options->plan.rig_stiffness,
-           "stiffness of the rig in series [N/m], with which --record is fitted too;\nknown "
+           "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
            "unless --with fits it",
            "K")
       .InUnit("N/m");

@@ -28,8 +28,8 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"fit": 5, "simulate": 5, "contact": 1, "tradeoff": 2, "convert": 1,
-                   "plan": 1, "track": 4, "batch": 5}  # those that it shares with fit
+WIDE_LINES_LEFT = {"fit": 4, "simulate": 4, "contact": 1, "tradeoff": 2, "convert": 1,
+                   "plan": 1, "track": 4, "batch": 4}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
@@ -59,6 +59,7 @@ EXEMPT = {
 
 # Options of other programs in the documentation.
 OF_OTHERS = {
+    "--samples", "--time-window", "--load-window",  # older names of --select, hidden
     "--preset", "--build", "--install", "--target", "--peers", "--prefix", "--cflags", "--libs",
     "--static", "--enable", "--std",
     "--component", "--no-index", "--no-deps", "--no-build-isolation",
