@@ -300,9 +300,7 @@ class Writer {
                            (!finding.parameters.empty() || finding.code == "slow_residuals");
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
       std::string text = Sentence(finding, fit_, report_.units);
-      // Names only what no line has: "sigma, alpha" of a finding about both.
-      if (finding.parameters.size() > 1 ||
-          (finding.parameters.size() == 1 && !IsOfLaw(finding.parameters.front()))) {
+      if (!finding.parameters.empty()) {
         text = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), text);
       }
       Add("note", std::move(text), Judgement::kPoor);
