@@ -6,6 +6,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(Threads REQUIRED)
 find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
+find_package(ZLIB 1.2 REQUIRED)
 
 # CLI11 is header-only and Debian ships its package config.
 find_package(CLI11 2.1 REQUIRED)
@@ -19,13 +20,3 @@ target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUD
 find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
 add_library(kainjow::mustache INTERFACE IMPORTED)
 target_include_directories(kainjow::mustache INTERFACE ${MUSTACHE_INCLUDE_DIR})
-
-# libcsv has neither a package config nor a .pc file.
-find_path(LIBCSV_INCLUDE_DIR csv.h REQUIRED)
-find_library(LIBCSV_LIBRARY csv REQUIRED)
-if(NOT TARGET libcsv::libcsv)
-  add_library(libcsv::libcsv UNKNOWN IMPORTED)
-  set_target_properties(libcsv::libcsv PROPERTIES
-    IMPORTED_LOCATION "${LIBCSV_LIBRARY}"
-    INTERFACE_INCLUDE_DIRECTORIES "${LIBCSV_INCLUDE_DIR}")
-endif()

@@ -361,6 +361,20 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
       .WholeNumber(1, 1'000'000'000'000'000'000)
       .WithUnitOfSize();
   AddSelections(command, request);
+  const OptionGroup group(command, std::string(kColumnGroup));
+  io::RecordColumns& columns = request.columns;
+  group.Add("--with", columns.with,
+            "another file of the same test, whose columns follow those of the file:\nby time "
+            "where both have one, else row by row",
+            "FILE");
+  group
+      .AddRead(
+          "--broken-rows",
+          [&columns](const std::string& text) { columns.skip_broken_rows = text == "skip"; },
+          "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
+          "empty cells, which are left out; skip: all are left out",
+          "refuse|skip")
+      .OneOf({"refuse", "skip"});
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "io/input_file.h"
+#include "io/source.h"
 
 namespace mindahl::cli {
 namespace {

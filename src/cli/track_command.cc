@@ -24,7 +24,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/provenance.h"
-#include "io/input_file.h"
+#include "io/source.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"

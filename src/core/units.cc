@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/from_chars.h"
+#include "core/text.h"
 
 namespace mindahl {
 namespace {
@@ -18,8 +19,9 @@ struct Entry {
 };
 
 constexpr std::array kLengths = {
-    Entry{"m", 1, 1},    Entry{"mm", 1, 1e3},   Entry{"um", 1, 1e6},    Entry{"nm", 1, 1e9},
-    Entry{"cm", 1, 1e2}, Entry{"in", 254, 1e4}, Entry{"ft", 3048, 1e4}, Entry{"mil", 254, 1e7},
+    Entry{"m", 1, 1},       Entry{"mm", 1, 1e3},    Entry{"um", 1, 1e6},
+    Entry{"nm", 1, 1e9},    Entry{"cm", 1, 1e2},    Entry{"in", 254, 1e4},
+    Entry{"ft", 3048, 1e4}, Entry{"mil", 254, 1e7}, Entry{"pm", 1, 1e12},
 };
 constexpr std::array kForces = {
     Entry{"N", 1, 1},          Entry{"mN", 1, 1e3},
@@ -27,6 +29,7 @@ constexpr std::array kForces = {
     Entry{"MN", 1e6, 1},       Entry{"lbf", 4.4482216152605, 1},
     Entry{"kgf", 9.80665, 1},  Entry{"kip", 4448.2216152605, 1},
     Entry{"gf", 9.80665, 1e3}, Entry{"daN", 10, 1},
+    Entry{"dyn", 1, 1e5},
 };
 constexpr std::array kAngles = {
     Entry{"rad", 1, 1},
@@ -44,10 +47,8 @@ constexpr std::array kTorques = {
     Entry{"lbf ft", 4.4482216152605 * 0.3048, 1},
 };
 constexpr std::array kTimes = {
-    Entry{"s", 1, 1},
-    Entry{"ms", 1, 1e3},
-    Entry{"us", 1, 1e6},
-    Entry{"min", 60, 1},
+    Entry{"s", 1, 1},    Entry{"ms", 1, 1e3}, Entry{"us", 1, 1e6},
+    Entry{"ns", 1, 1e9}, Entry{"min", 60, 1}, Entry{"h", 3600, 1},
 };
 
 constexpr std::array kPressures = {
@@ -67,20 +68,82 @@ struct Synonym {
   std::string_view written;
   std::string_view symbol;
 };
-// A mass that stands for a force is its weight.
-constexpr std::array kSynonyms = {
-    Synonym{"micron", "um"}, Synonym{"microns", "um"}, Synonym{"inch", "in"},
-    Synonym{"Inch", "in"},   Synonym{"inches", "in"},  Synonym{"\"", "in"},
-    Synonym{"feet", "ft"},   Synonym{"thou", "mil"},   Synonym{"g", "gf"},
-    Synonym{"kg", "kgf"},    Synonym{"kp", "kgf"},     Synonym{"lb", "lbf"},
-    Synonym{"lbs", "lbf"},   Synonym{"kips", "kip"},   Synonym{"sec", "s"},
-    Synonym{"msec", "ms"},
-};
+// A mass that stands for a force is its weight. Words in lower case count in any case.
+constexpr auto kSynonyms = std::to_array<Synonym>({
+    {"micron", "um"},
+    {"microns", "um"},
+    {"micrometer", "um"},
+    {"micrometers", "um"},
+    {"micrometre", "um"},
+    {"inch", "in"},
+    {"inches", "in"},
+    {"\"", "in"},
+    {"feet", "ft"},
+    {"thou", "mil"},
+    {"meter", "m"},
+    {"meters", "m"},
+    {"metre", "m"},
+    {"metres", "m"},
+    {"millimeter", "mm"},
+    {"millimeters", "mm"},
+    {"millimetre", "mm"},
+    {"millimetres", "mm"},
+    {"毫米", "mm"},
+    {"微米", "um"},
+    {"newton", "N"},
+    {"newtons", "N"},
+    {"kilonewton", "kN"},
+    {"kilonewtons", "kN"},
+    {"牛", "N"},
+    {"千牛", "kN"},
+    {"g", "gf"},
+    {"gram", "gf"},
+    {"grams", "gf"},
+    {"gramm", "gf"},
+    {"kg", "kgf"},
+    {"kp", "kgf"},
+    {"lb", "lbf"},
+    {"lbs", "lbf"},
+    {"pounds", "lbf"},
+    {"kips", "kip"},
+    {"dyne", "dyn"},
+    {"dynes", "dyn"},
+    {"KN", "kN"},
+    {"MM", "mm"},
+    {"sec", "s"},
+    {"secs", "s"},
+    {"second", "s"},
+    {"seconds", "s"},
+    {"sek", "s"},
+    {"秒", "s"},
+    {"msec", "ms"},
+    {"毫秒", "ms"},
+    {"milliseconds", "ms"},
+    {"millis", "ms"},
+    {"usec", "us"},
+    {"nsec", "ns"},
+    {"minute", "min"},
+    {"minutes", "min"},
+    {"hour", "h"},
+    {"hours", "h"},
+    {"hr", "h"},
+    {"radian", "rad"},
+    {"radians", "rad"},
+    {"degree", "deg"},
+    {"degrees", "deg"},
+    {"度", "deg"},
+    {"revolutions", "rev"},
+});
 
 /// "µ" has two code points, U+00B5 and U+03BC; both become "u".
 std::string WithAsciiMicro(std::string_view symbol) {
-  const auto synonym = std::ranges::find(kSynonyms, symbol, &Synonym::written);
-  if (synonym != kSynonyms.end()) return std::string(synonym->symbol);
+  const std::string lower = LowerCase(symbol);
+  for (const std::string_view written : {symbol, std::string_view(lower)}) {
+    // A single letter, or two, differ by their case: g and G, mN and MN.
+    if (written != symbol && symbol.size() < 3) break;
+    const auto synonym = std::ranges::find(kSynonyms, written, &Synonym::written);
+    if (synonym != kSynonyms.end()) return std::string(synonym->symbol);
+  }
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
     if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
   }

@@ -1,50 +1,55 @@
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "io/expression.h"
-#include "mindahl/core/units.h"
-#include "mindahl/io/csv_table.h"
-#include "mindahl/io/record_reader.h"
-
 namespace mindahl::io {
+
+/// Names what a column may be.
+enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kResponse, kOther };
+
+enum class Dimension { kNone, kLength, kAngle, kForce, kTorque, kTime, kOther };
+
+/// Returns the dimension of a unit; kNone for "".
+Dimension DimensionOfUnit(std::string_view symbol);
+/// True if a quantity of that dimension may have the role.
+bool MayHaveRole(Dimension dimension, Role role);
 
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
   std::string name;
-  std::string unit;  ///< unit as written; empty when the header names none
+  std::string unit = {};  ///< as written; empty when the header names none
+  Dimension dimension = Dimension::kNone;
 };
 
 /// Takes the unit off a header cell:
-///   x [um]   F (kN)     any text in brackets at the end
-///   Position, mm        a word of at most 8 bytes after the last comma
-///   x / mm              a word of at most 8 bytes after the first slash
-///   disp_mm   Force N   after the last underscore or blank, a symbol that core/units.h knows
+///   x [um]   F (kN)   F [kN] left   a unit in brackets; at the end also a word that is none known
+///   Position, mm   x / mm           a unit after the last comma or the first slash
+///   disp_mm   Kraft in N            after the last underscore or blank, a unit of what the name is
+/// Brackets without a unit, "pos (3)" and "Load [23.8 N]", are part of the name.
 ColumnName SplitColumnName(std::string_view header);
 
 /// The text in brackets, or the cell itself: "[mm]", "(mm)" and "mm" are "mm".
 std::string_view WithoutBrackets(std::string_view cell);
 
-/// True for a bracketed text and for the symbol of a unit usual in such files (mm, N, s, V,
-/// bar...).
+/// True for the symbol of a unit usual in such files (mm, N, V, bar...), and for a word in
+/// brackets.
 bool LooksLikeUnit(std::string_view cell);
 
-/// Holds what the user gives for each role.
-struct GivenColumns {
-  Expression displacement, force, time, normal_load;
+/// Holds what the words of a name say; those of words.h.
+struct NameEvidence {
+  std::string_view word = {};  ///< the best; "" where none is known
+  Role role = Role::kOther;
+  int rank = 0;
+  bool is_angular = false;  ///< of an angle or a torque
+  bool is_lesser = false;   ///< commanded, raw or a statistic
+  std::size_t other_words = 0;
 };
-GivenColumns ReadGivenColumns(const CsvTable& table, const RecordColumns& columns);
+NameEvidence EvidenceOf(std::string_view name);
 
-/// RecordOf() of rows the order of whose times is for the caller to judge.
-RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns);
-
-/// Describes a time before that of the row above, and the remedy: "time = 1.5 s is before …"; ""
-/// where there is no fault. Times may be equal: a clock of few digits stands still.
-std::string DescribeTimeFault(double time, double time_above, std::string_view unit);
-
-/// Returns the unit of a force, or of the torque that a joint carries.
-std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol);
+/// Returns how many of the header cells have a word or a unit that is known.
+std::size_t CountKnownWords(std::span<const std::string> cells);
 
 }  // namespace mindahl::io

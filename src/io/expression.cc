@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/from_chars.h"
-#include "io/number_cell.h"
+#include "io/cells.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {

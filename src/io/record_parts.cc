@@ -93,4 +93,60 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
   return records;
 }
 
+void JoinedTimes::Shift(std::vector<double>& times) {
+  if (times.empty()) return;
+  if (begins_ && times.front() + shift_ < last_) shift_ = last_ + step_ - times.front();
+  begins_ = false;
+  for (double& time : times) time += shift_;
+  if (times.size() > 1) step_ = times.back() - times[times.size() - 2];
+  last_ = times.back();
+}
+
+void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
+                     const std::string& next_name) {
+  const auto require = [&](bool same, std::string_view what) {
+    if (same) return;
+    throw InputError(
+        fmt::format("--join: one of {} and {} has {} and the other does not: pieces of one record "
+                    "must have the same columns",
+                    first_name, next_name, what));
+  };
+  require(next.time.has_value() == first.time.has_value(), "a time");
+  require(next.normal_load.has_value() == first.normal_load.has_value(), "a normal load");
+  require(next.is_torsional == first.is_torsional, "a torque");
+}
+
+RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names) {
+  RecordFile joined = std::move(records.front());
+  joined.lines.clear();
+  JoinedTimes times;
+  times.Shift(joined.record.time);
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    RecordFile& next = records[k];
+    RequireJoinable(joined, names.front(), next, names[k]);
+    times.NextFile();
+    times.Shift(next.record.time);
+    const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    loop::Record& record = joined.record;
+    append(next.record.displacement, record.displacement);
+    append(next.record.force, record.force);
+    append(next.record.time, record.time);
+    append(next.record.normal_load, record.normal_load);
+    for (std::size_t c = record.covariates.size(); c-- > 0;) {
+      const auto same = std::ranges::find(next.record.covariates, record.covariates[c].name,
+                                          &loop::Covariate::name);
+      if (same != next.record.covariates.end()) {
+        append(same->values, record.covariates[c].values);
+      } else {
+        record.covariates.erase(record.covariates.begin() + static_cast<std::ptrdiff_t>(c));
+        joined.covariates.erase(joined.covariates.begin() + static_cast<std::ptrdiff_t>(c));
+      }
+    }
+    joined.notes.insert(joined.notes.end(), next.notes.begin(), next.notes.end());
+  }
+  return joined;
+}
+
 }  // namespace mindahl::io

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "io/input_file.h"
+#include "io/source.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"

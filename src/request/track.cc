@@ -282,9 +282,12 @@ void TrackRun::ReadFile(const std::string& file) {
   EndSource();
   test_.broken_rows += stream.broken_rows();
   bytes_before_ += stream.bytes();
-  if (stream.footer_lines() > 0 && events_.note) {
-    events_.note(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
-                             file, stream.footer_lines()));
+  const io::LeftOutRows& left_out = stream.left_out();
+  if (left_out.count > 0 && stream.broken_rows() == 0 && events_.note) {
+    events_.note(
+        fmt::format("{}: {} rows have no number in a column that is used and are left out, the "
+                    "first in line {}",
+                    file, left_out.count, left_out.first_line));
   }
   if (stream.broken_rows() > 0 && events_.warn) {
     events_.warn(fmt::format("{} broken rows of {} were skipped, the first: {}",

@@ -4,7 +4,7 @@
 
 #include "cli/command_line.h"
 #include "cli/provenance.h"
-#include "io/input_file.h"
+#include "io/source.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
 #include "support/text.h"

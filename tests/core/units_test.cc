@@ -103,11 +103,11 @@ TEST(Units, UnknownSymbolsAreNoUnit) {
 }
 
 TEST(Units, ListTheirSymbolsForMessages) {
-  EXPECT_EQ(LengthUnitSymbols(), "m, mm, um, nm, cm, in, ft, mil");
+  EXPECT_EQ(LengthUnitSymbols(), "m, mm, um, nm, cm, in, ft, mil, pm");
   EXPECT_EQ(AngleUnitSymbols(), "rad, mrad, deg, rev");
-  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN");
+  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn");
   EXPECT_EQ(TorqueUnitSymbols(), "N m, mN m, uN m, kN m, N mm, lbf in, lbf ft");
-  EXPECT_EQ(TimeUnitSymbols(), "s, ms, us, min");
+  EXPECT_EQ(TimeUnitSymbols(), "s, ms, us, ns, min, h");
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "io/csv_layout.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
 
@@ -13,6 +12,21 @@ namespace {
 using Strings = std::vector<std::string>;
 using Lines = std::vector<std::size_t>;
 using Numbers = std::vector<double>;
+
+CsvTable Parse(const std::string& text) {
+  const TemporaryDirectory directory;
+  return ReadCsvTable(directory.Write("loop.csv", text));
+}
+
+/// Returns cells, or none where all are empty.
+Strings CellsOf(const CsvTable& table, std::string TableColumn::*member) {
+  Strings cells;
+  for (const TableColumn& column : table.columns) cells.push_back(column.*member);
+  const bool has_any = std::ranges::any_of(cells, [](auto& cell) { return !cell.empty(); });
+  return has_any ? cells : Strings{};
+}
+Strings NamesOf(const CsvTable& table) { return CellsOf(table, &TableColumn::name); }
+Strings UnitsOf(const CsvTable& table) { return CellsOf(table, &TableColumn::unit); }
 
 Numbers Column(const CsvTable& table, std::size_t column) {
   const auto numbers = table.Numbers(column);
@@ -33,10 +47,10 @@ void PrintTo(const Format& format, std::ostream* out) { *out << format.name; }
 class CsvTableFormat : public ::testing::TestWithParam<Format> {};
 
 TEST_P(CsvTableFormat, HoldsTheSameTable) {
-  const CsvTable table = ParseCsvTable(GetParam().text, "loop.csv");
-  EXPECT_EQ(table.names(), GetParam().names);
-  EXPECT_EQ(table.units(), GetParam().units);
-  ASSERT_GE(table.columns(), 2u);
+  const CsvTable table = Parse(GetParam().text);
+  EXPECT_EQ(NamesOf(table), GetParam().names);
+  EXPECT_EQ(UnitsOf(table), GetParam().units);
+  ASSERT_GE(table.columns.size(), 2u);
   EXPECT_EQ(Column(table, 0), (Numbers{0, 1.5, -2}));
   EXPECT_EQ(Column(table, 1), (Numbers{0.5, 3e-3, 1e5}));
 }
@@ -62,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Format{"ByteOrderMark", "\xEF\xBB\xBFx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
         Format{"QuotedCells", "\"x\",\"F\"\n\"0\",\".5\"\n1.5,\"3e-3\"\n-2,\" 1E5 \"\n"},
         Format{"QuotedCommaInName", "\"x, mm\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x, mm", "F"}},
-        Format{"QuotedLineBreakInName", "\"x\ny\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x\ny", "F"}},
+        Format{"QuotedLineBreakInName", "\"x\ny\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x y", "F"}},
         Format{
             "QuotedQuoteInName", "\"x \"\"in\"\"\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x \"in\"", "F"}},
         Format{"Comments", "# rig, 3\nx,F\n#1,2\n0,.5\n  # note\n1.5,3e-3\n-2,1E5\n#end\n"},
@@ -125,12 +139,12 @@ class CsvTableFault : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(CsvTableFault, IsReportedInOneLine) {
   const std::string message = MessageOf<InputError>([&] {
-    const CsvTable table = ParseCsvTable(GetParam().text, "loop.csv");
-    for (std::size_t column = 0; column < table.columns(); ++column) {
+    const CsvTable table = Parse(GetParam().text);
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
       static_cast<void>(table.Numbers(column));
     }
   });
-  EXPECT_EQ(message, GetParam().message);
+  EXPECT_EQ(message.substr(message.find("loop.csv")), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -144,8 +158,6 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Prose", "Dear Sir,\nyours, truly\n",
               "loop.csv:2:1: 'yours' is not a number, and none of the first 2 rows has numbers: "
               "expected columns of numbers under an optional header"},
-        Fault{"Utf16", std::string("\xFF\xFEx\0,\0", 6),
-              "loop.csv:1: is not text, it holds a zero byte: export it as CSV"},
         Fault{"Binary", std::string("x,F\n1,2\n\0\1", 10),
               "loop.csv:3: is not text, it holds a zero byte: export it as CSV"},
         Fault{"Word", "x,F\n1,2\n3,abc\n",
@@ -153,23 +165,31 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"UnitInCell", "x,F\n1,2\n3 mm,4\n",
               "loop.csv:3:1: '3 mm' is not a number: write it like -1.5e-3, or remove the row"},
         Fault{"Nan", "x,F\n1,2\nnan,4\n",
-              "loop.csv:3:1: 'nan' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:3:1: 'nan' is not a number: fill in the cell or remove the row"},
         Fault{"NanInFirstRowWithoutHeader", "NaN,2\n1,2\n",
-              "loop.csv:1:1: 'NaN' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:1:1: 'NaN' is not a number: fill in the cell or remove the row"},
         Fault{"Infinity", "x,F\n1,2\n3,-inf\n",
               "loop.csv:3:2: '-inf' is not a number: write it like -1.5e-3, or remove the row"},
         Fault{"Hexadecimal", "x,F\n1,2\n3,0x1F\n",
               "loop.csv:3:2: '0x1F' is not a number: write it like -1.5e-3, or remove the row"},
         Fault{"Thousands", "x,F\n1,2\n3,\"1,234.5\"\n",
-              "loop.csv:3:2: '1,234.5' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:3:2: '1,234.5' is not a number: write it like -1.5e-3, without marks that "
+              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
+              "tabs, or remove the row"},
         Fault{"QuotedDecimalComma", "x,F\n1,2\n3,\"4,5\"\n",
-              "loop.csv:3:2: '4,5' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:3:2: '4,5' is not a number: write it like -1.5e-3, without marks that "
+              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
+              "tabs, or remove the row"},
         Fault{"ThousandsBesideDecimalComma", "x;F\n1;2\n3;1.234,5\n",
-              "loop.csv:3:2: '1.234,5' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:3:2: '1.234,5' is not a number: write it like -1.5e-3, without marks that "
+              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
+              "tabs, or remove the row"},
         Fault{"TwoSigns", "x,F\n1,2\n3,+-4\n",
               "loop.csv:3:2: '+-4' is not a number: write it like -1.5e-3, or remove the row"},
         Fault{"NothingAfterDecimalComma", "x;F\n1;2\n3,;4\n",
-              "loop.csv:3:1: '3,' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:3:1: '3,' is not a number: write it like -1.5e-3, without marks that "
+              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
+              "tabs, or remove the row"},
         Fault{"ShortLastRow", "x,F,t\n1,2,3\n4,5\n",
               "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
         Fault{"WordInEveryRow", "a,1,2\n1,b,2\n1,2,c\n",
@@ -196,24 +216,25 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"ShortRowBelowComments", "#\n\nx,F\r\n#\r\n1,2\r\n\r\n4\r\n6,7\r\n",
               "loop.csv:7:2: the row has 1 cell of 2: complete it or remove it"},
         Fault{"RowBelowQuotedLineBreak", "x,F\n1,\"2\n\"\n3,4\n5,z\n",
-              "loop.csv:2:2: '2 ' is not a number: write it like -1.5e-3, or remove the row"},
+              "loop.csv:5:2: 'z' is not a number: write it like -1.5e-3, or remove the row"},
         Fault{"ExtraCell", "x,F\n1,2\n3,4,5\n6,7\n",
-              "loop.csv:3:3: '5' is one cell too many: the table has 2 columns"},
+              "loop.csv:3:3: '5' is one cell too many: the table has 2 columns; leave out commas "
+              "that separate thousands, and separate the columns by ';' or tabs where commas are "
+              "decimal marks"},
         Fault{"ExtraCellBeyondTrailingDelimiter", "x,F,\n1,2,\n3,4,,5\n6,7,\n",
-              "loop.csv:3:4: '5' is one cell too many: the table has 2 columns"},
+              "loop.csv:3:4: '5' is one cell too many: the table has 2 columns; leave out commas "
+              "that separate thousands, and separate the columns by ';' or tabs where commas are "
+              "decimal marks"},
         Fault{"CutShort", "x,F,t\n1,2,3\n4,5",
-              "loop.csv:3: the last row is cut short, with 2 of 3 cells: complete the file or "
-              "remove the row"},
+              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
         Fault{"QuoteNeverClosed", "x,F\n.1,.2\n.3,\".4\n.5,.6\n",
               "loop.csv:3: a quotation mark opened here is never closed"},
         Fault{"QuoteNeverClosedInHeader", "\n\"x,F\n1,2\n3,4\n",
               "loop.csv:2: a quotation mark opened here is never closed"},
         Fault{"HeaderShorterThanData", "x,F\n1,2,3\n4,5,6\n",
               "loop.csv:1: 'x,F' is neither a row of data nor a header for the 3 columns of line "
-              "2: name every column, or begin the line with '#' if it is a comment"},
-        Fault{"HeaderLongerThanData", "t,x,F\n1,2\n4,5\n",
-              "loop.csv:1: 't,x,F' is neither a row of data nor a header for the 2 columns of line "
-              "2: name every column, or begin the line with '#' if it is a comment"},
+              "2: name every column, or begin the line with '#' if it is a comment; or leave out "
+              "commas that separate thousands or are decimal marks"},
         Fault{"HeaderWithAnotherDelimiter", "x,F\n1 2\n4 5\n",
               "loop.csv:1: 'x,F' is neither a row of data nor a header for the 2 columns of line "
               "2: name every column, or begin the line with '#' if it is a comment"},
@@ -239,53 +260,50 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"OnlyWords", "x;F\na;b\nc;d\n",
               "loop.csv:3:1: 'c' is not a number, and none of the first 3 rows has numbers: "
               "expected columns of numbers under an optional header"},
-        Fault{"ColumnOfText", "x,F\n1,a\n2,b\n",
-              "loop.csv:2:2: 'a' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"ColumnOfText", "x,F\n1,a\n2,b\n", "loop.csv:2:2: column 2 holds no numbers"},
         Fault{"ErrorValueAtTheBeginningOfARow", "x,F\n1,2\n #n/a,3\n",
-              "loop.csv:3:1: '#n/a' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"SecondHeaderWithinData", "x,F\n1,2\nx,F\n1,2\n",
-              "loop.csv:3:1: 'x' is not a number: write it like -1.5e-3, or remove the row"}),
+              "loop.csv:3:1: '#n/a' is not a number: fill in the cell or remove the row"}),
     [](const auto& test) { return test.param.name; });
 
 // --- The rest ------------------------------------------------------------------------------------
 
 TEST(CsvTable, ReadsTextThatResemblesAnErrorValueAsComment) {
-  EXPECT_EQ(ParseCsvTable("#N/Available,3\n#NA\n1,2\n# N/A\n3,4\n", "loop.csv").rows(), 2u);
+  EXPECT_EQ(Parse("#N/Available,3\n#NA\n1,2\n# N/A\n3,4\n").rows(), 2u);
 }
 
 TEST(CsvTable, TakesCommaBetweenIntegersAsDelimiter) {
-  const CsvTable table = ParseCsvTable("1,5\n2,7\n", "loop.csv");
+  const CsvTable table = Parse("1,5\n2,7\n");
   EXPECT_EQ(Column(table, 0), (Numbers{1, 2}));
   EXPECT_EQ(Column(table, 1), (Numbers{5, 7}));
 }
 
 TEST(CsvTable, TakesCommaAsDecimalMarkWhenSemicolonSeparates) {
-  const CsvTable table = ParseCsvTable("1,5;2,5;3,5\n", "loop.csv");
-  ASSERT_EQ(table.columns(), 3u);
+  const CsvTable table = Parse("1,5;2,5;3,5\n");
+  ASSERT_EQ(table.columns.size(), 3u);
   EXPECT_EQ(Column(table, 2), (Numbers{3.5}));
 }
 
 TEST(CsvTable, TakesCommaAsDecimalMarkWhenBlanksSeparate) {
-  const CsvTable table = ParseCsvTable("1,5 2,5\n", "loop.csv");
-  ASSERT_EQ(table.columns(), 2u);
+  const CsvTable table = Parse("1,5 2,5\n");
+  ASSERT_EQ(table.columns.size(), 2u);
   EXPECT_EQ(Column(table, 1), (Numbers{2.5}));
 }
 
 TEST(CsvTable, TakesRowWithOneUnitSymbolAmongNamesForNames) {
-  const CsvTable table = ParseCsvTable("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n", "loop.csv");
-  EXPECT_EQ(table.names(), (Strings{"t", "x", "F", "N"}));
-  EXPECT_EQ(table.units(), Strings{});
+  const CsvTable table = Parse("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n");
+  EXPECT_EQ(NamesOf(table), (Strings{"t", "x", "F", "N"}));
+  EXPECT_EQ(UnitsOf(table), Strings{});
 }
 
 TEST(CsvTable, ReadsSingleRowOfData) {
-  const CsvTable table = ParseCsvTable("x,F\n1,2\n", "loop.csv");
-  EXPECT_EQ(table.names(), (Strings{"x", "F"}));
+  const CsvTable table = Parse("x,F\n1,2\n");
+  EXPECT_EQ(NamesOf(table), (Strings{"x", "F"}));
   EXPECT_EQ(table.rows(), 1u);
 }
 
 TEST(CsvTable, ReadsSingleColumn) {
-  const CsvTable table = ParseCsvTable("displacement [m]\n0.5\n-1\n", "path.csv");
-  EXPECT_EQ(table.names(), (Strings{"displacement [m]"}));
+  const CsvTable table = Parse("displacement [m]\n0.5\n-1\n");
+  EXPECT_EQ(NamesOf(table), (Strings{"displacement [m]"}));
   EXPECT_EQ(Column(table, 0), (Numbers{0.5, -1}));
 }
 
@@ -296,38 +314,33 @@ TEST(CsvTable, ReadsSixteenColumns) {
     header += ";c" + std::to_string(column);
     row += ";" + std::to_string(column) + ",5";
   }
-  const CsvTable table = ParseCsvTable(header + "\n" + row + "\n", "loop.csv");
-  ASSERT_EQ(table.columns(), 16u);
+  const CsvTable table = Parse(header + "\n" + row + "\n");
+  ASSERT_EQ(table.columns.size(), 16u);
   EXPECT_EQ(Column(table, 15), (Numbers{16.5}));
 }
 
 TEST(CsvTable, KnowsPhysicalLineOfEachRow) {
-  const CsvTable table =
-      ParseCsvTable("rate,2\r\n\r\nx,\"F\r\n[N]\"\r\n#\r\n1,2\r\n\r\n3,4\r\n", "loop.csv");
-  EXPECT_EQ(table.header_line(), 3u);
-  EXPECT_EQ(table.preamble_rows(), 1u);
-  EXPECT_EQ(table.lines(), (Lines{6, 8}));
+  const CsvTable table = Parse("rate,2\r\n\r\nx,\"F\r\n[N]\"\r\n#\r\n1,2\r\n\r\n3,4\r\n");
+  EXPECT_EQ(table.header_line, 3u);
+  EXPECT_EQ(table.lines, (Lines{6, 8}));
 }
 
-TEST(CsvTable, HasNoHeaderLineWithoutHeader) {
-  EXPECT_EQ(ParseCsvTable("1,2\n", "loop.csv").header_line(), 0u);
-}
+TEST(CsvTable, HasNoHeaderLineWithoutHeader) { EXPECT_EQ(Parse("1,2\n").header_line, 0u); }
 
 TEST(CsvTable, AcceptsTextInUnusedColumn) {
-  const CsvTable table = ParseCsvTable("x,state,F\n1,ok,2\n3,,4\n", "loop.csv");
+  const CsvTable table = Parse("x,state,F\n1,ok,2\n3,,4\n");
   EXPECT_EQ(Column(table, 2), (Numbers{2, 4}));
-  EXPECT_FALSE(table.HasNumbers(1));
-  EXPECT_TRUE(table.HasNumbers(2));
+  EXPECT_TRUE(table.columns[1].values.empty());
 }
 
 TEST(CsvTable, AcceptsMissingCellInUnusedColumn) {
-  const CsvTable table = ParseCsvTable("x,F,c\n1,2,3\n3,4\n5,6,7\n", "loop.csv");
+  const CsvTable table = Parse("x,F,c\n1,2,3\n3,4\n5,6,7\n");
   EXPECT_EQ(Column(table, 1), (Numbers{2, 4, 6}));
 }
 
 TEST(CsvTable, ReadsEveryDoubleBackAsWritten) {
-  const CsvTable table = ParseCsvTable(
-      "x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n-1E-400\n", "x.csv");
+  const CsvTable table =
+      Parse("x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n-1E-400\n");
   EXPECT_EQ(Column(table, 0), (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0, 0.0}));
 }
 
@@ -352,7 +365,7 @@ TEST(CsvTable, ReadsNoFurtherThanAZeroByte) {
 TEST(CsvTable, RefusesALineThatDoesNotEnd) {
   const TemporaryDirectory directory;
   const std::filesystem::path path =
-      directory.Write("line.csv", "x,F\n" + std::string((16U << 20U) + 1, '7'));
+      directory.Write("line.csv", "x,F\n1,2\n3,4\n" + std::string(18U << 20U, '7'));
   EXPECT_EQ(
       MessageOf<InputError>([&] { ReadCsvTable(path); }),
       path.string() + ": has a line of more than 16777216 bytes: lines must end in LF or CRLF");
@@ -365,7 +378,7 @@ TEST(CsvTable, RefusesWhatItsLimitsDoNotHold) {
   const std::filesystem::path path = directory.Write("long.csv", text);
   EXPECT_EQ(ReadCsvTable(path, {.rows = 20000}).rows(), 20000U);  // the header is none
   EXPECT_THROW(ReadCsvTable(path, {.rows = 19999}), InputError);
-  const std::uintmax_t needed = ReadLimits::MemoryOf(20001, text.size());
+  const std::uintmax_t needed = ReadLimits::MemoryOf(20000, text.size());
   EXPECT_EQ(ReadCsvTable(path, {.memory = needed}).rows(), 20000U);
   EXPECT_THROW(ReadCsvTable(path, {.memory = needed - 1}), InputError);
 }
@@ -388,13 +401,6 @@ TEST(CsvTable, NamesUnreadableFileAndReason) {
   ::chmod(path.c_str(), 0);
   EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(path); }),
             "cannot read '" + path.string() + "': Permission denied");
-}
-
-// A note in every second row leaves the column one of notes: the first row is data, not a header.
-TEST(CsvLayout, ColumnWithAsManyNotesAsNumbersIsNoColumnOfNumbers) {
-  EXPECT_EQ(FindCsvLayout("x,F,event\n0,1,start\n1,2,5\n", "loop.csv").data_line, 2u);
-  // With numbers in two rows of three it is one, and the row with the note could only be a header.
-  EXPECT_THROW(FindCsvLayout("x,F,event\n0,1,start\n1,2,5\n2,3,6\n", "loop.csv"), InputError);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 
 #include <fstream>
 
-#include "io/input_file.h"
+#include "io/source.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
 

@@ -17,15 +17,15 @@ struct Unit {
   [[nodiscard]] double ToSi(double value) const { return value * numerator / denominator; }
 };
 
-/// Finds a unit of length: m, cm, mm, um/µm/micron, nm, in/inch, ft/feet, mil/thou; nullopt when
-/// the symbol is not a length.
+/// Finds a unit of length: m, cm, mm, um/µm/micron, nm, pm, in/inch, ft/feet, mil/thou; nullopt
+/// when the symbol is not a length.
 std::optional<Unit> LengthUnit(std::string_view symbol);
 
 /// Finds a unit of angle: rad, mrad, deg/°, rev.
 std::optional<Unit> AngleUnit(std::string_view symbol);
 
-/// Finds N, mN, uN/µN, daN, kN, MN, lbf/lb, kgf/kg, gf/g, kip; case decides between mN (10⁻³) and
-/// MN (10⁶).
+/// Finds N, mN, uN/µN, daN, kN, MN, lbf/lb, kgf/kg, gf/g/grams, kip, dyn; case decides between mN
+/// (10⁻³) and MN (10⁶).
 std::optional<Unit> ForceUnit(std::string_view symbol);
 
 /// Finds N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m.
@@ -42,7 +42,7 @@ std::size_t BeginOfUnit(std::string_view text);
 /// True for a pressure, which no column is: Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2.
 bool IsPressureUnit(std::string_view symbol);
 
-/// Finds a unit of time: s/sec, ms, us/µs, min.
+/// Finds a unit of time: s/sec, ms, us/µs, ns, min, h.
 std::optional<Unit> TimeUnit(std::string_view symbol);
 
 /// Returns the accepted symbols, for messages: "m, mm, um, nm, in".

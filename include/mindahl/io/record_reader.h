@@ -75,37 +75,28 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file (see
 /// csv_table.h).
 ///
-/// *Columns.* As chosen: by number; by header cell, exactly, then whatever the case, then without
-/// its unit. Else by recognised name, the unit taken off, whatever the case (but names of one
-/// letter as written), '_' and '-' as blanks, the first line that matches winning:
-///   displacement  tangential displacement, relative displacement | displacement, disp,
-///                 Verschiebung, déplacement | position, pos, travel, stroke, extension, Weg,
-///                 Verfahrweg, Auslenkung | x, X, d, delta, δ | angle, rotation, twist
-///   force         tangential force, friction force, lateral force, shear force, Tangentialkraft,
-///                 Reibkraft, Reibungskraft, Querkraft, force tangentielle, effort tangentiel |
-///                 force, friction, Kraft, effort | torque | Ft | F, f, Q | T | F_N
-///   time          time, time stamp, timestamp, elapsed time, date/time, date time, Zeit, temps | t
-///   normal load   normal load, normal force, Normalkraft, charge normale, force normale | normal,
-///                 n load | Fn, F_N, N
-/// A displacement or force that is not recognised is column 1 or 2, or the only one left when that
-/// has another role, with a note. Time and normal load are then absent. A column so taken for the
-/// displacement is refused when its name is that of a velocity, or when it only grows or only falls
-/// while another column goes to and fro: that is the time.
+/// *Columns.* As given; else by evidence: the unit, in brackets, behind the name or in a units row;
+/// the words of the name, of the table in src/io/words.h, instruments before it aside; and the
+/// numbers, which go to and fro or only grow. A unit counts more than a word. Columns that stay or
+/// only grow are left out where others go to and fro, with a note where they have as much evidence;
+/// what no unit and no word decides is taken from the columns that are left, if they are as many,
+/// with a note. Several columns with the same evidence, a displacement or force that only grows
+/// while the other goes to and fro, and a register with a sign bit are refused, with the columns.
 ///
-/// *Units.* As chosen; else of the header, in the name (`x [um]`, `F (kN)`, `Position, mm`,
-/// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note. An angle and a torque go
+/// *Units.* As given; else of the header; else m, N, s, with a note. An angle and a torque go
 /// together: one of the two has the other's unit, rad or N m, where it names none.
 ///
-/// *Time.* A number, or a time of day with or without a date ("04/29/2022 12:11:14.596 PM"), read
-/// as seconds since midnight of the first one's day, with a note.
+/// *Time.* A number; a stamp since 1970, in s, ms, us or ns, taken as seconds since the first; or a
+/// time of day, perhaps behind a date ("2024-03-05T10:11:12.5"), as seconds since midnight of the
+/// first one's day: both with a note. In a further block of rows a clock may begin anew.
+///
+/// *Rows.* A row in which a cell that is used is empty or holds a mark of a missing number is left
+/// out, with a note; more than one in a hundred are an error, unless broken rows are skipped.
 ///
 /// *Covariates.* Those chosen, their numbers as they are; one is not recognised as a normal load
-/// besides. Then up to kMostOtherColumns of the
-/// others in their order, called by their header's name, without its unit, or else by number: of
-/// those that hold a number in every row, and not the same in all.
-///
-/// A time or normal load that was recognised but not asked for is left out, with a note, when none
-/// of its cells is a number or its unit is not one of core/units.h.
+/// besides. Then up to kMostOtherColumns of the others in their order, called by their header's
+/// name, without its unit, or else by number: of those that hold a number in every row, and not the
+/// same in all.
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite

@@ -54,8 +54,8 @@ class RecordStream {
   [[nodiscard]] std::size_t broken_rows() const;
   [[nodiscard]] const std::string& first_broken_row() const;
 
-  /// Returns, at the end, the number of lines below the data that begin with a text: a footer.
-  [[nodiscard]] std::size_t footer_lines() const;
+  /// Returns the rows left out so far since a cell that is used is empty or holds no number.
+  [[nodiscard]] const LeftOutRows& left_out() const;
 
   /// Returns the number of bytes read so far.
   [[nodiscard]] std::uintmax_t bytes() const;

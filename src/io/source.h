@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+struct gzFile_s;
+
+namespace mindahl::io {
+
+/// Bytes of the longest line that is read as a row of a record.
+inline constexpr std::size_t kLongestLine = 16U << 20U;
+
+/// Returns what messages call the file.
+std::string NameOfInput(const std::filesystem::path& path);
+
+/// Returns a text from a file as a message shows it: on one line, cut off after 60 bytes or so.
+std::string ForMessage(std::string_view text);
+
+/// Returns the bytes of the character of UTF-8 that begins there, 0 where there is none.
+std::size_t Utf8LengthAt(std::string_view text, std::size_t at);
+
+/// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
+/// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
+/// UTF-8, Shift-JIS by two characters or more that begin with 0x81 to 0x9F, GB18030 by pairs of
+/// bytes from 0xA1 on alone; the rest is Windows-1252, of which Latin-1 is a part.
+std::string EncodingOf(std::string_view head);
+
+/// A file, plain or compressed by gzip, as UTF-8 in pieces of whole lines that end in LF.
+class LinePieces {
+ public:
+  static constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
+
+  /// @param encoding  a name of iconv; "" for EncodingOf() the first bytes
+  /// @throws InputError where the file cannot be opened, and for a name that iconv does not know
+  explicit LinePieces(const std::filesystem::path& path, std::string encoding = {});
+  ~LinePieces();
+  LinePieces(const LinePieces&) = delete;
+  LinePieces& operator=(const LinePieces&) = delete;
+
+  /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
+  ///   until the next call
+  /// @throws InputError where the file cannot be read, is not in its encoding, holds a zero byte,
+  /// is
+  ///   a workbook of a spreadsheet, or has a line of more than kLongestLine
+  std::string_view Next();
+
+  [[nodiscard]] bool at_end() const { return at_end_; }
+  /// Returns the number of bytes that were read.
+  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
+  /// Returns what was assumed of the encoding, a sentence; "" where nothing was.
+  [[nodiscard]] const std::string& note() const { return note_; }
+
+ private:
+  struct CloseGzip {
+    void operator()(gzFile_s* file) const;
+  };
+  void ReadMore();
+  std::size_t ReadBytes(char* to);
+  void Begin();
+  void Decode();
+
+  std::string name_;
+  std::string encoding_;
+  std::unique_ptr<gzFile_s, CloseGzip> file_;
+  bool is_standard_input_ = false;
+  void* decoder_ = nullptr;  // iconv_t
+  std::string bytes_read_;
+  std::string undecoded_;  // bytes of a character that is cut
+  std::string text_;
+  std::size_t given_ = 0;  // bytes of it that were returned
+  std::uintmax_t lines_ = 0;
+  std::uintmax_t bytes_ = 0;
+  bool begun_ = false;
+  bool ends_lines_in_cr_ = false;
+  bool at_end_ = false;
+  std::string note_;
+};
+
+/// Returns SHA-256 (FIPS 180-4) of a file's bytes as 64 hexadecimal digits, as sha256sum prints it:
+/// two files with one digest are one record. Empty for what is no regular file, which cannot be
+/// read twice.
+/// @throws InputError "cannot read '<path>': <reason>", also where libcrypto gives no digest
+std::optional<std::string> Sha256OfFile(const std::filesystem::path& path);
+
+}  // namespace mindahl::io

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "io/column_name.h"
+
+namespace mindahl::io {
+
+/// A row of the words by which columns are recognised: those of lower rank are better evidence.
+struct WordRow {
+  Role role;
+  int rank;
+  bool is_angular;         ///< of an angle or a torque
+  std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
+};
+
+// One-letter words count as they are written, and only as a whole name.
+inline constexpr std::array kWords = {
+    WordRow{Role::kDisplacement, 0, false,
+            "tangential displacement|relative displacement|slip displacement|sliding displacement"},
+    WordRow{Role::kDisplacement, 1, false,
+            "displacement|disp|displ|*verschiebung|déplacement|deplacement|desplazamiento|"
+            "spostamento|deslocamento|位移|変位"},
+    WordRow{Role::kDisplacement, 2, false,
+            "position|pos|travel|stroke|extension|lvdt|deflection|elongation|crosshead|qpos|*weg|"
+            "*auslenkung|*hub|course|allongement|posición|posicion|carrera|recorrido|posizione|"
+            "corsa|posição|posicao|curso|行程|位置|变形|伸び|ストローク"},
+    WordRow{Role::kDisplacement, 3, false, "x|X|d|u|U|delta|δ|Δ|ux|uy|dx"},
+    WordRow{Role::kDisplacement, 4, true,
+            "angle|rotation|twist|theta|θ|phi|φ|q|winkel|drehwinkel|ángulo|angulo|angolo|角度|转角|"
+            "回転角"},
+    WordRow{Role::kForce, 0, false,
+            "tangential force|friction force|lateral force|shear force|frictional force|"
+            "tangentialkraft|reibkraft|reibungskraft|querkraft|force tangentielle|"
+            "effort tangentiel|force de frottement|fuerza de fricción|fuerza tangencial|"
+            "forza di attrito|forza tangenziale|força de atrito|força tangencial|摩擦力|切向力"},
+    WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
+    WordRow{Role::kForce, 1, false,
+            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重"},
+    WordRow{Role::kForce, 2, false, "load|loadcell|last|charge|carga|carico|载荷|荷载"},
+    WordRow{Role::kForce, 2, true,
+            "torque|moment|*drehmoment|couple|coppia|par|tau|τ|扭矩|力矩|トルク"},
+    WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},
+    WordRow{Role::kForce, 4, false, "F|f|Q|P"},
+    WordRow{Role::kForce, 5, false, "T"},
+    WordRow{Role::kTime, 0, false,
+            "time|timestamp|time stamp|elapsed|*zeit|temps|tiempo|tempo|时间|時間|時刻"},
+    WordRow{Role::kTime, 1, false,
+            "t|millis|micros|nanos|seconds|secs|sec|msec|stamp|clock|datetime|date|datum|uhrzeit|"
+            "fecha|hora|heure"},
+    WordRow{Role::kTime, 2, false, "x value"},
+    WordRow{Role::kNormalLoad, 0, false,
+            "normal load|normal force|*normalkraft|charge normale|force normale|effort normal|"
+            "fuerza normal|carga normal|forza normale|carico normale|força normal|法向力|"
+            "正压力|垂直荷重"},
+    WordRow{Role::kNormalLoad, 1, false, "normal|n load|normallast"},
+    WordRow{Role::kNormalLoad, 2, false, "fn|f n|N"},
+    WordRow{
+        Role::kOther, 0, false,
+        "cycle|cycles|count|counts|counter|index|idx|sample|samples|step|steps|row|no|nr|seq|id|"
+        "block|segment|point|*zyklus|*zyklen|*zähler|compteur|ciclo|ciclos|cicli|cycle count|"
+        "step time|recuento|n|#|序号|循环|周期|サイクル|番号"},
+    WordRow{Role::kOther, 0, false,
+            "velocity|speed|vel|v|dq|qd|qvel|rate|acceleration|accel|acc|*geschwindigkeit|vitesse|"
+            "velocidad|velocità|velocidade|速度|加速度|*beschleunigung"},
+    WordRow{Role::kOther, 0, false,
+            "temperature|temp|*temperatur|température|temperatura|voltage|pressure|*druck|strain|"
+            "stress|*dehnung|*spannung|energy|work|power|frequency|humidity|温度|压力"},
+    WordRow{Role::kOther, 0, false, "current|strom"},
+    WordRow{Role::kResponse, 0, false,
+            "stiffness|tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
+            "compliance|contact compliance"},
+    WordRow{Role::kResponse, 1, false, "kt|k|K"},
+};
+
+// What is commanded, raw or a statistic is worse evidence than what was measured.
+inline constexpr std::string_view kLesserWords =
+    "setpoint|set|command|cmd|commanded|target|desired|reference|ref|control|soll|sollwert|"
+    "consigne|"
+    "consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
+
+}  // namespace mindahl::io
