@@ -20,7 +20,7 @@ bool MayHaveRole(Dimension dimension, Role role);
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
   std::string name;
-  std::string unit = {};  ///< as written; empty when the header names none
+  std::string unit = {};  // as written; empty when the header names none
   Dimension dimension = Dimension::kNone;
 };
 
@@ -43,7 +43,7 @@ struct NameEvidence {
   std::string_view word = {};  ///< the best; "" where none is known
   Role role = Role::kOther;
   int rank = 0;
-  bool is_angular = false;  ///< of an angle or a torque
+  bool is_angular = false;  // of an angle or a torque
   bool is_lesser = false;   ///< commanded, raw or a statistic
   std::size_t other_words = 0;
 };

@@ -17,7 +17,7 @@ struct Expression {
   };
   std::vector<Term> terms;  ///< none where only a unit is given
   double offset = -0.0;     ///< to which adding -0 makes -0
-  std::string unit;         ///< "" where none is given
+  std::string unit;         // "" where none is given
   bool is_scaled = false;   ///< a factor or an offset is given
 
   [[nodiscard]] bool is_plain() const { return terms.size() == 1 && !is_scaled; }

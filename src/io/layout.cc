@@ -73,9 +73,9 @@ struct Reading {
   std::vector<ClassifiedRow> rows;
   std::size_t columns = 0;     ///< number in most rows with data; 0 when there are none
   long score = 0;              ///< numbers less broken numbers in the rows with so many columns
-  std::size_t most_cells = 0;  ///< of a row with data
+  std::size_t most_cells = 0;  // of a row with data
   std::vector<bool> holds_numbers, mostly_numbers;
-  std::size_t open_quote_line = 0;  ///< of a quotation mark that is never closed; 0 without one
+  std::size_t open_quote_line = 0;  // of a quotation mark that is never closed; 0 without one
 };
 
 Reading ReadAs(std::span<const SampledRow> sampled, char delimiter) {

@@ -12,14 +12,14 @@ struct Layout {
   char delimiter = ',';
   std::size_t columns = 0;
   std::vector<std::string> names;   ///< one a column, or none
-  std::vector<std::string> units;   ///< of a units row, one a column, or none
+  std::vector<std::string> units;   // of a units row, one a column, or none
   std::vector<bool> holds_numbers;  ///< some rows, of the first, have a number in the column
   std::vector<bool> mostly_numbers;
   std::size_t header_line = 0;    ///< line of the names, else of the units row; 0 without either
   std::size_t preamble_rows = 0;  ///< rows above the header
   std::size_t data_offset = 0;    ///< start of the first data row [bytes]
   std::size_t data_line = 0;      ///< its physical line
-  std::string names_row;          ///< as it stands in the file: blocks of data repeat it
+  std::string names_row;          // as it stands in the file: blocks of data repeat it
   std::string units_row;
   double interval = 0.0;  ///< [s] between rows, where a LabVIEW header states it; else 0
 

@@ -14,7 +14,7 @@
 
 namespace mindahl::io {
 
-/// What is asked of the columns of a role.
+/// Holds what is asked of the columns of a role.
 struct RoleRules {
   Role role;
   std::string_view name;  ///< "normal load"

@@ -30,7 +30,7 @@ class RowReader {
 
   /// A cell without a number, or a whole row.
   struct Fault {
-    std::size_t place = 0;  ///< of the column in `wanted`
+    std::size_t place = 0;  // of the column in `wanted`
     std::size_t line = 0;
     bool is_missing = false;   ///< empty, or a mark of a missing number
     std::string message = {};  ///< "file:line:column: …"

@@ -11,7 +11,7 @@ namespace mindahl::io {
 struct WordRow {
   Role role;
   int rank;
-  bool is_angular;         ///< of an angle or a torque
+  bool is_angular;         // of an angle or a torque
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 

@@ -23,7 +23,7 @@ struct RecordColumns {
   std::string normal_load;
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
   std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
-  std::optional<double> sample_rate = {};    ///< [Hz], of a file without a time
+  std::optional<double> sample_rate = {};    // [Hz], of a file without a time
   /// Another file of the same test, whose columns follow those of the first, by time where both
   /// have one, else row by row.
   std::string with = {};
