@@ -1,5 +1,6 @@
 #include "mindahl/campaign/tracker.h"
 
+#include <memory>
 #include <utility>
 
 #include "mindahl/core/error.h"
@@ -69,9 +70,11 @@ void Tracker::Finish() {
 
 void Tracker::Begin() {
   while (begun_.size() >= options_.threads) Deliver();
-  // Where the system has no other thread, the batch is fitted when it is delivered.
-  begun_.push_back(std::async(
-      [this, cycles = std::exchange(batch_, {})] { return FitBatch(options_, cycles); }));
+  // Where the system has no other thread, the batch is fitted when it is delivered: std::async then
+  // needs the function again, which it has moved from unless it is copied.
+  const auto cycles = std::make_shared<const std::vector<Cycle>>(std::exchange(batch_, {}));
+  const auto fit = [this, cycles] { return FitBatch(options_, *cycles); };
+  begun_.push_back(std::async(fit));
   batch_.reserve(kBatch);
 }
 

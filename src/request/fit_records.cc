@@ -276,6 +276,10 @@ AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
     AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
     if (identification::IsBetterLaw(other.fit, asked.fit, options.thresholds)) {
       asked = std::move(other);
+    } else if (asked.fit.law_choice) {
+      // Fitted in full, the other law is not the better one by as much as decides.
+      asked.fit.law_choice->decided = false;
+      asked.fit.law_choice->preferred = nullptr;
     }
   }
   if (!chooses_terms) return asked;

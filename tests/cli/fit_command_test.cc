@@ -51,7 +51,7 @@ TEST(FitCommand, NullsNameMissingInputs) {
   EXPECT_EQ(WhyNull(fit, "contact.friction_coefficient.value"), "needs the normal load");
   EXPECT_EQ(WhyNull(fit, "contact.compliance.value"), "needs the contact radius");
   EXPECT_EQ(WhyNull(fit, "parameters.alpha.ci95[1]"), "it is held");
-  EXPECT_EQ(WhyNull(fit, "mapping.p_value"), "alpha is held");
+  EXPECT_THAT(WhyNull(fit, "mapping.p_value"), ::testing::StartsWith("alpha is held"));
   const json failed = FitJson({SampleRecord(), "--force-sign", "opposite"});
   EXPECT_THAT(WhyNull(failed, "residuals.rms"), ::testing::StartsWith("the fit failed: "));
 }
