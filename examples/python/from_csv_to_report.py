@@ -28,7 +28,7 @@ def main(loop: str, report: str) -> None:
         print(f"{name} = {parameter.value:.5g} +- {parameter.standard_error:.2g} "
               f"{parameter.unit.replace('-', '')}".rstrip())
     friction = result.contact.friction_coefficient
-    print(f"friction coefficient = {friction.value:.3f} +- {friction.standard_error:.3f}")
+    print("friction coefficient = {:.3f} ({:.3f} ... {:.3f})".format(friction.value, *friction.ci95))
     for warning in result.warnings:
         print(f"{warning.code}: {warning.message}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
@@ -64,8 +65,9 @@ def fit(
     normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
-    encoding: str = "", join: bool = False,
-    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
+    encoding: str = "", sample_rate: Optional[float] = None,
+    with_file: Union[None, str, os.PathLike[str]] = None, broken_rows: str = "refuse",
+    join: bool = False, model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True,
     rig_stiffness: Optional[Union[Asked, tuple[float, float]]] = None,
     terms: Union[str, Sequence[str]] = "none", compare: bool = False,
@@ -95,9 +97,11 @@ def fit(
             displacement, force, time and normal_load_column choose others by name or number.
         fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
-    encoding: of files, as iconv
-        names it. join: a list is one record in pieces, as of a logger that begins a file with
-        every stroke.
+            A column is "Fx", 5, "5 [mm]", or a sum, "cell1+cell2".
+    encoding: of files, as iconv names it. sample_rate: [Hz], where there is no time. with_file:
+        another file of the same test, whose columns follow. broken_rows: of files, "refuse" or
+        "skip". join: a list is one record in pieces, as of a logger that begins a file with every
+        stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
     columns: further arrays by name beside displacement and force, for covariate.
 
@@ -116,8 +120,9 @@ def fit(
         compare: adds the table of all models, with and without a rig.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
-        fix: parameter to value, which adds its term; start: likewise, to begin with; bound: parameter to (low, high); prior: parameter to
-            (prior value, standard uncertainty); SI units.
+        fix: parameter to value, which adds its term; start: likewise, to begin with; bound:
+            parameter to (low, high); prior: parameter to (prior value, standard uncertainty); SI
+            units.
 
     What counts
         cycles, samples: (first, last), counted from 1.

@@ -14,6 +14,8 @@ def with_keywords(message: str) -> str: ...
 
 class RecordColumns:
     sample_rate: Optional[float]
+    with_file: str
+    skip_broken_rows: bool
     def __init__(self, displacement: str, force: str, time: str, normal_load: str,
                  covariates: Sequence[str], encoding: str = ...) -> None: ...
 

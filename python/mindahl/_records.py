@@ -9,53 +9,66 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_text, is_array, is_frame, is_quantity, path_text, several,
-                         with_unit)
+from ._arguments import (array, column_text, is_array, is_frame, is_quantity, optional_number,
+                         path_text, several, with_unit)
 from ._mindahl import Record
 
 Column = Union[str, int]
+Path = Union[str, os.PathLike[str]]
 # Units in which a quantity is read, by its role.
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",),
          "normal_load_column": ("N",)}
+UNIT_KEYWORDS = ("displacement_unit", "force_unit", "time_unit", "normal_load_unit")
+FILE_KEYWORDS = ("encoding", "sample_rate", "with_file", "broken_rows")
 
 
 def columns_of(
     displacement: Optional[Column], force: Optional[Column], time: Optional[Column],
     normal_load_column: Optional[Column], displacement_unit: Optional[str],
     force_unit: Optional[str], time_unit: Optional[str], normal_load_unit: Optional[str],
-    covariates: Sequence[str] = (), encoding: str = "",
+    covariates: Sequence[str] = (), encoding: str = "", sample_rate: Optional[float] = None,
+    with_file: Optional[Path] = None, broken_rows: str = "refuse",
 ) -> _mindahl.RecordColumns:
-    return _mindahl.RecordColumns(
+    columns = _mindahl.RecordColumns(
         column_text("displacement", displacement, displacement_unit),
         column_text("force", force, force_unit), column_text("time", time, time_unit),
         column_text("normal_load_column", normal_load_column, normal_load_unit), list(covariates),
         encoding)
+    columns.sample_rate = optional_number("sample_rate", sample_rate)
+    columns.with_file = "" if with_file is None else path_text(with_file)
+    if broken_rows not in ("refuse", "skip"):
+        raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
+    columns.skip_broken_rows = broken_rows == "skip"
+    return columns
 
 
 def record_options(given: Mapping[str, Any]) -> _mindahl.RecordColumns:
     """What the arguments of read_csv() say of the columns."""
     return columns_of(**{name: given[name] for name in (
-        *UNITS, "displacement_unit", "force_unit", "time_unit", "normal_load_unit", "covariates",
-        "encoding")})
+        *UNITS, *UNIT_KEYWORDS, "covariates", *FILE_KEYWORDS)})
 
 
 def read_csv(
-    path: Union[str, os.PathLike[str]], *, displacement: Optional[Column] = None,
+    path: Path, *, displacement: Optional[Column] = None,
     force: Optional[Column] = None, time: Optional[Column] = None,
     normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
     force_unit: Optional[str] = None, time_unit: Optional[str] = None,
     normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (), encoding: str = "",
+    sample_rate: Optional[float] = None, with_file: Optional[Path] = None,
+    broken_rows: str = "refuse",
 ) -> Record:
     """Reads a hysteresis record from a CSV file as the program does.
 
     path: the file; delimiter, decimal mark, header and units are found by themselves.
     displacement, force, time, normal_load_column: column by header name or number counted from 1,
-        or a sum with factors and an offset, "cell1+cell2", "raw*0.0123-4.5 [N]"; by default found
-        from names, units and numbers.
+        with its unit, "5 [mm]", or that alone, "[mm]"; or a sum with factors and an offset,
+        "cell1+cell2", "raw*0.0123-4.5 [N]"; by default found from names, units and numbers.
     displacement_unit, force_unit, time_unit, normal_load_unit: symbols such as "um" and "kN"; by
         default the header's, else m, N and s with a note.
     covariates: further columns, by name or number, kept in units of their own.
     encoding: as iconv names it; by default UTF-8, or found from the first bytes.
+    sample_rate: [Hz], where there is no time. with_file: another file of the same test, whose
+        columns follow. broken_rows: "refuse" or "skip" rows without a number.
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """
@@ -67,13 +80,12 @@ class RecordArguments:
 
     def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = (),
                  max_memory: Optional[int] = None) -> None:
-        self.roles = {**{role: given.get(role) for role in UNITS}, "force": None}
-        self.units = {name: given.get(name) for name in (
-            "displacement_unit", "force_unit", "time_unit", "normal_load_unit")}
+        self.roles: dict[str, Any] = {**{role: given.get(role) for role in UNITS}, "force": None}
+        self.units: dict[str, Any] = {name: given.get(name) for name in UNIT_KEYWORDS}
         self.covariates = list(covariates)
-        self.encoding = given.get("encoding", "")
-        """Of the files that are still to be read, all together."""
+        self.of_files = {name: given[name] for name in FILE_KEYWORDS if name in given}
         self.max_memory = max_memory
+        """Of the files that are still to be read, all together."""
         self.assumed: list[str] = []
         """Of the columns and units of files and frames that were read, a sentence each."""
 
@@ -82,19 +94,24 @@ class RecordArguments:
             if value is not None and not isinstance(value, (str, int, np.integer)):
                 raise ValueError(f"{role}: must be the name or the number of a column here, where "
                                  "the columns are in a file or a frame")
-        return columns_of(**self.roles, **self.units, covariates=self.covariates,
-                          encoding=self.encoding)
+        return columns_of(**self.roles, **self.units, covariates=self.covariates, **self.of_files)
 
     def refuse_choices(self, what: str) -> None:
         given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
         if given:
             raise ValueError(f"{given[0]} has no effect on {what}: leave it out")
 
+    def of_table(self, name: str, names: Sequence[str], arrays: Sequence[Any],
+                 columns: _mindahl.RecordColumns) -> Record:
+        if columns.with_file:
+            raise ValueError("with_file has no effect on what is no file: leave it out")
+        return _mindahl.record_of_columns(name, names, arrays, columns)
+
     def of_frame(self, frame: Any, name: str) -> Record:
         names = [str(column) for column in frame.columns]
         arrays = [array(name, frame.iloc[:, k].to_numpy(), keep_missing=True)
                   for k, name in enumerate(names)]
-        return _mindahl.record_of_columns(name, names, arrays, self.columns())
+        return self.of_table(name, names, arrays, self.columns())
 
     def of_dataset(self, dataset: Any, name: str) -> Record:
         """A Dataset of xarray: its variables and coordinates of one dimension, with their units."""
@@ -107,7 +124,7 @@ class RecordArguments:
         if len({len(values) for values in arrays}) > 1:
             raise ValueError(f"{name}: its variables have {', '.join(map(str, dataset.sizes))} for "
                              "dimensions: select those of one")
-        return _mindahl.record_of_columns(name, names, arrays, self.columns())
+        return self.of_table(name, names, arrays, self.columns())
 
     def of_arrays(self, columns: Mapping[str, Any], name: str,
                   covariates: Mapping[str, Any]) -> Record:
@@ -137,8 +154,8 @@ class RecordArguments:
             if len(values) != len(arrays[0]):
                 raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
                                  f"{len(arrays[0])}: give as many of both")
-        return _mindahl.record_of_columns(
-            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates))
+        return self.of_table(name, names, arrays, columns_of(
+            **choices, **self.units, covariates=self.covariates, **self.of_files))
 
 
 def is_path(value: Any) -> bool:

@@ -94,7 +94,7 @@ def track(
     normal_load: Optional[Uncertain] = None, normal_load_column: Any = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
-    encoding: str = "", join: bool = False,
+    encoding: str = "", sample_rate: Optional[float] = None, join: bool = False,
     model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     terms: Union[str, Sequence[str]] = "none",
@@ -108,7 +108,7 @@ def track(
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
-    source, force, displacement, time, normal_load_column, units and encoding: as of
+    source, force, displacement, time, normal_load_column, units, encoding, sample_rate: as of
         fit(). A file is read piece by piece, in constant memory; a list of sources
         is one test in this order, and no cycle extends over two sources unless join is
         True.
@@ -131,8 +131,6 @@ def track(
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)
     request.threads = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
-    if broken_rows not in ("refuse", "skip"):
-        raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
     arguments = RecordArguments(given)
     files = _files_of(source)
     if files is None:

@@ -90,7 +90,9 @@ void AddRecords(py::module_& module) {
            }),
            py::arg("displacement"), py::arg("force"), py::arg("time"), py::arg("normal_load"),
            py::arg("covariates"), py::arg("encoding") = "")
-      .def_readwrite("sample_rate", &RecordColumns::sample_rate);
+      .def_readwrite("sample_rate", &RecordColumns::sample_rate)
+      .def_readwrite("with_file", &RecordColumns::with)
+      .def_readwrite("skip_broken_rows", &RecordColumns::skip_broken_rows);
   py::class_<NamedRecord>(module, "Record",
                           "A hysteresis record in SI units, as it was read; arrays are read-only.")
       .def_readonly("name", &NamedRecord::name, "what messages and reports call it")

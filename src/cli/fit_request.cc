@@ -373,7 +373,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
           [&columns](const std::string& text) { columns.skip_broken_rows = text == "skip"; },
           "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
           "empty cells, which are left out; skip: all are left out",
-          "refuse|skip")
+          "TEXT")
       .OneOf({"refuse", "skip"});
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);

@@ -60,8 +60,8 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
       app, "tradeoff",
       "Compares error and cost of every model and method along an excitation,\n"
       "and names the cheapest whose force is within a tolerance of the exact\n"
-      "one, and whose dissipated energy is too. The default contact is that of\n"
-      "Peyret et al. (2017).",
+      "one, and whose dissipated energy is too. The default contact is\n"
+      "that of Peyret et al. (2017).",
       {"mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --tolerance 1%",
        "mindahl tradeoff --excitation micro --csv points.csv"});
   AddLawOptions(command, options->study.law);

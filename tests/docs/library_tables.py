@@ -109,7 +109,7 @@ def causes_table(tables, _, kept):
         if row["unit_by_sample"] not in ("", unit):
             unit += f"; {row['unit_by_sample']}"
         rows.append([code(row["code"]), what, unit, cell(row["meaning"]), code(row["option"]), advice])
-    return table(["`causes[].code`", "what it is", "unit", "what its size is", "`try`", "what to do"],
+    return table(["`causes[].code`", "what it is", "unit", "what its size is", "`term`", "what to do"],
                  in_page_order(rows, kept))
 
 

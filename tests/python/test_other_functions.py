@@ -241,7 +241,7 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
      "to: 'brass' is unknown: must be one of"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
-     "normal_load has no effect unless to is lammps, liggghts or yade"),
+     "normal_load has no effect unless to is one of lammps, liggghts, yade"),
 ])
 def test_what_breaks_a_rule_is_refused(call, message):
     with pytest.raises(ValueError, match=message) as refused:
@@ -265,12 +265,11 @@ def test_contact_gives_the_program_s_json():
 @pytest.mark.parametrize(
     "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "mujoco", "mujoco-joint", "urdf", "sdf"])
 def test_convert_gives_the_program_s_json_and_lines(to):
-    options = ["--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--amplitude", 1.2e-6, "--to", to,
-               "--largest-amplitude", 2e-6]
+    options = ["--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--amplitude", 1.2e-6, "--to", to]
     keywords = {"normal_load": 100} if to == "lammps" else {}
     options += ["--normal-load", 100] if to == "lammps" else []
     result = mindahl.convert(sigma=SIGMA, slip_force=SLIP_FORCE, amplitude=1.2e-6, to=to,
-                             largest_amplitude=2e-6, **keywords)
+                             **keywords)
     assert result.to_dict() == program_json("convert", *options)
     assert "\n".join(result.input_lines) + "\n" == program("convert", *options, "--input-lines", "-")
 
@@ -284,8 +283,23 @@ def test_read_csv_converts_units_and_says_what_it_read(tmp_path):
     np.testing.assert_array_equal(record.time, [0, 1e-3, 2e-3, 3e-3])
     np.testing.assert_array_equal(record.covariates["temp"], [20, 21, 22, 23])
     assert record.normal_load is None
-    assert record.columns["force"] == {"name": "F (kN)", "number": 3, "unit": "kN"}
+    assert record.columns["force"] == {"name": "F (kN)", "index": 3, "unit": "kN"}
     assert len(record) == 4
+
+
+def test_read_csv_takes_a_rate_a_second_file_and_broken_rows(tmp_path):
+    path, other = tmp_path / "x.csv", tmp_path / "force.csv"
+    path.write_text("x [mm]\n0\n1\n2\n1\n")
+    other.write_text("F [N]\n0\n3\n5\n2\n")
+    record = mindahl.read_csv(path, with_file=other, sample_rate=200)
+    np.testing.assert_array_equal(record.force, [0, 3, 5, 2])
+    np.testing.assert_allclose(record.time, [0, 5e-3, 1e-2, 1.5e-2])
+    path.write_text("x [mm],F [N]\n0,0\n1,one\n2,5\n1,2\n")
+    with pytest.raises(mindahl.InputError, match="'one'"):
+        mindahl.read_csv(path)
+    assert len(mindahl.read_csv(path, broken_rows="skip")) == 3
+    with pytest.raises(ValueError, match="with_file has no effect on what is no file"):
+        mindahl.fit(record.displacement, record.force, with_file=other)
 
 
 def test_arrays_are_used_where_they_are():
