@@ -178,6 +178,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
     }
   }
   std::vector<double> sizes;
+  sizes.reserve(statements.size());
   for (const Statement& statement : statements) sizes.push_back(statement.size);
   std::ranges::sort(sizes, std::greater<>());
   const double least = sizes.size() > most ? sizes[most - 2] : 0.0;  // one line says how many more

@@ -152,13 +152,13 @@ void AddSelections(CLI::App& command, FitRequest& request) {
           "WHAT=LO:HI")
       .OneAtATime();
   const OptionGroup hidden(command, "");
-  for (const auto& [name, what] : {std::pair("--cycles", "cycles"),
-                                   {"--samples", "samples"},
-                                   {"--time-window", "time"},
-                                   {"--load-window", "load"}}) {
+  for (const auto& [name, window] : {std::pair("--cycles", "cycles"),
+                                     {"--samples", "samples"},
+                                     {"--time-window", "time"},
+                                     {"--load-window", "load"}}) {
     hidden.AddRead(
         name,
-        [&request, option = std::string(name), what = std::string_view(what)](
+        [&request, option = std::string(name), what = std::string_view(window)](
             const std::string& text) { ReadSelection(what, text, option, request); },
         "", "LO:HI");
   }

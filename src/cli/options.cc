@@ -40,6 +40,7 @@ class EverydayFormatter : public CLI::Formatter {
                         CLI::AppFormatMode mode) const override {
     if (mode == CLI::AppFormatMode::All) return Formatter::make_help(app, std::move(name), mode);
     std::vector<const CLI::Option*> shown;
+    shown.reserve(names_.size());
     for (const std::string& each : names_) shown.push_back(app->get_option(each));
     const auto all = app->get_options([](const CLI::Option* option) {
       return !option->get_group().empty() && !option->get_lnames().empty();

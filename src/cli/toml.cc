@@ -29,7 +29,7 @@ void AddItems(const toml::table& table, const std::string& section, std::string_
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     if (const toml::table* inner = node.as_table()) {
-      AddItems(*inner, section.empty() ? name : section + '.' + name, file, items);
+      AddItems(*inner, section.empty() ? name : fmt::format("{}.{}", section, name), file, items);
       continue;
     }
     TomlItem& item = items.emplace_back();

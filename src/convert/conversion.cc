@@ -275,7 +275,6 @@ void Validate(const NormalContact& contact, const TargetRow& target) {
 
 std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRow& target,
                                     const NormalContact& contact) {
-  const std::map<std::string_view, double> values = ValuesOf(conversion, contact);
   std::vector<Parameter> parameters;
   for (const ParameterRow& row : target.parameters) {
     const auto found = values.find(row.key);
@@ -295,7 +294,9 @@ std::vector<std::string> InputLines(const Conversion& conversion, const TargetRo
   }
   const std::map<std::string_view, double> values = ValuesOf(conversion, contact);
   fmt::dynamic_format_arg_store<fmt::format_context> store;
-  for (const auto& [key, value] : values) store.push_back(fmt::arg(key.data(), value));
+  for (const auto& [key, value] : ValuesOf(conversion, contact)) {
+    store.push_back(fmt::arg(std::string(key).c_str(), value));
+  }
   std::vector<std::string> lines;
   if (!remark.empty() && !target.comment_begin.empty()) {
     lines.push_back(fmt::format("{}{}{}", target.comment_begin, remark, target.comment_end));

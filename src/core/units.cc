@@ -209,16 +209,17 @@ std::string_view WithoutBlanks(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+std::optional<Unit> PressureUnit(std::string_view text) { return Find(kPressures, text); }
+
 /// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
 std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
   using Finder = std::optional<Unit> (*)(std::string_view);
-  constexpr auto find_pressure = [](std::string_view text) { return Find(kPressures, text); };
   const std::array<std::pair<std::string_view, Finder>, 6> finders = {{{"m", &LengthUnit},
                                                                        {"N", &ForceUnit},
                                                                        {"s", &TimeUnit},
                                                                        {"rad", &AngleUnit},
                                                                        {"N m", &TorqueUnit},
-                                                                       {"Pa", find_pressure}}};
+                                                                       {"Pa", &PressureUnit}}};
   for (const auto& [name, find] : finders) {
     if (name != base) continue;
     const std::optional<Unit> unit = find(symbol);

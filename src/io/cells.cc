@@ -33,9 +33,10 @@ bool IsMissingMark(std::string_view text) {
 
 Cell ReadWithPoint(std::string_view unsigned_text, bool negative) {
   Cell cell{.kind = Cell::Kind::kBroken};
-  const char* const end = unsigned_text.data() + unsigned_text.size();
+  const char* const begin = unsigned_text.data();
+  const char* const end = begin + unsigned_text.size();
   double magnitude = 0.0;
-  const auto [stop, error] = FromChars(unsigned_text.data(), end, magnitude);
+  const auto [stop, error] = FromChars(begin, end, magnitude);
   if (stop != end) return cell;
   if (error == std::errc::result_out_of_range) {
     // from_chars does not say on which side; only a negative exponent can make a number too small.

@@ -386,7 +386,8 @@ Layout FindLayout(std::string_view text, const std::string& file) {
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
     SampledRow row{{}, line + 1, text.size() - rest.size()};
     row.text = TakeRow(rest, line);
-    if (row.line == 1 && (stated = StatedDelimiter(row.text)) != '\0') continue;
+    if (row.line == 1) stated = StatedDelimiter(row.text);
+    if (row.line == 1 && stated != '\0') continue;
     if (!IsBlankOrComment(row.text)) {
       sampled.push_back(row);
     } else if (sampled.empty() && !Trimmed(row.text).empty()) {

@@ -317,8 +317,8 @@ class RoleAssigner {
   void TakeOneOf(const std::vector<Candidate>& candidates, Role role, Expression& taken) {
     if (!taken.terms.empty() || candidates.empty()) return;
     if (candidates.size() == 1) return Take(candidates.front().column, taken);
-    std::vector<std::size_t> columns;
-    for (const Candidate& candidate : candidates) columns.push_back(candidate.column);
+    std::vector<std::size_t> columns(candidates.size());
+    std::ranges::transform(candidates, columns.begin(), &Candidate::column);
     ThrowAmbiguous(names_, RulesOf(role), columns);
   }
 
@@ -357,6 +357,12 @@ class RoleAssigner {
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
     const std::size_t columns = names_.table().columns.size();
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (EvidenceFor(names_, column, role) <= 0 || IsNumeric(names_, column)) continue;
+      throw InputError(fmt::format(
+          "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
+          names_.table().file, names_.Label(column), rules.name, rules.option));
+    }
     throw InputError(fmt::format(
         "{}: no column for the {}: {}", names_.table().file, rules.name,
         columns == 1
@@ -424,6 +430,7 @@ const RoleRules& RulesOf(Role role, bool is_torsional) {
 }
 
 ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
+  split_.reserve(table.columns.size());
   for (const TableColumn& column : table.columns) split_.push_back(SplitColumnName(column.name));
 }
 

@@ -142,7 +142,7 @@ LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
   is_standard_input_ = path == kStandardInput;
   file_.reset(is_standard_input_ ? StandardInput() : gzopen(path.c_str(), "rb"));
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
-  gzbuffer(file_.get(), 1U << 17U);
+  static_cast<void>(gzbuffer(file_.get(), 1U << 17U));
 }
 
 void LinePieces::CloseGzip::operator()(gzFile_s* file) const { gzclose(file); }

@@ -82,8 +82,9 @@ double CostOfIwan(const FrictionModel&, const BranchLaw& law, const Resolution& 
                   const Drive& drive) {
   constexpr std::size_t kLanes = 4;  // moved at once, filled or not
   const std::size_t elements = law.shape_exponent == 0 ? 1 : resolution.steps;
-  const auto moved = static_cast<double>((elements + kLanes - 1) / kLanes * kLanes);
-  return static_cast<double>(drive.displacement.size()) * (kElement * moved + kSum);
+  const std::size_t moved = (elements + kLanes - 1) / kLanes * kLanes;
+  return static_cast<double>(drive.displacement.size()) *
+         (kElement * static_cast<double>(moved) + kSum);
 }
 
 double CostOfTable(const FrictionModel& model, const BranchLaw&, const Resolution&,

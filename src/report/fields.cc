@@ -273,7 +273,7 @@ void FindNulls(const Json& value, const std::string& path,
                const std::vector<std::pair<std::string, std::string>>& reasons, Json& nulls) {
   if (value.is_object()) {
     for (const auto& [key, member] : value.items()) {
-      FindNulls(member, path.empty() ? key : path + "." + key, reasons, nulls);
+      FindNulls(member, path.empty() ? key : fmt::format("{}.{}", path, key), reasons, nulls);
     }
   } else if (value.is_array()) {
     for (std::size_t k = 0; k < value.size(); ++k) {
