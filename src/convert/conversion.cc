@@ -275,6 +275,7 @@ void Validate(const NormalContact& contact, const TargetRow& target) {
 
 std::vector<Parameter> ParametersOf(const Conversion& conversion, const TargetRow& target,
                                     const NormalContact& contact) {
+  const std::map<std::string_view, double> values = ValuesOf(conversion, contact);
   std::vector<Parameter> parameters;
   for (const ParameterRow& row : target.parameters) {
     const auto found = values.find(row.key);
@@ -292,7 +293,6 @@ std::vector<std::string> InputLines(const Conversion& conversion, const TargetRo
         "--input-lines of a discrete-element code needs --normal-load: its friction coefficient is "
         "Tc/N");
   }
-  const std::map<std::string_view, double> values = ValuesOf(conversion, contact);
   fmt::dynamic_format_arg_store<fmt::format_context> store;
   for (const auto& [key, value] : ValuesOf(conversion, contact)) {
     store.push_back(fmt::arg(std::string(key).c_str(), value));

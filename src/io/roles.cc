@@ -444,6 +444,7 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, const RoleR
   };
   for (int strictness = 0; strictness < 3; ++strictness) {
     std::vector<std::size_t> found;
+    found.reserve(split_.size());
     for (std::size_t column = 0; column < split_.size(); ++column) {
       if (matches(column, strictness)) found.push_back(column);
     }

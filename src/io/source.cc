@@ -142,13 +142,14 @@ LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
   is_standard_input_ = path == kStandardInput;
   file_.reset(is_standard_input_ ? StandardInput() : gzopen(path.c_str(), "rb"));
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
-  static_cast<void>(gzbuffer(file_.get(), 1U << 17U));
+  gzbuffer(file_.get(), 1U << 17U);
 }
 
 void LinePieces::CloseGzip::operator()(gzFile_s* file) const { gzclose(file); }
 
 LinePieces::~LinePieces() {
-  if (is_standard_input_) static_cast<void>(file_.release());
+  if (is_standard_input_) [[maybe_unused]]
+    gzFile_s* const standard_input = file_.release();
   if (decoder_ != nullptr) ::iconv_close(decoder_);
 }
 
