@@ -10,7 +10,7 @@ plan() predicts the errors of a measurement, contact() the force from materials,
 mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
 tradeoff() compares models and methods, convert() writes it as another law;
 read_csv() reads a record as the program does, read_mat(), read_hdf5() and read_excel() those of
-other programs; FitResult.load() reads a result that was written as JSON. docs/python.md has them with examples.
+other programs; FitResult.load() reads a saved result. docs/python.md has them with examples.
 """
 
 from ._batch import BatchTable, batch

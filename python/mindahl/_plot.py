@@ -7,6 +7,8 @@ from typing import Any
 
 
 def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
+    if not records:
+        raise ValueError("the result has no records, as one that was read from JSON: fit them again")
     if any(record.fitted_force is None for record in records):
         raise ValueError("the fit failed: there is no curve to draw")
     axes = _axes(ax)

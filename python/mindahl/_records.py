@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
@@ -156,6 +157,29 @@ class RecordArguments:
                                  f"{len(arrays[0])}: give as many of both")
         return self.of_table(name, names, arrays, columns_of(
             **choices, **self.units, covariates=self.covariates, **self.of_files))
+
+
+def _record_again(name: str, names: list[str], arrays: list[Any], roles: dict[str, int],
+                  covariates: list[str]) -> Record:
+    choices: dict[str, Any] = {**dict.fromkeys((*UNITS, *UNIT_KEYWORDS)), **roles}
+    return _mindahl.record_of_columns(name, names, arrays, columns_of(**choices, covariates=covariates))
+
+
+def _reduced(record: Record) -> Any:
+    """A record for pickle and copy: its arrays, called by what they are; its notes are said already."""
+    length, force = ("rad", "N m") if record.is_torsional else ("m", "N")
+    found = {"displacement": (f"displacement [{length}]", record.displacement),
+             "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
+             "normal_load_column": (f"normal load [{force}]", record.normal_load)}
+    given = {role: column for role, column in found.items() if column[1] is not None}
+    others = record.covariates
+    return _record_again, (record.name, [*(name for name, _ in given.values()), *others],
+                           [np.array(values) for values in (
+                               *(values for _, values in given.values()), *others.values())],
+                           {role: k + 1 for k, role in enumerate(given)}, list(others))
+
+
+copyreg.pickle(Record, _reduced)
 
 
 def is_path(value: Any) -> bool:

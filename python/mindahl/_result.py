@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import copy
+import io
 import json
 import os
-from collections.abc import Iterator, Mapping
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import Any, Optional, Union, cast
+from typing import Any, NamedTuple, Optional, Union, cast
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import Floats
+from ._arguments import Floats, array
 
 
 class FitWarning(UserWarning):
@@ -53,7 +55,9 @@ class Section(Mapping[str, Any]):
         return _wrapped(self._values[name], f"{self._path}.{name}")
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in self._values:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._values:
             raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
         return self[name]
 
@@ -80,12 +84,12 @@ class Report(Section):
 
     def __init__(self, answer: _mindahl.Answer, path: str, tables: tuple[str, ...] = ()) -> None:
         super().__init__(json.loads(answer.json), path)
-        self._answer = answer
+        self._answer = (answer.json, answer.text, answer.established)
         self._tables = tables
 
     @property
     def established(self) -> bool:
-        return self._answer.established
+        return self._answer[2]
 
     def to_dict(self) -> dict[str, Any]:
         """What the program writes as JSON, as a dict of one's own."""
@@ -93,11 +97,11 @@ class Report(Section):
 
     def to_json(self) -> str:
         """The same as text, byte for byte as the program writes it."""
-        return self._answer.json
+        return self._answer[0]
 
     def text(self) -> str:
         """What the program prints."""
-        return self._answer.text
+        return self._answer[1]
 
     def __str__(self) -> str:
         return self.text()
@@ -141,7 +145,8 @@ class Parameter:
         only where the search ended, and repr() has no number of it.
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
-    identifiability: "identifiable", "extrapolated", "bounded_below" or "not_identifiable".
+    identifiability: "identifiable", "effective" (the model is not adequate), "extrapolated",
+        "bounded_below" or "not_identifiable".
     """
 
     name: str
@@ -171,6 +176,12 @@ class Parameter:
 
     def __repr__(self) -> str:
         return f"<mindahl.Parameter {self}>"
+
+    def __float__(self) -> float:
+        """The value. Raises ValueError where the record does not determine it."""
+        if self.value is None or not (self.is_known or self.identifiability == "effective"):
+            raise ValueError(f"{self}: the record determines no value")
+        return self.value
 
 
 @dataclass(frozen=True)
@@ -224,25 +235,38 @@ class LogLikelihood:
         return self._likelihood(np.ascontiguousarray(values, dtype=np.float64))
 
 
+class Covariance(NamedTuple):
+    """Covariances of the free parameters [product of their units], in the order of names; NaN where
+    one has no standard error."""
+
+    matrix: Floats
+    names: tuple[str, ...]
+
+
 class _StoredFit:
-    """A fit of which only the JSON is left."""
+    """A fit of which the JSON is left, and what else was kept."""
 
-    notes: tuple[str, ...] = ()
-    records: tuple[dict[str, Any], ...] = ()
-
-    def __init__(self, document: str) -> None:
-        self._document = document
-        self._parameters = FitResult(self).parameters
-        self.failed = not self._parameters
+    def __init__(self, document: str, text: str = "", page: str = "", notes: Sequence[str] = (),
+                 units: tuple[str, str] = ("m", "N"),
+                 records: Sequence[dict[str, Any]] = ()) -> None:
+        self._document, self._page = document, page
+        self.notes, self.units, self.records = notes, units, records
+        parameters = FitResult(self).parameters
+        self.failed = not parameters
+        self._text = text or "\n".join(map(str, parameters.values())) or "the fit failed"
 
     def json(self) -> str:
         return self._document
 
     def text(self) -> str:
-        return "\n".join(map(str, self._parameters.values())) or "the fit failed"
+        return self._text
+
+    def page(self) -> str:
+        return self._page or f"<!DOCTYPE html>\n<title>mindahl</title>\n<pre>{escape(self._text)}</pre>\n"
 
     def __getattr__(self, name: str) -> Any:
-        raise AttributeError(f"a result that was read from JSON has no {name}: it has no records; "
+        raise AttributeError(name if name.startswith("_") else
+                             f"a result that was read from JSON has no {name}: it has no records; "
                              "fit them again")
 
 
@@ -260,17 +284,54 @@ class FitResult:
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
-        """Reads a result that `mindahl fit --json` or to_json() wrote.
+        """Reads a result that save() wrote, or `mindahl fit --json` or to_json().
 
-        It has parameters, sections and warnings; no records, text, page or plot.
+        One of save() is complete but for log_likelihood() and residuals_csv(); JSON has parameters,
+        sections and warnings, and neither records nor figures.
         Raises ValueError for another document.
         """
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        document = json.loads(text)
+        with open(path, "rb") as file:
+            content = file.read()
+        kept: dict[str, Any] = {}
+        try:
+            if content.startswith(b"PK"):
+                with np.load(io.BytesIO(content)) as arrays:
+                    kept = json.loads(arrays["kept"].tobytes())
+                    for k, record in enumerate(kept["records"]):
+                        record.update({name: arrays[f"{name}_{k}"] for name, value in record.items()
+                                       if name != "name" and value is not None})
+            text = kept.pop("document") if kept else content.decode()
+            document = json.loads(text)
+        except (KeyError, ValueError, zipfile.BadZipFile):
+            document = None
         if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/2":
             raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
-        return cls(_StoredFit(text))
+        return cls(_StoredFit(text, **kept))
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes JSON, text, page and arrays to one file, of NumPy's format npz, for load()."""
+        kept: dict[str, Any] = {**self._kept(), "page": self.page()}
+        arrays = {f"{name}_{k}": value for k, record in enumerate(kept["records"])
+                  for name, value in record.items() if isinstance(value, np.ndarray)}
+        kept["records"] = [{name: "array" if isinstance(value, np.ndarray) else value
+                            for name, value in record.items()} for record in kept["records"]]
+        with open(path, "wb") as file:
+            np.savez_compressed(file, kept=np.frombuffer(json.dumps(kept).encode(), np.uint8),
+                                **arrays)
+
+    def _kept(self) -> dict[str, Any]:
+        fitted = self._fitted
+        return {"document": fitted.json(), "text": fitted.text(), "notes": list(fitted.notes),
+                "units": tuple(fitted.units), "records": list(fitted.records)}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _result_of, (self._kept(),)
+
+    def __copy__(self) -> FitResult:
+        return FitResult(self._fitted)  # which nothing changes
+
+    def __deepcopy__(self, memo: Any) -> FitResult:
+        return FitResult(self._fitted)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -396,14 +457,49 @@ class FitResult:
         unit = "" if parameter.unit == "-" else f" {parameter.unit}"
         return f"{name} = {parameter.value:.6g}{unit}"
 
+    @property
+    def covariance(self) -> Covariance:
+        """Covariances of the free parameters, and their names."""
+        free = {name: parameter.standard_error for name, parameter in self.parameters.items()
+                if parameter.status != "fixed"}
+        errors = np.array(list(free.values()), dtype=np.float64)
+        correlation = np.array([[self._report["correlation"][row][column] for column in free]
+                                for row in free], dtype=np.float64).reshape(len(free), len(free))
+        return Covariance(correlation * np.outer(errors, errors), tuple(free))
+
+    def predict(self, displacement: Any) -> Floats:
+        """The force [N] that the fit predicts along a displacement [m] from the unloaded contact.
+
+        Raises ValueError for a fit that failed, of a cycled contact, or with terms that simulate()
+            does not have.
+        """
+        values = {name: parameter.value or 0.0 for name, parameter in self.parameters.items()}
+        if not values or self._report["initial_state"] != "virgin":
+            raise ValueError("predict() is of fits of a virgin contact: initial_state is "
+                             f"{self._report['initial_state']}")
+        own = {name: values.pop(name) for name in ("sigma", "alpha", "slip_force", "rig_stiffness",
+                                                   "asymmetry") if name in values}
+        offset, origin = values.pop("force_offset", 0.0), values.pop("displacement_offset", 0.0)
+        others = [name for name, value in values.items() if value]
+        if others:
+            raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
+        from ._contact import simulate
+
+        return offset + simulate(array("displacement", displacement) - origin,
+                                 model=self._report["model"], **own)
+
+    def summary(self) -> str:
+        """What `mindahl fit` prints, as text()."""
+        return self.text()
+
     def log_likelihood(self) -> LogLikelihood:
         """The log-likelihood of the free parameters, for a sampler of their posterior.
 
-        Raises ValueError for a fit that failed or was read from JSON, and for one with a robust loss,
+        Raises ValueError for a fit that failed, was read or was pickled, and for one with a robust loss,
             noise of the displacement or turning points between samples.
         """
         if isinstance(self._fitted, _StoredFit):
-            raise ValueError("a result that was read from JSON has no records: fit them again")
+            raise ValueError("a result that was read or pickled has no likelihood: fit its records again")
         return LogLikelihood(_mindahl.Likelihood(self._fitted), self.parameters)
 
     def page(self) -> str:
@@ -426,3 +522,7 @@ class FitResult:
         from ._plot import draw
 
         return draw(self.records, self._fitted.units, ax)
+
+
+def _result_of(kept: dict[str, Any]) -> FitResult:
+    return FitResult(_StoredFit(**kept))

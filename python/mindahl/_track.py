@@ -36,10 +36,15 @@ class CycleTable(Table):
                  test: _mindahl.TrackedTest) -> None:
         self._columns = {name: np.asarray(values) for name, values in columns.items()}
         self.units = dict(units)
-        self._test = test
+        self._test: Optional[_mindahl.TrackedTest] = test
+        self._established = test.established
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_described": self._described, "_test": None}
 
     @cached_property
     def _described(self) -> tuple[str, str, list[str]]:
+        assert self._test is not None  # of a pickled table the description is there
         return self._test.describe()
 
     @cached_property
@@ -67,7 +72,7 @@ class CycleTable(Table):
     @property
     def established(self) -> bool:
         """Did any fit converge?"""
-        return self._test.established
+        return self._established
 
     @property
     def energy_counts(self) -> dict[str, int]:

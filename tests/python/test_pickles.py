@@ -1,0 +1,134 @@
+"""Results and records that are pickled, copied, saved and read again."""
+
+import copy
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+
+import matplotlib
+import numpy as np
+import pytest
+
+import mindahl
+from conftest import DATA
+
+matplotlib.use("Agg")
+SPHERE = DATA / "mindlin_sphere_on_plane.csv"
+
+
+def saved_and_loaded(result, tmp_path):
+    result.save(tmp_path / "fit.mindahl")
+    return mindahl.FitResult.load(tmp_path / "fit.mindahl")
+
+
+@pytest.mark.parametrize("again", [
+    lambda result, _: pickle.loads(pickle.dumps(result)), saved_and_loaded,
+    lambda result, _: copy.copy(result), lambda result, _: copy.deepcopy(result)])
+def test_a_result_is_the_same_afterwards(again, tmp_path):
+    result = mindahl.fit(SPHERE, normal_load=50)
+    other = again(result, tmp_path)
+    assert other.to_json() == result.to_json()
+    assert other.text() == other.summary() == result.text()
+    assert other.notes == result.notes and repr(other) == repr(result)
+    for name in ("force", "displacement", "time", "fitted_force", "residual"):
+        np.testing.assert_array_equal(getattr(other.records[0], name),
+                                      getattr(result.records[0], name))
+    assert other.records[0].fitted_displacement is None
+    np.testing.assert_array_equal(other.plot()[0].lines[1].get_ydata(), result.fitted_force)
+    assert other._repr_html_().startswith("<iframe")
+
+
+def test_a_saved_result_has_its_page_and_a_pickled_one_its_text(tmp_path):
+    result = mindahl.fit(SPHERE)
+    assert saved_and_loaded(result, tmp_path).page() == result.page()
+    assert "stiffness" in pickle.loads(pickle.dumps(result)).page()
+
+
+def test_a_result_of_json_is_shown_and_says_what_it_has_not(tmp_path):
+    (tmp_path / "fit.json").write_text(mindahl.fit(SPHERE).to_json(), encoding="utf-8")
+    loaded = mindahl.FitResult.load(tmp_path / "fit.json")
+    assert "sigma = " in loaded._repr_html_()
+    with pytest.raises(ValueError, match="has no records"):
+        loaded.plot()
+    with pytest.raises(ValueError, match="has no likelihood"):
+        loaded.log_likelihood()
+    for content in (b"PK nothing", b"\xff", b"[]", b"{"):
+        (tmp_path / "other").write_bytes(content)
+        with pytest.raises(ValueError, match="is no result of a fit"):
+            mindahl.FitResult.load(tmp_path / "other")
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_processes_fit_files_and_records():
+    loads = [DATA / f"load_series_{load}N.csv" for load in (20, 50, 120)]
+    records = [mindahl.read_csv(path) for path in loads]
+    expected = [mindahl.fit(record).parameters for record in records]
+    with ProcessPoolExecutor(2) as pool:
+        assert [fit.parameters for fit in pool.map(mindahl.fit, loads)] == expected
+        assert [fit.parameters for fit in pool.map(mindahl.fit, records)] == expected
+
+
+def test_a_record_is_copied_with_all_its_columns(tmp_path):
+    path = tmp_path / "loop.csv"
+    path.write_text("t [s],phi [deg],M [N m],load [N],temp\n"
+                    "0,0,0,5,20\n1,1,2,6,21\n2,2,3,5,22\n3,1,1,6,23\n")
+    record = mindahl.read_csv(path, displacement="2", force="3", normal_load_column="4",
+                              covariates=["temp"])
+    for other in (copy.deepcopy(record), pickle.loads(pickle.dumps(record))):
+        assert other.name == record.name and other.is_torsional == record.is_torsional
+        for name in ("displacement", "force", "time", "normal_load"):
+            np.testing.assert_array_equal(getattr(other, name), getattr(record, name))
+        np.testing.assert_array_equal(other.covariates["temp"], [20, 21, 22, 23])
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_tables_and_reports_are_pickled():
+    for table in (mindahl.track(SPHERE), mindahl.batch([SPHERE, DATA / "none.csv"])):
+        other = pickle.loads(pickle.dumps(table))
+        assert other.to_json() == table.to_json() and other.text() == table.text()
+        assert other.established == table.established
+        assert other.to_pandas().equals(table.to_pandas())
+    report = mindahl.convert(sigma=4e7, slip_force=40, amplitude=1e-6, to="iwan")
+    other = pickle.loads(pickle.dumps(report))
+    assert other.to_json() == report.to_json() and other.input_lines == report.input_lines
+
+
+def test_a_section_is_copied():
+    adequacy = mindahl.fit(SPHERE).adequacy
+    assert copy.copy(adequacy) == copy.deepcopy(adequacy) == adequacy
+    assert pickle.loads(pickle.dumps(adequacy)).verdict == "adequate"
+
+
+def test_covariances_are_those_of_the_errors_and_correlations(sphere):
+    _, displacement, force = sphere
+    result = mindahl.fit(displacement, force, fix={"force_offset": 0})
+    matrix, names = result.covariance
+    assert names == ("sigma", "alpha", "slip_force", "displacement_offset")
+    errors = [result.parameters[name].standard_error for name in names]
+    np.testing.assert_allclose(np.sqrt(np.diag(matrix)), errors)
+    assert matrix[0, 1] == errors[0] * errors[1] * result.correlation.sigma.alpha
+    np.testing.assert_array_equal(matrix, matrix.T)
+
+
+@pytest.mark.parametrize("keywords", [
+    {}, {"rig_stiffness": 1e9}, {"model": "dahl"}, {"terms": "asymmetry", "fix": {"force_offset": 0}}])
+def test_a_prediction_along_the_record_is_the_fit(sphere, keywords):
+    _, displacement, force = sphere
+    result = mindahl.fit(displacement, force, initial_state="virgin", **keywords)
+    rounding = 64 * np.finfo(float).eps * np.abs(force).max()
+    np.testing.assert_allclose(result.predict(displacement), result.fitted_force, rtol=0, atol=rounding)
+
+
+def test_what_cannot_be_predicted_is_refused(sphere):
+    seconds, displacement, force = sphere
+    with pytest.raises(ValueError, match="initial_state is steady"):
+        mindahl.fit(displacement, force, initial_state="steady").predict(displacement)
+    with pytest.raises(ValueError, match="has no term viscous"):
+        mindahl.fit(displacement, force, time=seconds, fix={"viscous": 5.0}).predict(displacement)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_parameter_is_a_number_where_it_is_determined():
+    far = mindahl.fit(DATA / "far_from_slip.csv")
+    assert float(far.sigma) == far.sigma.value
+    with pytest.raises(ValueError, match="alpha: not identifiable: the record determines no value"):
+        float(far.alpha)
