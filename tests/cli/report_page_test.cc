@@ -69,7 +69,7 @@ TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
   EXPECT_THAT(index, HasSubstr("<h1>2 of 3 files fitted</h1>"));
   EXPECT_THAT(index, HasSubstr("<a href=\"loop.html\">"));
   EXPECT_THAT(index, HasSubstr("<a href=\"loop-2.html\">"));
-  EXPECT_THAT(index, HasSubstr("index.csv: no column for the force"));
+  EXPECT_THAT(index, HasSubstr("(column 2) holds no numbers"));
   EXPECT_FALSE(Exists("pages/index-2.html"));
   // Each page says how to make it alone.
   EXPECT_THAT(testing::Unbroken(FileContent(At("pages/loop-2.html"))),
