@@ -456,6 +456,7 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, const RoleR
 
 std::string ColumnNames::Unknown(std::string_view name, const RoleRules& rules) const {
   std::vector<std::string> known;
+  known.reserve(split_.size());
   for (const ColumnName& column : split_) known.push_back(ForMessage(column.name));
   return fmt::format("no column is called '{}' (for the {}){} {}", name, rules.name,
                      DidYouMean(name, known), Listing());
