@@ -60,7 +60,7 @@ BranchLaw LawOf(const FrictionModel& model, BranchLaw law) {
 std::string Describe(const Approximation& approximation) {
   if (approximation.method.empty()) return approximation.model;
   const Method& method = RequireMethod(approximation.method);
-  const std::string text = fmt::format("{} by {}", approximation.model, approximation.method);
+  std::string text = fmt::format("{} by {}", approximation.model, approximation.method);
   if (method.adaptive)
     return fmt::format("{}, tolerance {:g}", text, approximation.resolution.tolerance);
   if (method.steps.empty()) return text;
