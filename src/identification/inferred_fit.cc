@@ -132,6 +132,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   Append(result.findings, slow);
   const bool is_doubtful = IsDoubtful(test, thresholds) || is_limited || slow;
   result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
+  result.adequacy = DoubtedByNoise(thresholds, result);
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
