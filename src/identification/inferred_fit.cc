@@ -18,7 +18,7 @@
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/diagnosis/residual_structure.h"
-#include "identification/inference/column_test.h"
+#include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
@@ -137,9 +137,9 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   const std::vector<ParameterEstimate> plain = result.parameters;
-  WidenByDepartures(problem, solution, causes,
-                    StudentQuantile(test.degrees_of_freedom, options.confidence),
-                    result.parameters);
+  WidenByOmittedTerms(problem, solution, test, causes,
+                      StudentQuantile(test.degrees_of_freedom, options.confidence),
+                      result.parameters);
   result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
 }
