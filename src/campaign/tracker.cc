@@ -70,8 +70,8 @@ void Tracker::Finish() {
 
 void Tracker::Begin() {
   while (begun_.size() >= options_.threads) Deliver();
-  // Where the system has no other thread, the batch is fitted when it is delivered: std::async then
-  // needs the function again, which it has moved from unless it is copied.
+  // std::async defers the fit if no thread can be started, but has then moved from its argument:
+  // the function is therefore copied.
   const auto cycles = std::make_shared<const std::vector<Cycle>>(std::exchange(batch_, {}));
   const auto fit = [this, cycles] { return FitBatch(options_, *cycles); };
   begun_.push_back(std::async(fit));

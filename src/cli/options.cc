@@ -117,7 +117,7 @@ const Option& Option::OneAtATime() const {
 
 const Option& Option::InUnit(const std::string& unit) const {
   const auto convert = [unit](std::string& text) -> std::string {
-    // What has no unit is read, and refused, as a number.
+    // A text without a unit is read, and refused, as a number.
     if (Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
     const std::optional<double> value = ParseQuantity(text, unit);
     if (!value)

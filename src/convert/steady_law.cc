@@ -294,7 +294,7 @@ BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta) {
   const double log_exponent =
       boost::math::tools::brent_find_minima(difference, 0.0, std::log(kLargestExponent), kBits)
           .first;
-  // Where the least is at n = 1 the search ends next to it.
+  // The search ends next to n = 1 if the least is there.
   const double exponent = std::clamp(std::exp(log_exponent), 1.0, kLargestExponent);
   return law_of(difference(0.0) <= difference(log_exponent) ? 1.0 : exponent);
 }

@@ -74,7 +74,7 @@ inline constexpr std::array kWords = {
     WordRow{Role::kResponse, 1, false, "kt|k|K"},
 };
 
-// What is commanded, raw or a statistic is worse evidence than what was measured.
+// Commanded, raw and statistical quantities are weaker evidence than measured ones.
 inline constexpr std::string_view kLesserWords =
     "setpoint|set|command|cmd|commanded|target|desired|reference|ref|control|soll|sollwert|"
     "consigne|"

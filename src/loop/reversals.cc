@@ -111,11 +111,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range,
 bool Jumps(std::span<const double> displacement, const Excursion& excursion, double share) {
   constexpr std::size_t kLongest = 64;  // [samples]
   if (excursion.duration() > kLongest) return false;
-  double largest = 0.0;
-  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
-    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
-  }
-  return largest >= share * excursion.range;
+  return LargestStep(displacement, excursion) >= share * excursion.range;
 }
 
 /// Classifies an excursion by itself.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory_resource>
 #include <span>
@@ -20,6 +21,16 @@ struct Excursion {
 
   [[nodiscard]] std::size_t duration() const { return last - first; }
 };
+
+/// Returns the largest step [m] between two samples of an excursion.
+inline double LargestStep(std::span<const double> displacement, const Excursion& excursion) {
+  double largest = 0.0;
+  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
+    const double step = displacement[i] - displacement[i - 1];
+    largest = std::max(largest, step < 0 ? -step : step);
+  }
+  return largest;
+}
 
 /// Returns the excursions of a displacement, by range. Closed inner loops by the four-point rule
 /// (ASTM E1049 describes an equivalent one), the record's ends being extremes; what is left widens

@@ -27,15 +27,6 @@ struct RepeatedStrokes {
   double highest = 0.0;
 };
 
-/// True if no step between two samples makes most of an excursion.
-bool IsSmooth(std::span<const double> displacement, const Excursion& excursion, double jump) {
-  double largest = 0.0;
-  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
-    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
-  }
-  return largest < jump * excursion.range;
-}
-
 /// Describes excursions of nearly one range; nothing where they are too few, jump, or leave most of
 /// their time to something else.
 std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
@@ -48,7 +39,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
   std::size_t count = 0;
   double lasting = 0.0;  // [samples]
   for (const Excursion& excursion : excursions) {
-    if (!IsSmooth(displacement, excursion, rules.jump)) continue;
+    if (LargestStep(displacement, excursion) >= rules.jump * excursion.range) continue;
     count += excursion.reversals;
     lasting += static_cast<double>(excursion.duration() * excursion.reversals);
     strokes.first = std::min(strokes.first, excursion.first);

@@ -19,7 +19,7 @@ using models::FrictionModel;
 
 namespace {
 
-// What operations take [ns].
+// Costs of operations [ns].
 constexpr double kPlace = 4.1;       // to find the branch that a sample lies on
 constexpr double kReversal = 100.0;  // to open a branch
 constexpr double kRoot = 1.4;        // the branch law, α = 1/3: a square root and a division

@@ -216,7 +216,7 @@ Report MakeReport(ReportInput input) {
       report.load_hypotheses = TestLoadExponent(report.fit);
     }
     report.check = WhatToCheck(report);
-    // A fit that mixes loads or units up is not mended by a term.
+    // No term repairs a fit that mixes up loads or units.
     if (!report.check.empty()) report.next.reset();
   }
   CollectWarnings(report);

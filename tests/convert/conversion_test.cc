@@ -123,7 +123,7 @@ TEST(Conversion, ToElementsIsTheTangentsOfTheVirginCurve) {
     last = made.at_amplitude.force;
   }
   EXPECT_LT(last, 0.002);  // 0.192/16² of Tc, twice, over T*
-  // Of Dahl's own law, of Masing's with the same loop.
+  // Dahl's own law, and Masing's with the same loop.
   const ModelLaw dahl{&Model("dahl"), {4e7, 0.5, 40.0}};
   EXPECT_LT(To("iwan", dahl, {.elements = 64}).at_amplitude.force, 1e-3);
 }
