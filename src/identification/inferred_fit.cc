@@ -18,7 +18,7 @@
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/diagnosis/residual_structure.h"
-#include "identification/inference/column_test.h"
+#include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
@@ -132,13 +132,14 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   Append(result.findings, slow);
   const bool is_doubtful = IsDoubtful(test, thresholds) || is_limited || slow;
   result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
+  result.adequacy = DoubtedByNoise(thresholds, result);
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   const std::vector<ParameterEstimate> plain = result.parameters;
-  WidenByDepartures(problem, solution, causes,
-                    StudentQuantile(test.degrees_of_freedom, options.confidence),
-                    result.parameters);
+  WidenByOmittedTerms(problem, solution, test, causes,
+                      StudentQuantile(test.degrees_of_freedom, options.confidence),
+                      result.parameters);
   result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
   result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
 }

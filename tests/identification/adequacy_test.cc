@@ -50,6 +50,29 @@ TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
   EXPECT_NE(fit.FindFinding("slow_residuals"), nullptr);
 }
 
+/// Dahl's own law from the unloaded contact, fitted by Masing's: what that misses is smooth, and
+/// with a handful of strokes it passes for autocorrelated noise.
+TEST(Adequacy, IsNotClaimedOfResidualsBeyondTheNoiseThatTheRecordHasWithoutAModel) {
+  FitOptions options;
+  options.model = &Model("mindlin-dahl");
+  int beyond = 0;
+  for (const double alpha : {0.5, 1.5, 2.0, 2.5}) {
+    for (const double cycles : {1.5, 2.0, 2.25, 6.25}) {
+      const BranchLaw law{4e7, alpha, 40.0};
+      const History displacement = Cycling(Wave::kSine, 3 * kReach, cycles, kCycle);
+      Record record = MakeRecord(displacement, Respond(Model("dahl"), law, displacement));
+      Generator generator(3);
+      for (double& force : record.force) force += 0.0025 * law.slip_force * Normal(generator);
+      const FitResult fit = Fitted(record, options);
+      if (fit.rms < 1.6 * 0.0025 * law.slip_force) continue;
+      EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << alpha << " " << cycles;
+      EXPECT_LE(fit.adequacy.p_value, options.thresholds.repeat_chance) << alpha << " " << cycles;
+      ++beyond;
+    }
+  }
+  EXPECT_GE(beyond, 8) << "the law describes the loops of the other too well for the case";
+}
+
 constexpr int kLoops = 200;
 
 struct Shares {

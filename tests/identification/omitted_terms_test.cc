@@ -1,17 +1,16 @@
+#include "identification/gram/omitted_terms.h"
 
 #include <Eigen/Dense>
-#include <boost/math/distributions/fisher_f.hpp>
 
 #include "identification/diagnosis/adequacy.h"
-#include "identification/inference/column_test.h"
+#include "identification/gram/gram.h"
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 
-// What residuals are asked for in addition to the model: degrees of freedom, several columns, and
-// the move of a parameter, each by a calculation of its own.
+// What residuals are asked for in addition to the model, by a calculation of its own.
 namespace mindahl::identification::omitted_terms_test {
 namespace {
 
@@ -28,37 +27,74 @@ Record LoopOf(std::size_t samples_per_cycle, double cycles) {
                              testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
 }
 
-TEST(WidenByDepartures, MovesEachEndByTheStepItsErrorItsSquareAndWhatIsApart) {
+Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, Generator& generator) {
+  Eigen::MatrixXd drawn(rows, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) drawn(i, j) = Normal(generator);
+  }
+  return drawn;
+}
+
+/// Sum of squares of what the columns leave of a vector.
+double LeftBy(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values) {
+  return (values - columns * columns.colPivHouseholderQr().solve(values)).squaredNorm();
+}
+
+TEST(Gram, StepsAsLeastSquaresOfAllColumnsDo) {
+  constexpr Eigen::Index kRows = 60;
+  Generator generator(8);
+  const Eigen::MatrixXd law = 1e3 * Drawn(kRows, 3, generator);
+  Eigen::MatrixXd omitted = Drawn(kRows, 4, generator);
+  omitted.col(3) = omitted.col(0) + omitted.col(1);  // tells nothing more
+  const Eigen::VectorXd residual = Drawn(kRows, 1, generator);
+  Gram gram(law, omitted, residual);
+  const std::array<Eigen::Index, 4> all = {0, 1, 2, 3};
+  const GramAxes axes = gram.AxesOf(all);
+  ASSERT_EQ(axes.values.size(), 3);
+  const GramStep step = gram.StepBy(axes, axes.values.inverse());
+  Eigen::MatrixXd both(kRows, 6);
+  both << law, omitted.leftCols(3);
+  const Eigen::VectorXd left = residual + law * step.law + omitted * step.omitted;
+  constexpr double kRounding = 1e-8;  // of products, which are squared once
+  EXPECT_NEAR(left.squaredNorm() / LeftBy(both, residual), 1, kRounding);
+  EXPECT_NEAR((LeftBy(law, residual) - axes.coefficients.square().sum()) / left.squaredNorm(), 1,
+              kRounding);
+  const Eigen::MatrixXd covariance = (both.transpose() * both).inverse().topLeftCorner(3, 3);
+  EXPECT_LT((step.covariance - covariance).norm() / covariance.norm(), kRounding);
+  // Noise of four times the variance in every direction, whatever its correlation.
+  Eigen::MatrixXd columns(kRows, 7);
+  columns << law, omitted;
+  gram.SetNoise(4 * columns.transpose() * columns);
+  const GramAxes noisy = gram.AxesOf(all);
+  EXPECT_LT((noisy.noise - 4).abs().maxCoeff(), kRounding);
+  EXPECT_LT((gram.StepBy(noisy, noisy.values.inverse()).covariance - 4 * covariance).norm() /
+                covariance.norm(),
+            kRounding);
+}
+
+TEST(WidenByOmittedTerms, MovesEachEndByTheStepAndTwiceItsError) {
   Stages stages(LoopOf(100, 2));
   const Problem& problem = stages.problem;
   const auto& free = problem.parameters.free();
+  const auto& reported = problem.parameters.reported();
   Solution solution;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     solution.theta.push_back(problem.parameters[p].theta);
   }
-  const auto departures = Departures();
-  const auto plain = std::ranges::find(departures, 0.0, &Departure::apart);
-  const auto apart = std::ranges::find(departures, 0.5, &Departure::apart);
-  ASSERT_TRUE(plain != departures.end() && apart != departures.end());
   constexpr double kQuantile = 2.0;
-  /// The part of the interval [θ] that a fit with a step and an error adds to a parameter.
-  const auto added = [&](std::size_t parameter, double step, double error, const auto& departure,
-                         double size) {
-    DepartureFit fit;
-    fit.departure = static_cast<std::size_t>(departure - departures.begin());
-    fit.size = size;
-    fit.step.assign(free.size(), 0.0);
-    fit.error.assign(free.size(), 0.0);
+  /// The part of the interval [θ] that a step with an error adds to a parameter.
+  const auto added = [&](std::size_t parameter, double step, double error) {
+    AdequacyTest test;
+    test.step.assign(free.size(), 0.0);
+    test.error.assign(free.size(), 0.0);
     const auto place = static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
-    fit.step[place] = step;
-    fit.error[place] = error;
-    std::vector<ParameterEstimate> estimates(problem.parameters.reported().size());
-    const auto& reported = problem.parameters.reported();
+    test.step[place] = step;
+    test.error[place] = error;
+    std::vector<ParameterEstimate> estimates(reported.size());
     const auto k =
         static_cast<std::size_t>(std::ranges::find(reported, parameter) - reported.begin());
     estimates[k].interval = {{.source = IntervalSource::kParabola, .lower = 0.0, .upper = 0.0}};
-    WidenByDepartures(problem, solution, std::span(&fit, 1), kQuantile, estimates);
-    EXPECT_EQ(estimates[k].interval.size(), 2U);
+    WidenByOmittedTerms(problem, solution, test, {}, kQuantile, estimates);
     const IntervalPart& part = estimates[k].interval.back();
     EXPECT_EQ(part.source, IntervalSource::kOmittedTerms);
     const Parameter& of = problem.parameters[parameter];
@@ -72,17 +108,14 @@ TEST(WidenByDepartures, MovesEachEndByTheStepItsErrorItsSquareAndWhatIsApart) {
   };
   for (const std::size_t p : {kStiffness, kSlipForce}) {
     for (const double sign : {1.0, -1.0}) {
-      expect(added(p, sign * 0.5, 0.01, plain, 0.25), sign * 0.5, 2 * 0.01 + 0.25);
-      expect(added(p, sign * 0.5, 0.01, apart, sign * 0.25), sign * 0.5, 2 * 0.01 + 0.25 + 0.125);
-      // Neither step nor error, nor what is apart, counts beyond a factor of e³.
-      expect(added(p, sign * 10, 0.01, plain, 0.25), sign * 3, 2 * 0.01 + 3);
-      expect(added(p, sign * 0.5, 10, apart, 100.0), sign * 0.5, 2 * 3 + 0.25 + 3);
+      expect(added(p, sign * 0.5, 0.01), sign * 0.5, 0.04);
+      // Neither step nor error counts beyond a factor of e³.
+      expect(added(p, sign * 10, 10), sign * 3, 12);
     }
   }
-  // α is not of the force, and not below 0.
+  // α is not below 0.
   const double alpha = problem.parameters[kShape].ToValue(solution.theta[kShape]);
-  expect(added(kShape, 0.125, 0.01, apart, 0.25), 0.125, 2 * 0.01 + 0.015625);
-  EXPECT_NEAR(added(kShape, -3.0, 0.01, plain, 0.0).first, -alpha, 1e-9);
+  EXPECT_NEAR(added(kShape, -3.0, 0.01).first, -alpha, 1e-9);
 }
 
 }  // namespace

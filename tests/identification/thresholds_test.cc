@@ -196,7 +196,7 @@ bool IsSlow(const Thresholds& thresholds, double strokes) {
 
 /// Whether residuals of such a chance are doubted.
 bool IsDoubted(const Thresholds& thresholds, double chance) {
-  return IsDoubtful(TestWith({}, chance / 2), thresholds);
+  return IsDoubtful(TestWith({}, chance), thresholds);
 }
 
 DepartureFit FitWith(double p_value, double delta_aicc) {

@@ -78,14 +78,6 @@ std::string_view AcceptedGroup(const Problem& problem, const FitOptions& options
 
 namespace {
 
-/// Returns the chance that noise alone makes what all omitted terms, or the best, explain.
-double ChanceOfNoise(const AdequacyTest& test) {
-  double best = 1.0;
-  for (const DepartureFit& fit : test.fits) best = std::min(best, fit.p_value);
-  if (test.fits.empty()) return std::min(1.0, 2 * test.p_value);
-  return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
-}
-
 /// True if a covariate follows the force of the fitted model on the samples that count.
 bool CovariateFollowsContact(const Problem& problem, const Solution& solution,
                              std::size_t covariate) {
@@ -166,7 +158,7 @@ bool IsNoSaturation(const DepartureFit& fit, const Thresholds& thresholds) {
 }  // namespace
 
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
-  return ChanceOfNoise(test) < thresholds.doubt;
+  return test.p_value < thresholds.doubt;
 }
 
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
@@ -237,7 +229,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
   adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->response_unit();
-  adequacy.p_value = ChanceOfNoise(test);
+  adequacy.p_value = test.p_value;
   adequacy.tried = test.fits.size();
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "identification/inference/column_test.h"
+#include "identification/gram/omitted_terms.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
@@ -21,7 +21,7 @@ namespace mindahl::identification {
 std::string_view AcceptedGroup(const Problem& problem, const FitOptions& options,
                                std::string_view group);
 
-/// True if noise hardly makes what all omitted terms, or the best of them, explain.
+/// True if noise hardly makes what all omitted terms explain.
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
 
 /// Returns the omitted terms that noise alone does not make, the best first, without those that

@@ -5,7 +5,6 @@
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 
@@ -16,43 +15,6 @@
 
 namespace mindahl::identification {
 namespace {
-
-constexpr std::size_t kParts = 6;  // thirds of the stroke, up and down
-
-/// A sample of a main stroke.
-struct StrokeSample {
-  Eigen::Index row = 0;  // of the Jacobian
-  std::size_t part = 0;
-  std::size_t stroke = 0;  // its number among those of all records
-};
-
-template <typename Visit>
-void ForEachSample(const Problem& problem, const Thresholds& thresholds, Visit visit) {
-  constexpr std::size_t kThirds = kParts / 2;
-  std::size_t begin = 0;
-  std::size_t number = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const MainStroke& stroke :
-         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
-      const double from = record.excitation()[stroke.begin];
-      const double width = record.excitation()[stroke.end] - from;
-      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
-        const auto third = static_cast<std::size_t>(way * static_cast<double>(kThirds));
-        visit(StrokeSample{static_cast<Eigen::Index>(begin + i),
-                           std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds), number});
-      }
-      ++number;
-    }
-    begin += record.size();
-  }
-}
-
-/// ColumnSums of a regression of one column.
-struct ColumnSums {
-  double product = 0.0;
-  double squares = 0.0;
-};
 
 /// Sums Σ(x − x̄)(y − ȳ) of groups of points: of the same x, slopes are in proportion to it.
 class CrossProduct {
@@ -106,107 +68,86 @@ double SpreadOf(std::span<const double> steps, double confidence) {
 
 std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
                                      const Thresholds& thresholds) {
-  std::vector<double> steps;
+  constexpr std::size_t kThirds = 3;
   const std::size_t place = problem.parameters.PlaceAmongFree(kSlipForce);
-  if (place == problem.parameters.free().size() || problem.data->is_forced()) return steps;
+  if (place == problem.parameters.free().size() || problem.data->is_forced()) return {};
   const auto& column = estimates.jacobian().col(static_cast<Eigen::Index>(place));
-  std::array<ColumnSums, kParts> sums{};
-  ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
-    ColumnSums& sum = sums[sample.part];
-    sum.product -= column(sample.row) * estimates.residual()(sample.row);
-    sum.squares += column(sample.row) * column(sample.row);
-  });
-  double most = 0.0;
-  for (const ColumnSums& sum : sums) most = std::max(most, sum.squares);
+  std::array<double, 2 * kThirds> products{};
+  std::array<double, 2 * kThirds> squares{};
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const MainStroke& stroke :
+         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
+      const double from = record.excitation()[stroke.begin];
+      const double width = record.excitation()[stroke.end] - from;
+      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+        const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
+        const auto third = static_cast<std::size_t>(way * static_cast<double>(kThirds));
+        const std::size_t part = std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds);
+        const auto row = static_cast<Eigen::Index>(begin + i);
+        products[part] -= column(row) * estimates.residual()(row);
+        squares[part] += column(row) * column(row);
+      }
+    }
+    begin += record.size();
+  }
   constexpr double kLeast = 0.25;  // of the part that depends most on Tc
-  for (const ColumnSums& sum : sums) {
-    if (sum.squares > kLeast * most) steps.push_back(sum.product / sum.squares);
+  const double most = std::ranges::max(squares);
+  std::vector<double> steps;
+  for (std::size_t part = 0; part < squares.size(); ++part) {
+    if (squares[part] > kLeast * most) steps.push_back(products[part] / squares[part]);
   }
   return steps;
-}
-
-namespace {
-
-/// Jackknife of linear steps: what leaving out one part of the samples after the other changes.
-/// @param part_of  part of a sample; `parts` of one that is never left out
-/// @param keeps_rest  the samples besides main strokes too, as of the first loading
-/// @returns √((n − 1)/n·Σ(θ₋ₖ − θ̄)²) of the free θ; none where the rest does not determine them
-template <typename PartOf>
-std::vector<double> Jackknife(const Problem& problem, const Estimates& estimates,
-                              const Thresholds& thresholds, std::size_t parts, PartOf part_of,
-                              bool keeps_rest) {
-  const Eigen::Index count = estimates.jacobian().cols();
-  if (count == 0) return {};
-  std::vector<Eigen::MatrixXd> matrices(parts + 1, Eigen::MatrixXd::Zero(count, count));
-  std::vector<Eigen::VectorXd> vectors(parts + 1, Eigen::VectorXd::Zero(count));
-  double left_out = 0.0;
-  ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
-    const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
-    const std::size_t part = part_of(sample);
-    if (part < parts) ++left_out;
-    matrices[part].noalias() += row * row.transpose();
-    vectors[part] -= estimates.residual()(sample.row) * row;
-  });
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-  Eigen::VectorXd vector = Eigen::VectorXd::Zero(count);
-  for (std::size_t part = 0; part <= parts; ++part) {
-    matrix += matrices[part];
-    vector += vectors[part];
-  }
-  if (keeps_rest) {
-    matrix = TransposedProduct(estimates.jacobian(), estimates.jacobian());
-    vector = -(estimates.jacobian().transpose() * estimates.residual());
-  }
-  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
-  for (std::size_t part = 0; part < parts; ++part) {
-    Eigen::Index rank = 0;
-    steps.col(static_cast<Eigen::Index>(part)) =
-        SolveLeastSquares(matrix - matrices[part], vector - vectors[part], &rank);
-    if (rank < count) return {};
-  }
-  steps.colwise() -= steps.rowwise().mean().eval();
-  const auto all = static_cast<double>(parts);
-  double factor = (all - 1) / all;
-  if (keeps_rest) {  // each part is a fraction of all samples that is less than 1/n
-    const double fraction = left_out / all / static_cast<double>(estimates.jacobian().rows());
-    factor = (1 - fraction) * (1 - fraction) / (fraction * (all - 1));
-  }
-  std::vector<double> errors;
-  errors.reserve(static_cast<std::size_t>(count));
-  for (Eigen::Index k = 0; k < count; ++k) {
-    errors.push_back(std::sqrt(factor) * steps.row(k).norm());
-  }
-  return errors;
-}
-
-}  // namespace
-
-std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
-                                       const Thresholds& thresholds) {
-  std::vector<double> spread = Jackknife(
-      problem, estimates, thresholds, kParts,
-      [](const StrokeSample& sample) { return sample.part; }, /*keeps_rest=*/false);
-  const double quantile = StudentQuantile(kParts - 1, estimates.confidence());
-  for (double& width : spread) width *= quantile;
-  return spread;
 }
 
 std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
                                         const Thresholds& thresholds) {
   constexpr std::size_t kFewest = 3;
   constexpr std::size_t kMost = 12;
-  std::size_t strokes = 0;
-  ForEachSample(problem, thresholds,
-                [&](const StrokeSample& sample) { strokes = sample.stroke + 1; });
-  const std::size_t cycles = strokes / 2;
-  if (cycles < kFewest) return {};
-  const std::size_t parts = std::min(cycles, kMost);
-  const auto part_of = [&](const StrokeSample& sample) {
-    // An odd stroke at the end stays: without it the two directions would weigh unlike.
-    const std::size_t cycle = sample.stroke / 2;
-    return cycle < cycles ? cycle * parts / cycles : parts;
+  struct Rows {
+    Eigen::Index begin;
+    Eigen::Index count;
   };
-  return Jackknife(problem, estimates, thresholds, parts, part_of, /*keeps_rest=*/true);
+  std::vector<Rows> strokes;
+  Eigen::Index begin = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const MainStroke& stroke :
+         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
+      strokes.push_back({begin + static_cast<Eigen::Index>(stroke.begin),
+                         static_cast<Eigen::Index>(stroke.end - stroke.begin)});
+    }
+    begin += static_cast<Eigen::Index>(record.size());
+  }
+  const Eigen::MatrixXd& jacobian = estimates.jacobian();
+  const Eigen::Index count = jacobian.cols();
+  const std::size_t cycles = strokes.size() / 2;
+  if (cycles < kFewest || count == 0) return {};
+  const std::size_t parts = std::min(cycles, kMost);
+  std::vector<Eigen::MatrixXd> matrices(parts, TransposedProduct(jacobian, jacobian));
+  std::vector<Eigen::VectorXd> vectors(parts, -(jacobian.transpose() * estimates.residual()));
+  double left_out = 0.0;
+  // An odd stroke at the end stays: without it the two directions would weigh unlike.
+  for (std::size_t stroke = 0; stroke < 2 * cycles; ++stroke) {
+    const auto [first, samples] = strokes[stroke];
+    const auto rows = jacobian.middleRows(first, samples);
+    const std::size_t part = stroke / 2 * parts / cycles;
+    matrices[part] -= TransposedProduct(rows, rows);
+    vectors[part] += rows.transpose() * estimates.residual().segment(first, samples);
+    left_out += static_cast<double>(samples);
+  }
+  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
+  for (std::size_t part = 0; part < parts; ++part) {
+    Eigen::Index rank = 0;
+    steps.col(static_cast<Eigen::Index>(part)) =
+        SolveLeastSquares(matrices[part], vectors[part], &rank);
+    if (rank < count) return {};
+  }
+  steps.colwise() -= steps.rowwise().mean().eval();
+  const auto all = static_cast<double>(parts);
+  const double fraction = left_out / all / static_cast<double>(jacobian.rows());
+  const double factor = (1 - fraction) * (1 - fraction) / (fraction * (all - 1));
+  const Eigen::VectorXd errors = std::sqrt(factor) * steps.rowwise().norm();
+  return {errors.begin(), errors.end()};
 }
 
 std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
@@ -269,32 +210,15 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 
 namespace {
 
-/// Widens σ and α by what leaving out a part of the strokes changes, and σ by the stiffness that
-/// the record itself has after its reversals.
-void CoverShape(const FittedProblem& fitted, const Thresholds& thresholds,
-                ParameterEstimates& parameters) {
-  const auto& [problem, solution, noise, estimates] = fitted;
-  const std::vector<double> spread = SpreadWithoutParts(problem, estimates, thresholds);
-  for (const std::size_t p : {kStiffness, kShape}) {
-    ParameterEstimate& estimate = parameters[p];
-    const std::size_t place = problem.parameters.PlaceAmongFree(p);
-    if (place >= spread.size() || !estimate.lower95 || !estimate.upper95) continue;
-    const Parameter& parameter = problem.parameters[p];
-    const double step = std::min(spread[place], kFarthestStep);
-    const double one = parameter.ToValue(solution.theta[p] - step);
-    const double other = parameter.ToValue(solution.theta[p] + step);
-    const double least = p == kShape ? 0.0 : std::numeric_limits<double>::lowest();
-    Include(estimate, {.source = IntervalSource::kDiscrepancy,
-                       .lower = std::max(std::min(one, other), least),
-                       .upper = std::max(one, other)});
-  }
-  ParameterEstimate& stiffness = parameters[kStiffness];
+/// Widens σ by the stiffness that the record itself has after its reversals.
+void CoverStiffness(const FittedProblem& fitted, const Thresholds& thresholds,
+                    ParameterEstimate& stiffness) {
   if (stiffness.status == ParameterStatus::kFixed || !stiffness.lower95 || !stiffness.upper95) {
     return;
   }
   const double lower = *stiffness.lower95;
   const double upper = *stiffness.upper95;
-  for (const double ratio : StiffnessOfWindows(problem, estimates, thresholds)) {
+  for (const double ratio : StiffnessOfWindows(fitted.problem, fitted.estimates, thresholds)) {
     Include(
         stiffness,
         {.source = IntervalSource::kDiscrepancy, .lower = ratio * lower, .upper = ratio * upper});
@@ -308,7 +232,7 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
                                     const Thresholds& thresholds, const FitResult& result) {
   const auto& [problem, solution, noise, estimates] = fitted;
   ParameterEstimates parameters = result.parameters;
-  CoverShape(fitted, thresholds, parameters);
+  CoverStiffness(fitted, thresholds, parameters[kStiffness]);
   ParameterEstimate& slip_force = parameters[kSlipForce];
   for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
@@ -339,9 +263,9 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   const double most =
       std::max({*half_gap, facts.peak_force / load_ratio, slip_force.value}) + margin;
   const auto limited = [&](double end) { return std::clamp(end, least, most); };
-  const double spread = SpreadOf(steps, result.confidence);
   range.Include(limited(slip_force.lower95.value_or(0.0)));
   range.Include(limited(slip_force.upper95.value_or(most)));
+  const double spread = SpreadOf(steps, result.confidence);
   range.Include(limited(slip_force.value * std::exp(-spread)));
   range.Include(limited(slip_force.value * std::exp(spread)));
   SetInterval(slip_force,

@@ -20,13 +20,6 @@ namespace mindahl::identification {
 std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
                                      const Thresholds& thresholds);
 
-/// Half widths of 95 % intervals of the free θ from leaving out one part of the strokes after the
-/// other: √((n − 1)/n·Σ(θ₋ₖ − θ̄)²), the jackknife of n = 6 parts, times Student's quantile; each
-/// θ₋ₖ by one linear step of all free parameters.
-/// @returns none where the rest does not determine them
-std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
-                                       const Thresholds& thresholds);
-
 /// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
 /// record, whole cycles that follow on each other: √((1 − f)²/f·Σ(θ₋ₖ − θ̄)²/(n − 1)), the jackknife
 /// of n parts that have a fraction f of the samples each, each θ₋ₖ by one linear step of all free
@@ -48,7 +41,7 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 /// where the measured loop slides over most of its stroke: it becomes the union of the fitted
 /// value, the measured half gap with its margin, and, as far as they lie between the least and the
 /// largest of that half gap, T* and the value, each with the margin,
-///   - the interval so far, of noise and of the causes that explain what the model misses,
+///   - the interval so far, of noise and of the terms that the model omits,
 ///   - what a further part of the strokes would ask for, by Student's law of SlipForceOfParts().
 /// A loop that slides has carried its slip force: no less than the gap in the middle of the stroke,
 /// no more than its largest force. The margin is the scatter of the cycles' half gaps and the error

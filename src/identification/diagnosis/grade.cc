@@ -81,6 +81,40 @@ std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<s
   return names;
 }
 
+namespace {
+
+/// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
+/// of both directions come back, of what does not repeat with them; else what differs between
+/// neighbouring samples.
+double NoiseVariance(const FitResult& result) {
+  double repeats = 0.0;
+  bool comes_back = false;
+  for (const RecordFit& record : result.records) {
+    repeats = std::max(repeats, record.structure.repeatable_share);
+    const auto& [rising, falling] = record.structure.directions;
+    comes_back = comes_back || (rising.strokes > 1 && falling.strokes > 1);
+  }
+  return comes_back ? (1 - repeats) * result.rms * result.rms : WhiteVariance(result);
+}
+
+}  // namespace
+
+Adequacy DoubtedByNoise(const Thresholds& thresholds, const FitResult& result) {
+  Adequacy adequacy = result.adequacy;
+  const double noise = NoiseVariance(result);
+  const double square = result.rms * result.rms;
+  constexpr double kMost = 1.5;  // times the noise
+  // The rms includes the readings that a robust loss weighs down.
+  if (result.outliers > 0 || !(square > kMost * kMost * noise)) return adequacy;
+  adequacy.verdict = AdequacyVerdict::kDoubtful;
+  adequacy.p_value = std::min(adequacy.p_value, thresholds.repeat_chance);
+  if (noise > 0) {
+    adequacy.misfit_over_noise =
+        std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));
+  }
+  return adequacy;
+}
+
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   Adequacy adequacy = result.adequacy;
   const double missed = MissedForce(result);

@@ -49,6 +49,12 @@ double WhiteVariance(const FitResult& result);
 /// Returns those of the named parameters whose interval does not include what the model misses.
 std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names);
 
+/// Returns the adequacy, doubtful where the residuals exceed 1.5 times the noise that the
+/// record has without a model: what does not repeat from stroke to stroke (pure error), or of a
+/// single cycle what differs between neighbouring samples. Tests of columns take a misfit that no
+/// column explains for autocorrelated noise.
+Adequacy DoubtedByNoise(const Thresholds& thresholds, const FitResult& result);
+
 /// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use
 /// is judged by T*.
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);

@@ -93,7 +93,6 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   fit->is_measured = true;
   const auto& free = problem.parameters.free();
   fit->step.resize(free.size(), 0.0);
-  fit->error.resize(free.size(), 0.0);
   // Other effects in addition to the gap may leave a fit behind it no better than one without.
   if (!after.converged || !(after.sum_of_squares < solution.sum_of_squares)) return;
   PutInPlace(*problem.data, solution.sum_of_squares, after, free, solution.theta, test, *fit);
@@ -173,7 +172,6 @@ void TryLag(const Problem& problem, const Solution& solution, const SolverOption
   fit->unit = timed ? parameter.term->unit : parameter.term->unit_by_sample;
   const auto& free = problem.parameters.free();
   fit->step.resize(free.size(), 0.0);
-  fit->error.resize(free.size(), 0.0);
   PutInPlace(data, before.sum_of_squares, after, free, solution.theta, test, *fit);
 }
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "identification/inference/column_test.h"
+#include "identification/gram/omitted_terms.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/search.h"
 #include "mindahl/loop/facts.h"

@@ -1,0 +1,103 @@
+#include "identification/gram/gram.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "identification/dense.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Least part of a column orthogonal to the law's, below which it is one of theirs.
+constexpr double kLeastOwnShare = 0.02;
+/// Least square of the norm of an axis that is independent of the others.
+constexpr double kLeastOfAxis = 1e-6;
+
+/// Scales columns to unit norm; those of zeros, and what overflows, become zero.
+Eigen::VectorXd Normalize(Eigen::MatrixXd& columns) {
+  Eigen::VectorXd norms = Eigen::VectorXd::Ones(columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double norm = columns.col(j).norm();
+    if (std::isfinite(norm) && norm > 0) {
+      norms[j] = norm;
+      columns.col(j) /= norm;
+    } else {
+      columns.col(j).setZero();
+    }
+  }
+  return norms;
+}
+
+}  // namespace
+
+Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
+           const Eigen::VectorXd& residual) {
+  Eigen::MatrixXd j = law;
+  Eigen::MatrixXd c = omitted;
+  law_norms_ = Normalize(j);
+  omitted_norms_ = Normalize(c);
+  const Eigen::MatrixXd of_law = TransposedProduct(j, j);
+  inverse_of_law_ = j.cols() > 0 ? PseudoInverse(of_law) : of_law;
+  const Eigen::MatrixXd mixed = TransposedProduct(j, c);
+  shares_ = Product(inverse_of_law_, mixed);
+  law_residual_ = j.transpose() * residual;
+  free_ = TransposedProduct(c, c) - TransposedProduct(mixed, shares_);
+  free_residual_ = c.transpose() * residual - shares_.transpose() * law_residual_;
+  sum_of_squares_ = residual.squaredNorm() - law_residual_.dot(inverse_of_law_ * law_residual_);
+  for (Eigen::Index k = 0; k < c.cols(); ++k) {
+    if (free_(k, k) >= kLeastOwnShare * kLeastOwnShare) continue;
+    free_.row(k).setZero();
+    free_.col(k).setZero();
+    shares_.col(k).setZero();
+    free_residual_[k] = 0.0;
+  }
+  law_noise_ = inverse_of_law_;
+  free_noise_ = free_;
+  absorbed_ = static_cast<double>(j.cols());
+}
+
+void Gram::SetNoise(Eigen::MatrixXd products) {
+  Eigen::VectorXd norms(products.rows());
+  norms << law_norms_, omitted_norms_;
+  products = norms.cwiseInverse().asDiagonal() * products * norms.cwiseInverse().asDiagonal();
+  const Eigen::Index law = law_norms_.size();
+  const Eigen::Index omitted = omitted_norms_.size();
+  const Eigen::MatrixXd of_law = products.topLeftCorner(law, law);
+  const Eigen::MatrixXd mixed = TransposedProduct(shares_, products.topRightCorner(law, omitted));
+  free_noise_ = products.bottomRightCorner(omitted, omitted) - mixed - mixed.transpose() +
+                Product(TransposedProduct(shares_, of_law), shares_);
+  absorbed_ = Product(inverse_of_law_, of_law).trace();
+  law_noise_ = Product(Product(inverse_of_law_, of_law), inverse_of_law_);
+}
+
+GramAxes Gram::AxesOf(std::span<const Eigen::Index> places) const {
+  const std::vector<Eigen::Index> at(places.begin(), places.end());
+  GramAxes axes;
+  const Eigenpairs pairs = SymmetricEigenpairs(free_(at, at));
+  const Eigen::Index count = (pairs.values.array() > kLeastOfAxis).count();  // the last ones
+  axes.values = pairs.values.tail(count).array();
+  axes.vectors = Eigen::MatrixXd::Zero(free_.rows(), count);
+  axes.vectors(at, Eigen::all) = pairs.vectors.rightCols(count);
+  const Eigen::ArrayXd norms = axes.values.sqrt();
+  axes.coefficients = (axes.vectors.transpose() * free_residual_).array() / norms;
+  const Eigen::MatrixXd noise = Product(free_noise_, axes.vectors);
+  axes.noise =
+      (axes.vectors.cwiseProduct(noise).colwise().sum().transpose().array() / axes.values).max(1.0);
+  return axes;
+}
+
+GramStep Gram::StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const {
+  const Eigen::ArrayXd amounts = gains * axes.values.sqrt() * axes.coefficients;
+  const Eigen::VectorXd omitted = -(axes.vectors * amounts.matrix());
+  const Eigen::VectorXd law = -(inverse_of_law_ * law_residual_) - shares_ * omitted;
+  const Eigen::MatrixXd moved = Product(shares_, axes.vectors);
+  const Eigen::MatrixXd errors =
+      law_noise_ + moved * (gains * axes.noise).matrix().asDiagonal() * moved.transpose();
+  const Eigen::VectorXd scale = law_norms_.cwiseInverse();
+  return {.law = law.cwiseProduct(scale),
+          .omitted = omitted.cwiseQuotient(omitted_norms_),
+          .covariance = scale.asDiagonal() * errors * scale.asDiagonal()};
+}
+
+}  // namespace mindahl::identification

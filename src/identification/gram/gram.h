@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+namespace mindahl::identification {
+
+/// Columns that are independent of each other and of the law's: orthonormal combinations of some of
+/// C's, freed of J.
+struct GramAxes {
+  Eigen::MatrixXd vectors;      // by C's columns of unit norm, a column each
+  Eigen::ArrayXd values;        // squares of their norms, before they were made one
+  Eigen::ArrayXd coefficients;  // of the residuals
+  Eigen::ArrayXd noise;  // variances of these by noise alone, over the noise's; no less than 1
+};
+
+/// A step from a fit to first order, in the units of the columns.
+struct GramStep {
+  Eigen::VectorXd law;         // δ
+  Eigen::VectorXd omitted;     // γ
+  Eigen::MatrixXd covariance;  // of δ, over the variance of the noise
+};
+
+/// Products AᵀA of the columns A = [J | C | r] of a fit: its Jacobian, columns that it lacks, and
+/// its residuals. With r = −Jδ − Cγ + ε whatever is asked afterwards is algebra on matrices of some
+/// forty rows, whatever the number of samples. A column that J spans, up to a fiftieth, is left
+/// out.
+class Gram {
+ public:
+  /// @param law      J; a column of zeros is held
+  /// @param omitted  C; all weighted, a row a sample
+  Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted, const Eigen::VectorXd& residual);
+
+  /// Takes the noise of the products, which is white otherwise.
+  /// @param products  [J | C]ᵀΣ[J | C] with ε ~ N(0, s²Σ)
+  void SetNoise(Eigen::MatrixXd products);
+
+  /// Sum of squares of the residuals freed of J.
+  [[nodiscard]] double sum_of_squares() const { return sum_of_squares_; }
+  /// Residuals' worth of noise that J takes up.
+  [[nodiscard]] double absorbed() const { return absorbed_; }
+  [[nodiscard]] GramAxes AxesOf(std::span<const Eigen::Index> places) const;
+  /// Returns the step to the least sum of squares of r + Jδ + Cγ.
+  /// @param gains  of the axes: 1/value of least squares, less with a prior
+  [[nodiscard]] GramStep StepBy(const GramAxes& axes, const Eigen::ArrayXd& gains) const;
+
+ private:
+  Eigen::VectorXd law_norms_;
+  Eigen::VectorXd omitted_norms_;
+  Eigen::MatrixXd inverse_of_law_;
+  Eigen::MatrixXd shares_;  // of J's columns in each of C's
+  Eigen::VectorXd law_residual_;
+  Eigen::MatrixXd free_;  // CᵀC freed of J
+  Eigen::VectorXd free_residual_;
+  Eigen::MatrixXd law_noise_;   // covariance of δ by noise alone
+  Eigen::MatrixXd free_noise_;  // CᵀΣC freed of J
+  double sum_of_squares_;
+  double absorbed_;
+};
+
+}  // namespace mindahl::identification

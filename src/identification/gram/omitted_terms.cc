@@ -1,0 +1,229 @@
+#include "identification/gram/omitted_terms.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "core/probability.h"
+#include "identification/dense.h"
+#include "identification/gram/gram.h"
+#include "identification/inference/local.h"
+#include "identification/inference/noise.h"
+#include "identification/intervals.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Each column is paid for by so many samples, or it is not looked for.
+constexpr std::size_t kSamplesAColumn = 8;
+
+/// Noise of the residuals, where it is asked of their products: what no column explains.
+struct NoiseLevel {
+  double variance = 0.0;  // of a weighted residual
+  double degrees = 1.0;   // of it
+  bool is_known = false;
+};
+
+/// γ as a random vector.
+struct RandomTerms {
+  double p_value = 1.0;   // likelihood of τ = 0 over the largest: no less than its chance
+  double variance = 0.0;  // of the noise
+  Eigen::ArrayXd gains;   // of the axes
+};
+
+/// Maximises the marginal likelihood of the residuals over τ²/s² and s², which along the axes is a
+/// product of Gaussians of variance s²·noise + τ²·value.
+RandomTerms EstimateTerms(const GramAxes& axes, const NoiseLevel& noise) {
+  const Eigen::ArrayXd squares = axes.coefficients.square();
+  const double degrees = static_cast<double>(axes.values.size()) + noise.degrees;
+  const auto spread = [&](double ratio) -> Eigen::ArrayXd {
+    return axes.noise + ratio * axes.values;
+  };
+  const auto variance = [&](double ratio) {
+    if (noise.is_known) return noise.variance;
+    return ((squares / spread(ratio)).sum() + noise.degrees * noise.variance) / degrees;
+  };
+  const auto cost = [&](double ratio) {  // −2 ln L
+    const double of_noise = noise.is_known ? (squares / spread(ratio)).sum() / noise.variance
+                                           : degrees * std::log(variance(ratio));
+    return spread(ratio).log().sum() + of_noise;
+  };
+  const auto cost_of_log = [&](double log_ratio) { return cost(std::exp(log_ratio)); };
+  constexpr int kNothing = -8;  // of ln τ²/s²
+  constexpr int kAll = 24;
+  double best = kNothing;
+  for (int log_ratio = kNothing; log_ratio <= kAll; ++log_ratio) {
+    if (cost_of_log(log_ratio) < cost_of_log(best)) best = log_ratio;
+  }
+  constexpr int kBits = 20;
+  best = boost::math::tools::brent_find_minima(cost_of_log, best - 1, best + 1, kBits).first;
+  const double ratio = std::exp(best);
+  return {.p_value = std::min(1.0, std::exp((cost(ratio) - cost(0.0)) / 2)),
+          .variance = variance(ratio),
+          .gains = ratio / spread(ratio)};
+}
+
+/// Returns the Jacobian without the columns of parameters at a bound, the user's or the program's:
+/// what these would still explain, they may not.
+Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
+                              Eigen::MatrixXd jacobian) {
+  const auto& free = problem.parameters.free();
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    if (solution.side[free[j]] != BoundSide::kInside) {
+      jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+    }
+  }
+  return jacobian;
+}
+
+std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
+  return {vector.begin(), vector.end()};
+}
+
+/// Returns the process of noise that these residuals are of; white where they alternate: columns
+/// that took up what is slow left them so.
+Autocorrelation NoiseProcess(const ScaledRecords& data, const Eigen::VectorXd& residual) {
+  Autocorrelation process =
+      AutocorrelationOf(data, {residual.data(), static_cast<std::size_t>(residual.size())});
+  double sum = 0.0;
+  for (std::size_t k = 0; k < process.order; ++k) sum += process.coefficients[k];
+  return sum < 0 ? Autocorrelation() : process;
+}
+
+/// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
+DepartureFit FitOf(const Gram& gram, const DepartureColumns& departures,
+                   std::span<const Eigen::Index> places, const GramAxes& axes,
+                   const NoiseLevel& noise, const Evidence& evidence, double limit) {
+  const auto first = static_cast<std::size_t>(places[0]);
+  const std::size_t own = departures.of.size() - departures.covariates.size();
+  DepartureFit fit{.departure = departures.of[first]};
+  if (first >= own) fit.covariate = departures.covariates[first - own];
+  const auto columns = static_cast<double>(axes.values.size());
+  const double f = (axes.coefficients.square() / axes.noise).mean() / noise.variance;
+  fit.p_value = f > 0 ? PValueOfF(f, columns, noise.degrees) : 1.0;
+  if (!(fit.p_value < limit)) return fit;
+  const GramStep step = gram.StepBy(axes, axes.values.inverse());
+  const double explained = axes.coefficients.square().sum();
+  fit.explains = std::clamp(explained / gram.sum_of_squares(), 0.0, 1.0);
+  fit.size = step.omitted[places[0]] * departures.unit_of_size[first];
+  fit.size_p_value = fit.p_value;
+  if (places.size() > 1) {
+    const double others = gram.AxesOf(places.subspan(1)).coefficients.square().sum();
+    const double of_first = std::max(0.0, explained - others) / axes.noise.maxCoeff();
+    fit.size_p_value = PValueOfF(of_first / noise.variance, noise.degrees);
+  }
+  fit.step = ValuesOf(step.law);
+  const Departure& departure = Departures()[fit.departure];
+  fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
+                                                                  : departure.unit_by_sample;
+  fit.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
+  return fit;
+}
+
+}  // namespace
+
+AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
+                          const Thresholds& thresholds, Response& response) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  const ScaledRecords& data = *problem.data;
+  const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, estimates.jacobian());
+  const Eigen::VectorXd& residual = estimates.residual();
+  const auto law = static_cast<double>(jacobian.cols());
+  const auto samples = static_cast<double>(data.counted);
+  if (samples <= law + 1) return {};
+  const std::size_t most = (data.counted - problem.parameters.free().size()) / kSamplesAColumn;
+  const DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, response, most);
+  if (departures.of.empty()) return {};
+  Gram gram(jacobian, departures.columns, residual);
+  std::vector<Eigen::Index> all(departures.of.size());
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  GramAxes axes = gram.AxesOf(all);
+  const GramStep best = gram.StepBy(axes, axes.values.inverse());
+  const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
+  const Autocorrelation process = NoiseProcess(data, left);
+  if (process.order > 0 || displacement.residuals.size() > 0) {
+    Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
+    columns << jacobian, departures.columns;
+    gram.SetNoise(CorrelatedProduct(data, process, noise, displacement, columns));
+    axes = gram.AxesOf(all);
+  }
+  AdequacyTest test;
+  const auto own = static_cast<double>(axes.values.size());
+  test.effective_samples = samples / std::max(1.0, process.SquaredCorrelations());
+  test.degrees_of_freedom = std::max(1.0, test.effective_samples - law - own);
+  // A fit absorbs more of correlated noise than the number of its parameters.
+  const double absorbed = std::min(gram.absorbed() + axes.noise.sum(), samples / 2);
+  const NoiseLevel level{
+      .variance = noise.is_known ? noise.variance : left.squaredNorm() / (samples - absorbed),
+      .degrees = test.degrees_of_freedom,
+      .is_known = noise.is_known};
+  test.noise = std::sqrt(level.variance);
+  if (axes.values.size() == 0 || !(level.variance > 0)) return test;
+  const RandomTerms terms = EstimateTerms(axes, level);
+  const GramStep step = gram.StepBy(axes, terms.gains);
+  test.p_value = terms.p_value;
+  test.misfit_over_noise = std::sqrt(
+      (terms.gains * axes.values * axes.coefficients).square().sum() / samples / level.variance);
+  test.step = ValuesOf(step.law);
+  test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
+
+  for (std::size_t c = 0; c < departures.of.size(); ++c) {
+    const double size = step.omitted[static_cast<Eigen::Index>(c)] * departures.unit_of_size[c];
+    const bool is_first = c == 0 || departures.group[c] != departures.group[c - 1];
+    if (is_first)
+      test.apart = std::max(test.apart, Departures()[departures.of[c]].apart * std::abs(size));
+  }
+  const Evidence evidence(data.counted, test.effective_samples);
+  for (std::size_t group = 0; group < departures.groups; ++group) {
+    std::vector<Eigen::Index> places;
+    for (std::size_t c = 0; c < departures.group.size(); ++c) {
+      if (departures.group[c] == group) places.push_back(static_cast<Eigen::Index>(c));
+    }
+    const GramAxes of_term = gram.AxesOf(places);
+    if (of_term.values.size() == 0) continue;
+    test.fits.push_back(
+        FitOf(gram, departures, places, of_term, level, evidence, thresholds.cause));
+  }
+  return test;
+}
+
+double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
+              std::size_t parameter, const ParameterEstimate& estimate) {
+  const std::size_t place = problem.parameters.PlaceAmongFree(parameter);
+  if (place == fit.step.size() || !estimate.lower95 || !estimate.upper95) return 0.0;
+  const double half = (*estimate.upper95 - *estimate.lower95) / 2;
+  const double moved =
+      problem.parameters[parameter].ToValue(solution.theta[parameter] + fit.step[place]);
+  return half > 0 ? std::abs(moved - estimate.value) / half : 0.0;
+}
+
+void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                         std::span<const DepartureFit> causes, double quantile,
+                         std::span<ParameterEstimate> estimates) {
+  constexpr double kFirstOrder = 2.0;
+  const auto& reported = problem.parameters.reported();
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    const std::size_t p = reported[k];
+    const Parameter& parameter = problem.parameters[p];
+    const std::size_t place = problem.parameters.PlaceAmongFree(p);
+    const auto include = [&](double step, double half) {
+      const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
+      const auto [lower, upper] =
+          std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
+      Include(estimates[k], {.source = IntervalSource::kOmittedTerms,
+                             .lower = p == kShape ? std::max(lower, 0.0) : lower,
+                             .upper = upper});
+    };
+    if (place >= test.step.size()) continue;
+    const bool is_of_force = p == kStiffness || p == kSlipForce;
+    include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep) +
+                                  (is_of_force ? std::min(test.apart, kFarthestStep) : 0.0));
+    for (const DepartureFit& cause : causes) {
+      if (place < cause.step.size()) include(cause.step[place], 0.0);
+    }
+  }
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "identification/inference/departures.h"
+#include "identification/inference/estimates.h"
+#include "identification/problem/problem.h"
+#include "mindahl/identification/thresholds.h"
+
+namespace mindahl::identification {
+
+/// Predicts the fit with one omitted term added, by one linear step; only the p-value of a term
+/// that noise may well have made.
+struct DepartureFit {
+  std::size_t departure = 0;                  // its place in Departures()
+  std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
+  double p_value = 1.0;                       // that noise alone makes it
+  double delta_aicc = 0.0;                    // against the fit without
+  double explains = 0.0;                      // fraction of the sum of squares
+  double size = 0.0;                          // of its first column, in its unit
+  double size_p_value = 1.0;                  // that noise alone makes that
+  std::string_view unit = {};
+  bool is_measured = false;       // without the model, and fitted as it was
+  std::vector<double> step = {};  // of θ, one a free parameter
+};
+
+/// What a fit's model may lack, all terms of Departures() together: r = −Jδ − Cγ + ε with
+/// γ_k ~ N(0, τ²/‖c_k‖²), τ by the marginal likelihood, and ε the noise process of what all columns
+/// leave: what a model misses is smooth along the loop and would pass for autocorrelated noise.
+struct AdequacyTest {
+  double misfit_over_noise = 0.0;   // rms of C·E(γ) beside J, over the noise
+  double p_value = 1.0;             // of τ = 0, by the ratio of likelihoods
+  double noise = 0.0;               // standard deviation of a weighted residual
+  double degrees_of_freedom = 1.0;  // of the noise
+  double effective_samples = 1.0;   // of it
+  std::vector<double> step;         // E(δ), one a free parameter
+  std::vector<double> error;        // standard deviation of δ, γ integrated out
+  double apart = 0.0;               // by how much σ and Tc of parts of the record leave the mean
+  std::vector<DepartureFit> fits;   // of each term that the record can identify
+};
+
+/// @param displacement  what drawn errors of the displacement do to the residuals: that is noise
+/// too
+AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
+                          const Thresholds& thresholds, Response& response);
+
+/// Returns the shift of a parameter by a term, in halves of its 95 % interval; 0 where it is open.
+double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
+              std::size_t parameter, const ParameterEstimate& estimate);
+
+/// Extends intervals to what they are with γ integrated out. The error counts twice: a step
+/// to first order goes a part of the way to a law of another form.
+/// @param causes  of which a single one may be what is omitted: intervals reach where each leads
+void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                         std::span<const DepartureFit> causes, double quantile,
+                         std::span<ParameterEstimate> estimates);
+
+}  // namespace mindahl::identification
