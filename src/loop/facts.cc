@@ -501,6 +501,12 @@ bool Slides(const LoopFacts& facts) {
   return facts.energy_ratio >= rules.energy_ratio || (even && std::abs(*even - 1) < rules.uneven);
 }
 
+bool ReachesSlip(const LoopFacts& facts) {
+  if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
+  const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
+  return facts.energy_per_cycle >= SlidingRules().full * rectangle;
+}
+
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {
   if (!facts.sliding_amplitude || !(*facts.sliding_amplitude > 0) || !(normal_load > 0)) {
     return std::nullopt;

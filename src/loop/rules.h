@@ -88,6 +88,8 @@ struct SlidingRules {
   double gap = 0.5;
   /// [-] Largest distance of the energy from that of a gap that is the same over the stroke.
   double uneven = 0.1;
+  /// [4·T*·sliding amplitude] Least energy of a loop that reaches its slip force.
+  double full = 0.85;
 };
 
 /// Sets the limits by which the ends of a record are not part of its test.

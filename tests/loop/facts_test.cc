@@ -95,6 +95,26 @@ TEST(Slides, FromAnEnergyRatioOfThreeFifthsOn) {
   EXPECT_FALSE(Slides(LoopFacts()));
 }
 
+TEST(ReachesSlip, AtTheEndsOfTheStrokeHoweverSoftTheRig) {
+  const auto loop_of = [](double shape, double reach, double rig) {
+    const models::BranchLaw law{1e7, shape, 10.0};
+    Record record;
+    for (int i = 0; i <= 1700; ++i) {
+      record.displacement.push_back(reach * 1.5e-6 * std::sin(2 * std::numbers::pi * i / 400));
+    }
+    record.force = testing::Respond(testing::Model("mindlin-dahl"), law, record.displacement);
+    for (std::size_t i = 0; i < record.size(); ++i) record.displacement[i] += record.force[i] / rig;
+    return FactsOf(record);
+  };
+  for (const double rig : {1e20, 2e6}) {
+    EXPECT_FALSE(ReachesSlip(loop_of(1.0 / 3, 0.8, rig)));
+    EXPECT_FALSE(ReachesSlip(loop_of(1.0 / 3, 1.1, rig)));
+    EXPECT_TRUE(ReachesSlip(loop_of(1.0 / 3, 1.4, rig)));
+    EXPECT_FALSE(ReachesSlip(loop_of(1.0, 1.6, rig))) << "T* is 0.91 of Tc";
+  }
+  EXPECT_FALSE(ReachesSlip(LoopFacts()));
+}
+
 TEST(EnergyOverEvenGap, HasNoValueWhereThereIsNoStrokeOrNoGap) {
   LoopFacts facts;
   EXPECT_FALSE(EnergyOverEvenGap(facts));

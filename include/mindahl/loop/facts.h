@@ -92,6 +92,12 @@ std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
 /// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
 bool Slides(const LoopFacts& facts);
 
+/// True if a measured loop reaches its slip force at the ends of the stroke, however much of it a
+/// rig takes up: its energy is 0.85 of 4·T*·sliding amplitude or more. Mindlin's contact has it
+/// from 1.2 times its gross-slip displacement on, one with α = 1 at T* = 0.993 Tc; an ellipse has
+/// π/4. A spring parallel to the contact hides it.
+bool ReachesSlip(const LoopFacts& facts);
+
 /// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);
 

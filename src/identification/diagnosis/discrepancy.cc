@@ -248,7 +248,8 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   }
   const std::optional<double> half_gap = MeasuredHalfGap(result);
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
-  if (!is_free || !half_gap || !loop::Slides(facts)) return parameters;
+  const bool has_slipped = loop::Slides(facts) || loop::ReachesSlip(facts);
+  if (!is_free || !half_gap || !has_slipped) return parameters;
 
   const std::vector<double> steps = SlipForceOfParts(problem, estimates, thresholds);
   // The gap is a mean over parts of the strokes in each of which the model misses so much.
