@@ -12,11 +12,11 @@
 #include <tuple>
 #include <utility>
 
+#include "identification/held_out.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/intervals.h"
 #include "identification/problem/parameters.h"
-#include "identification/term_scores.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 
@@ -322,7 +322,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   FindRedundant(result.scores, fits, evidence, squares, options.thresholds);
 
   const std::vector<Part> cycles =
-      ClosedCycles(best_fit, samples.mask, options.preparation.skip_cycles);
+      PartsOf(best_fit, samples.mask, options.preparation.skip_cycles, 2, 2);
   result.held_out_cycles = cycles.size();
   result.folds = std::min(selection.folds, cycles.size());
   std::vector<std::vector<double>> predictions(fits.size());

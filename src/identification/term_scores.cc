@@ -3,168 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/probability.h"
 #include "identification/dense.h"
-#include "identification/inference/local.h"
+#include "identification/inference/noise.h"
 #include "identification/problem/moved_samples.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
-
-using loop::RecordView;
-
-namespace {
-
-/// Parts of so many strokes each.
-std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles,
-                          std::size_t strokes, std::size_t least) {
-  std::vector<Part> parts;
-  const std::size_t first = skip_cycles > 0 ? 2 * skip_cycles - 1 : 0;
-  for (std::size_t r = 0; r < mask.size(); ++r) {
-    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
-    std::vector<Part> closed;
-    for (std::size_t j = first; j + strokes < reversals.size(); j += strokes) {
-      Part part{.record = r, .begin = reversals[j], .end = reversals[j + strokes]};
-      for (std::size_t i = part.begin; i < part.end; ++i) part.samples += mask[r][i];
-      if (part.samples > 0) closed.push_back(part);
-    }
-    if (closed.size() >= least) parts.insert(parts.end(), closed.begin(), closed.end());
-  }
-  return parts;
-}
-
-/// Returns those that the options hold out, and the parts of one fold.
-std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records,
-                                       const FitOptions& options, std::span<const Part> parts,
-                                       std::size_t fold, std::size_t folds) {
-  std::vector<std::vector<bool>> mask = options.preparation.held_out;
-  mask.resize(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) mask[r].resize(records[r].size(), false);
-  for (std::size_t c = fold; c < parts.size(); c += folds) {
-    std::vector<bool>& held_out = mask[parts[c].record];
-    std::fill(held_out.begin() + static_cast<std::ptrdiff_t>(parts[c].begin),
-              held_out.begin() + static_cast<std::ptrdiff_t>(parts[c].end), true);
-  }
-  return mask;
-}
-
-}  // namespace
-
-bool IsFitted(const FitResult& fit) { return !fit.parameters.empty(); }
-
-ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> records) {
-  ScoredSamples samples;
-  double half_range = 0.0;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::vector<unsigned char>& counts = fit.records[r].counts;
-    samples.mask.emplace_back(counts);
-    samples.count += counts.size() - fit.records[r].left_out;
-    const auto [lowest, highest] = std::ranges::minmax(records[r].force);
-    half_range = std::max(half_range, highest / 2 - lowest / 2);
-  }
-  samples.rounding = kRoundingRms * half_range;
-  return samples;
-}
-
-double SumOfSquares(double rms, const ScoredSamples& samples) {
-  const double in_units = kRoundingRms * rms / samples.rounding;
-  return static_cast<double>(samples.count) * in_units * in_units;
-}
-
-std::vector<Part> ClosedCycles(const FitResult& fit, const SampleMask& mask,
-                               std::size_t skip_cycles) {
-  return PartsOf(fit, mask, skip_cycles, 2, 2);
-}
-
-std::vector<Part> Strokes(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles) {
-  return PartsOf(fit, mask, skip_cycles, 1, 4);
-}
-
-void HoldInitialStates(const FitResult& fit, FitOptions& options) {
-  options.initial_states.clear();
-  for (const RecordFit& record : fit.records) {
-    options.initial_states.push_back(record.initial_state);
-  }
-}
-
-FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
-  options.model = fit.model;
-  HoldInitialStates(fit, options);
-  options.preparation.force_sense = fit.force_sense;
-  options.starts = 1;
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.status == ParameterStatus::kFixed) continue;
-    // One that ran to a bound stays there.
-    (parameter.status == ParameterStatus::kFree ? options.start : options.fixed)[parameter.name] =
-        parameter.value;
-  }
-  return options;
-}
-
-std::vector<double> PredictParts(std::span<const RecordView> records, FitOptions options,
-                                 std::size_t free, const ScoredSamples& samples,
-                                 std::span<const Part> parts, std::size_t folds) {
-  std::vector<double> mean_square(parts.size(), 0.0);
-  const FitOptions whole = options;
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    options.preparation.held_out = HeldOut(records, whole, parts, fold, folds);
-    auto left = static_cast<double>(samples.count);
-    for (std::size_t c = fold; c < parts.size(); c += folds) left -= parts[c].samples;
-    if (left < static_cast<double>(free)) return {};
-    Fitter fitter(options);
-    const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
-    if (!fit.converged) return {};
-    for (std::size_t c = fold; c < parts.size(); c += folds) {
-      const Part& part = parts[c];
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        if (samples.mask[part.record][i] == 0) continue;
-        const double error = fit.records[part.record].residual[i];
-        mean_square[c] += error * error / part.samples;
-      }
-    }
-  }
-  return mean_square;
-}
-
-MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, std::size_t folds) {
-  double samples = 0.0;
-  double sum = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    samples += parts[c].samples;
-    sum += parts[c].samples * values[c];
-  }
-  MeanOverParts result{.mean = sum / samples};
-  double squares = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    const double deviation = parts[c].samples / samples * (values[c] - result.mean);
-    squares += deviation * deviation;
-  }
-  const auto count = static_cast<double>(values.size());
-  const auto of_folds = static_cast<double>(folds);
-  result.standard_error =
-      std::sqrt(squares * count / (count - 1) * (1 + of_folds / (of_folds - 1)));
-  return result;
-}
-
-double ChanceOfMean(const MeanOverParts& mean, std::size_t parts) {
-  const double t = mean.standard_error > 0 ? mean.mean / mean.standard_error : 0.0;
-  const double beyond = PValueOfF(t * t, static_cast<double>(parts - 1)) / 2;
-  return t > 0 ? beyond : 1 - beyond;
-}
-
-bool PredictsWorse(std::span<const double> other, std::span<const double> best,
-                   std::span<const Part> cycles, std::size_t folds, double rounding) {
-  if (other.empty() || best.empty()) return false;
-  std::vector<double> difference;
-  difference.reserve(cycles.size());
-  for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
-  const MeanOverParts mean = Mean(difference, cycles, folds);
-  return mean.mean > mean.standard_error + rounding * rounding;
-}
-
 namespace {
 
 /// Takes a column of unit norm for one that the others have where less of its square is its own.
@@ -184,13 +34,6 @@ double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   return parameter.term->positive ? parameter.theta : parameter.ToTheta(0.0);
 }
 
-FitOptions WithTerms(FitOptions options, std::span<const std::string> terms) {
-  for (const std::string& term : terms) {
-    if (!HasTerm(options, term)) options.terms.push_back(term);
-  }
-  return options;
-}
-
 /// Prepares the records, less the samples that do not count under one of the terms.
 loop::PreparedRecords PreparedFor(std::span<const loop::RecordView> records,
                                   const FitOptions& options, Arena& arena) {
@@ -199,16 +42,52 @@ loop::PreparedRecords PreparedFor(std::span<const loop::RecordView> records,
   return prepared;
 }
 
+FitOptions WithAll(FitOptions options, std::span<const TermChoice> choices) {
+  for (const TermChoice& choice : choices) {
+    for (const std::string& term : choice.terms) {
+      if (!HasTerm(options, term)) options.terms.push_back(term);
+    }
+    if (!choice.covariate.empty()) options.covariates.push_back(choice.covariate);
+  }
+  return options;
+}
+
+/// Solves the normal equations of some of the columns of unit norm, the residuals' products last.
+Eigen::VectorXd StepBy(const Eigen::MatrixXd& products, const std::vector<Eigen::Index>& places) {
+  Eigen::MatrixXd matrix = products(places, places);
+  matrix.diagonal().array() += kOwnSquare;
+  return -SolveSymmetric(matrix, products(places, products.cols() - 1));
+}
+
+/// Returns the sum of squares of the residuals after a step.
+double SquaresAfter(const Eigen::MatrixXd& products, const std::vector<Eigen::Index>& places,
+                    const Eigen::VectorXd& step) {
+  const Eigen::Index last = products.cols() - 1;
+  return products(last, last) + 2 * step.dot(products(places, last)) +
+         step.dot(products(places, places) * step);
+}
+
+std::vector<Eigen::Index> Joined(std::vector<Eigen::Index> places,
+                                 std::span<const Eigen::Index> more) {
+  places.insert(places.end(), more.begin(), more.end());
+  return places;
+}
+
 }  // namespace
 
-TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
-                       std::span<const std::string> terms, std::span<const std::string> covariates)
-    : TermScores(records, options, WithTerms(options, terms),
-                 {covariates.begin(), covariates.end()}) {}
+FitOptions TermChoice::AddedTo(FitOptions options) const {
+  options.terms.insert(options.terms.end(), terms.begin(), terms.end());
+  if (!covariate.empty()) options.covariates.push_back(covariate);
+  return options;
+}
 
 TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
-                       const FitOptions& with_all, std::vector<std::string> covariates)
-    : covariates_(std::move(covariates)),
+                       std::span<const TermChoice> choices)
+    : TermScores(records, options, WithAll(options, choices)) {}
+
+TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
+                       const FitOptions& with_all)
+    : covariates_(with_all.covariates),
       prepared_(PreparedFor(records, with_all, arena_)),
       data_(Scale(prepared_, options, &arena_)) {
   AddCovariates(covariates_, false, prepared_, options.offsets, data_);
@@ -247,10 +126,59 @@ std::vector<double> TermScores::ThetaOf(const Problem& problem) const {
   return theta;
 }
 
+/// Adds the columns of a choice to those of all: of exponents that shape columns that the fit does
+/// not have the value is taken with which the residuals become least.
+std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice,
+                                                        const FitOptions& options,
+                                                        std::vector<Eigen::VectorXd>& columns) {
+  const Problem problem = ProblemOf(choice.AddedTo(options));
+  const Parameters& parameters = problem.parameters;
+  std::vector<double> theta = ThetaOf(problem);
+  std::vector<std::size_t> added;
+  bool shapes_new = false;
+  std::optional<std::size_t> exponent;
+  for (const std::size_t p : parameters.free()) {
+    const Parameter& parameter = parameters[p];
+    if (free_.contains(parameters.NameOf(p))) continue;
+    if (parameter.term->of_column && parameter.column_name != choice.covariate) continue;
+    added.push_back(p);
+    shapes_new = shapes_new || !IsExponent(parameter);
+    if (IsExponent(parameter)) exponent = p;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  double best = 0.0;
+  Eigen::MatrixXd derivatives;
+  for (const double tried : kTriedExponents) {
+    if (exponent && shapes_new) theta[*exponent] = tried;
+    Eigen::MatrixXd here = LinearizeAt(problem, theta, response_, added).jacobian;
+    const Eigen::VectorXd left = LeftOver(here, LeftOver(at_fit_.jacobian, at_fit_.residual));
+    if (left.squaredNorm() < least) {
+      least = left.squaredNorm();
+      best = tried;
+      derivatives = std::move(here);
+    }
+    if (!exponent || !shapes_new) break;
+  }
+  if (exponent && shapes_new) theta[*exponent] = best;
+  std::vector<Added> result;
+  for (std::size_t c = 0; c < added.size(); ++c) {
+    Added& one = result.emplace_back(Added{.name = parameters.NameOf(added[c]),
+                                           .parameter = parameters[added[c]],
+                                           .theta = theta[added[c]],
+                                           .place = -1});
+    if (derivatives.cols() == 0) continue;
+    const auto column = derivatives.col(static_cast<Eigen::Index>(c));
+    if (!(column.squaredNorm() > 0)) continue;
+    one.place = at_fit_.jacobian.cols() + std::ssize(columns);
+    columns.emplace_back(column);
+  }
+  return result;
+}
+
 void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
-                          std::span<const Part> parts, std::size_t folds) {
+                          std::span<const TermChoice> choices, std::span<const Part> parts,
+                          std::size_t folds) {
   state_ = fit.initial_state;
-  parts_ = parts;
   folds_ = folds;
   values_.clear();
   free_.clear();
@@ -261,169 +189,167 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   const Problem problem = ProblemOf(options);
   const std::vector<double> theta = ThetaOf(problem);
   std::vector<std::size_t> inside;
-  names_.clear();
   for (const std::size_t p : problem.parameters.free()) {
     if (!free_.contains(problem.parameters.NameOf(p))) continue;
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
-  for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
   at_fit_ = LinearizeAt(problem, theta, response_, inside);
-}
-
-TermScore TermScores::OfFit() const {
-  Eigen::VectorXd step;
-  return Solve(at_fit_.jacobian, step);
-}
-
-std::optional<TermScore> TermScores::Of(const FitOptions& with) {
-  const Problem problem = ProblemOf(with);
-  const Parameters& parameters = problem.parameters;
-  std::vector<double> theta = ThetaOf(problem);
-  std::vector<std::size_t> added;
-  bool shapes_new = false;  // columns that the fit does not have
-  for (const std::size_t p : parameters.free()) {
-    const Parameter& parameter = parameters[p];
-    if (free_.contains(parameters.NameOf(p))) continue;
-    const bool is_asked_for = std::ranges::any_of(with.covariates, [&](const std::string& column) {
-      return column == parameter.column_name;
-    });
-    if (parameter.term->of_column && !is_asked_for) continue;
-    added.push_back(p);
-    shapes_new = shapes_new || !IsExponent(parameter);
+  const Eigen::VectorXd& residual = at_fit_.residual;
+  effective_samples_ =
+      EffectiveSamples(data_, {residual.data(), static_cast<std::size_t>(residual.size())});
+  choices_.clear();
+  std::vector<Eigen::VectorXd> columns;
+  for (const TermChoice& choice : choices) {
+    try {
+      choices_.push_back(AddColumnsOf(choice, options, columns));
+    } catch (const InvalidArgument&) {
+      choices_.emplace_back();  // no lag where time does not go on
+    }
   }
-  const auto exponent =
-      std::ranges::find_if(added, [&](std::size_t p) { return IsExponent(parameters[p]); });
-  const bool is_tried = exponent != added.end() && shapes_new;
-  const Eigen::MatrixXd& fitted = at_fit_.jacobian;
-  std::optional<TermScore> best;
-  for (const double tried : kTriedExponents) {
-    if (is_tried) theta[*exponent] = tried;
-    const Eigen::MatrixXd derivatives = LinearizeAt(problem, theta, response_, added).jacobian;
-    std::vector<Eigen::Index> effective;
-    for (Eigen::Index c = 0; c < derivatives.cols(); ++c) {
-      if (derivatives.col(c).squaredNorm() > 0) effective.push_back(c);
-    }
-    if (effective.empty()) return std::nullopt;
-    const auto more = static_cast<Eigen::Index>(effective.size());
-    Eigen::MatrixXd columns(fitted.rows(), fitted.cols() + more);
-    columns.leftCols(fitted.cols()) = fitted;
-    for (Eigen::Index c = 0; c < more; ++c) {
-      columns.col(fitted.cols() + c) = derivatives.col(effective[static_cast<std::size_t>(c)]);
-    }
-    Eigen::VectorXd step;
-    TermScore score = Solve(columns, step);
-    score.p_value = TestEffects(columns.rightCols(more));
-    if (!best || score.rms < best->rms) {
-      for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
-        const auto place = std::ranges::find(names_, name) - names_.begin();
-        if (place < fitted.cols()) score.law.emplace(name, step(place));
-      }
-      for (const std::size_t p : added) score.values[parameters.NameOf(p)] = theta[p];
-      for (Eigen::Index c = 0; c < more; ++c) {
-        const std::size_t p =
-            added[static_cast<std::size_t>(effective[static_cast<std::size_t>(c)])];
-        score.values[parameters.NameOf(p)] += step(fitted.cols() + c);
-      }
-      for (const std::size_t p : added) {
-        const Parameter& parameter = parameters[p];
-        double& value = score.values[parameters.NameOf(p)];
-        // The linear step of a rig is one of its compliance, which starts at zero.
-        if (p == kRig) value = theta[p] - std::log(std::max(theta[p] - value, 1.0));
-        const double inside =
-            std::clamp(value, kOfBound * parameter.lower + (1 - kOfBound) * parameter.upper,
-                       kOfBound * parameter.upper + (1 - kOfBound) * parameter.lower);
-        value = parameter.ToValue(inside);
-      }
-      best = std::move(score);
-    }
-    if (!is_tried) break;
-  }
-  return best;
+  TakeProducts(columns, parts);
 }
 
-std::vector<std::pair<Eigen::Index, Eigen::Index>> TermScores::RowsOfParts() const {
-  std::vector<Eigen::Index> begins;
-  Eigen::Index begin = 0;
+void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns,
+                              std::span<const Part> parts) {
+  const Eigen::Index of_law = at_fit_.jacobian.cols();
+  const Eigen::Index count = of_law + std::ssize(columns);
+  Eigen::MatrixXd all(at_fit_.jacobian.rows(), count + 1);
+  all.leftCols(of_law) = at_fit_.jacobian;
+  for (Eigen::Index c = of_law; c < count; ++c) {
+    all.col(c) = columns[static_cast<std::size_t>(c - of_law)];
+  }
+  norms_ = all.leftCols(count).colwise().norm().transpose().unaryExpr(
+      [](double norm) { return norm > 0 ? norm : 1.0; });
+  for (Eigen::Index c = 0; c < count; ++c) all.col(c) /= norms_[c];
+  all.col(count) = at_fit_.residual;
+  whole_ = TransposedProduct(all, all);
+  std::vector<Eigen::Index> begins = {0};
   for (const ScaledRecord& record : data_.records) {
-    begins.push_back(begin);
-    begin += static_cast<Eigen::Index>(record.size());
+    begins.push_back(begins.back() + static_cast<Eigen::Index>(record.size()));
   }
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> rows;
-  for (const Part& part : parts_) {
-    rows.emplace_back(begins[part.record] + static_cast<Eigen::Index>(part.begin),
-                      static_cast<Eigen::Index>(part.end - part.begin));
+  of_part_.clear();
+  samples_of_part_.clear();
+  for (const Part& part : parts) {
+    const auto rows = all.middleRows(begins[part.record] + static_cast<Eigen::Index>(part.begin),
+                                     static_cast<Eigen::Index>(part.end - part.begin));
+    of_part_.push_back(TransposedProduct(rows, rows));
+    samples_of_part_.push_back(part.samples);
   }
-  return rows;
 }
 
-/// Tests whether the products of the residuals with the terms' columns, freed of the fit's, have a
+/// Returns the sums of squares of the parts, each after a step by those of the other folds.
+std::vector<double> TermScores::Predict(const std::vector<Eigen::Index>& places) const {
+  std::vector<double> squares(of_part_.size());
+  for (std::size_t fold = 0; fold < folds_; ++fold) {
+    Eigen::MatrixXd products = whole_;
+    for (std::size_t c = fold; c < of_part_.size(); c += folds_) products -= of_part_[c];
+    const Eigen::VectorXd step = StepBy(products, places);
+    for (std::size_t c = fold; c < of_part_.size(); c += folds_) {
+      squares[c] = SquaresAfter(of_part_[c], places, step);
+    }
+  }
+  return squares;
+}
+
+/// Tests whether the products of the residuals with the added columns, freed of the others, have a
 /// mean over the parts: by F, as Hotelling's T², of parts that are independent of each other. Their
 /// scatter is that of the residuals with the terms: a trend has little effect on the parts in the
 /// middle, which is no scatter. Where the terms weigh the same in all parts it is T² itself.
-std::optional<double> TermScores::TestEffects(const Eigen::MatrixXd& added) const {
+/// @returns nothing where the parts are too few
+std::optional<double> TermScores::TestEffects(const std::vector<Eigen::Index>& before,
+                                              const std::vector<Eigen::Index>& added) const {
   constexpr std::size_t kLeastDegrees = 3;
-  const auto terms = static_cast<std::size_t>(added.cols());
-  const std::size_t parts = parts_.size();
-  if (parts < terms + kLeastDegrees) return std::nullopt;
-  const Eigen::MatrixXd freed = LeftOver(at_fit_.jacobian, added);
-  const Eigen::VectorXd before = LeftOver(at_fit_.jacobian, at_fit_.residual);
-  const Eigen::VectorXd after = LeftOver(freed, before);
-  const auto rows = RowsOfParts();
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(added.cols(), added.cols());
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(added.cols());
+  const std::size_t parts = of_part_.size();
+  if (parts < added.size() + kLeastDegrees) return std::nullopt;
+  const Eigen::Index last = whole_.cols() - 1;
+  const auto terms = std::ssize(added);
+  Eigen::MatrixXd of_others = whole_(before, before);
+  of_others.diagonal().array() += kOwnSquare;
+  // What is freed, by the columns as they are.
+  Eigen::MatrixXd freed = Eigen::MatrixXd::Zero(whole_.rows(), terms + 1);
+  std::vector<Eigen::Index> all = Joined(added, std::array{last});
+  freed(before, Eigen::all) = -SolveSymmetric(of_others, whole_(before, all));
+  for (Eigen::Index c = 0; c <= terms; ++c) freed(all[static_cast<std::size_t>(c)], c) += 1.0;
+  const Eigen::MatrixXd products = freed.transpose() * whole_ * freed;
+  const Eigen::VectorXd taken =
+      SolveLeastSquares(products.topLeftCorner(terms, terms), products.topRightCorner(terms, 1));
+  const Eigen::VectorXd after = freed.col(terms) - freed.leftCols(terms) * taken;
+  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(terms, terms);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(terms);
   const auto count = static_cast<double>(parts);
-  for (const auto& [first, samples] : rows) {
-    const auto columns = freed.middleRows(first, samples);
-    mean += columns.transpose() * before.segment(first, samples) / count;
-    const Eigen::VectorXd effect = columns.transpose() * after.segment(first, samples);
+  for (const Eigen::MatrixXd& part : of_part_) {
+    mean += freed.leftCols(terms).transpose() * (part * freed.col(terms)) / count;
+    const Eigen::VectorXd effect = freed.leftCols(terms).transpose() * (part * after);
     scatter += effect * effect.transpose() / (count - 1);
   }
   Eigen::Index rank = 0;
   const Eigen::VectorXd weighed = SolveLeastSquares(scatter, mean, &rank);
-  if (rank < added.cols()) return std::nullopt;
+  if (rank < terms) return std::nullopt;
   const auto columns = static_cast<double>(terms);
   const double t_squared = count * mean.dot(weighed);
   return PValueOfF((count - columns) / (columns * (count - 1)) * t_squared, columns,
                    count - columns);
 }
 
-/// Solves the normal equations of all samples, and of all without each fold.
-/// @param step  written: of all samples, by the columns as they are
-TermScore TermScores::Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& step) const {
-  const Eigen::VectorXd norms =
-      columns.colwise().norm().transpose().unaryExpr([](double n) { return n > 0 ? n : 1.0; });
-  const Eigen::MatrixXd unit = columns * norms.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd whole = TransposedProduct(unit, unit);
-  const Eigen::VectorXd& residual = at_fit_.residual;
-  const Eigen::VectorXd wanted = -(unit.transpose() * residual);
-  const auto solve = [&](Eigen::MatrixXd matrix, const Eigen::VectorXd& vector) {
-    matrix.diagonal().array() += kOwnSquare;
-    return Eigen::VectorXd(SolveSymmetric(matrix, vector));
-  };
-  TermScore score;
-  const Eigen::VectorXd solution = solve(whole, wanted);
-  step = solution.cwiseQuotient(norms);
-  score.rms = data_.force * std::sqrt((residual + unit * solution).squaredNorm() /
-                                      static_cast<double>(data_.counted));
-  const auto rows_of_parts = RowsOfParts();
-  score.predictions.resize(parts_.size());
-  for (std::size_t fold = 0; fold < folds_; ++fold) {
-    Eigen::MatrixXd matrix = whole;
-    Eigen::VectorXd vector = wanted;
-    for (std::size_t c = fold; c < parts_.size(); c += folds_) {
-      const auto [first, count] = rows_of_parts[c];
-      const auto rows = unit.middleRows(first, count);
-      matrix -= TransposedProduct(rows, rows);
-      vector.noalias() += rows.transpose() * residual.segment(first, count);
+/// Writes the values of a choice's parameters after a step, well inside their bounds.
+void TermScores::PutValues(std::size_t choice, const Step& step,
+                           std::map<std::string, double>& to) const {
+  for (const Added& added : choices_[choice]) {
+    const Parameter& parameter = added.parameter;
+    double theta = added.theta;
+    if (added.place >= 0) {
+      const auto at = std::ranges::find(step.places, added.place) - step.places.begin();
+      const double moved = step.values[at] / norms_[added.place];
+      // The linear step of a rig is one of its compliance, which starts at zero.
+      theta +=
+          parameter.term->id == TermId::kRigStiffness ? -std::log(std::max(-moved, 1.0)) : moved;
     }
-    const Eigen::VectorXd without = solve(std::move(matrix), vector);
-    for (std::size_t c = fold; c < parts_.size(); c += folds_) {
-      const auto [first, count] = rows_of_parts[c];
-      const double squares =
-          (residual.segment(first, count) + unit.middleRows(first, count) * without).squaredNorm();
-      score.predictions[c] = squares * data_.force * data_.force / parts_[c].samples;
-    }
+    const double inside =
+        std::clamp(theta, kOfBound * parameter.lower + (1 - kOfBound) * parameter.upper,
+                   kOfBound * parameter.upper + (1 - kOfBound) * parameter.lower);
+    to[added.name] = parameter.ToValue(inside);
   }
+}
+
+std::optional<TermScore> TermScores::Of(std::size_t choice) const {
+  std::vector<Eigen::Index> added;
+  for (const Added& one : choices_[choice]) {
+    if (one.place >= 0) added.push_back(one.place);
+  }
+  if (added.empty()) return std::nullopt;
+  std::vector<Eigen::Index> before(static_cast<std::size_t>(at_fit_.jacobian.cols()));
+  std::iota(before.begin(), before.end(), Eigen::Index{0});
+  Step step{.places = Joined(before, added), .values = {}};
+  step.values = StepBy(whole_, step.places);
+  TermScore score;
+  PutValues(choice, step, score.values);
+  const double rounding = kRoundingRms * kRoundingRms;  // of a residual's square
+  const auto squares_of_all = [&](const std::vector<Eigen::Index>& places) {
+    return SquaresAfter(whole_, places, StepBy(whole_, places)) +
+           rounding * static_cast<double>(data_.counted);
+  };
+  const double without = squares_of_all(before);
+  const double with = squares_of_all(step.places);
+  if (of_part_.empty()) {
+    score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
+  } else {
+    const std::vector<double> least = Predict(before);
+    const std::vector<double> now = Predict(step.places);
+    double samples = 0.0;
+    double sum = 0.0;
+    for (std::size_t c = 0; c < least.size(); ++c) {
+      const double floor = rounding * samples_of_part_[c];
+      sum +=
+          samples_of_part_[c] * std::log(std::max(least[c], floor) / std::max(now[c], floor)) / 2;
+      samples += samples_of_part_[c];
+    }
+    score.gain = 1 - std::exp(-sum / samples);
+  }
+  const std::optional<double> by_parts = TestEffects(before, added);
+  const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
+  score.p_value = by_parts    ? *by_parts
+                  : ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(added.size()))
+                              : 1.0;
   return score;
 }
 

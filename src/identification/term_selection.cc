@@ -1,22 +1,19 @@
 #include "mindahl/identification/term_selection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/extremes.h"
-#include "core/probability.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
-#include "identification/inference/noise.h"
 #include "identification/intervals.h"
-#include "identification/judge/judge.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
@@ -27,33 +24,6 @@ namespace mindahl::identification {
 using loop::RecordView;
 
 namespace {
-
-/// A candidate that needs more is nearly confounded with the rest.
-constexpr int kEnoughIterations = 60;
-
-/// A candidate of one selection.
-struct TermCandidate {
-  ConsideredTerm considered;
-  std::vector<std::string> terms;
-  std::string covariate;  // the column; empty where it is none
-
-  [[nodiscard]] std::size_t size() const { return terms.size() + (covariate.empty() ? 0 : 1); }
-  [[nodiscard]] bool is_lag() const { return considered.name == "lag"; }
-  [[nodiscard]] bool is_drag() const { return considered.name == "drag"; }
-  [[nodiscard]] bool is_of_speed() const {
-    return std::ranges::any_of(terms, [](const std::string& term) {
-      return term == "viscous" || term == "speed_exponent" || term == "slip_speed" ||
-             term == "drag_fraction";
-    });
-  }
-};
-
-/// A model of the selection, fitted at Depth::kEstimate.
-struct CandidateModel {
-  FitOptions options;  // as the user gives them, with terms
-  FitResult fit;
-  double sum_of_squares = std::numeric_limits<double>::infinity();  // in units of rounding
-};
 
 /// Central differences; enough to recognise a measured velocity.
 std::vector<double> RoughVelocity(const RecordView& record) {
@@ -69,8 +39,8 @@ std::vector<double> RoughVelocity(const RecordView& record) {
 
 /// Names what keeps a column out: it repeats another one.
 /// @param before  covariates that are candidates
-std::string_view ObstacleTo(const loop::Covariate& covariate, const RecordView& record,
-                            const FitResult& law, std::span<const std::string> before) {
+std::string_view ObstacleToColumn(const loop::Covariate& covariate, const RecordView& record,
+                                  const FitResult& law, std::span<const std::string> before) {
   const auto is_channel = [&](std::span<const double> other) {
     return AreOneChannel(covariate.values, other);
   };
@@ -96,22 +66,35 @@ bool IsConstant(std::span<const double> values) {
   return !(highest > lowest);
 }
 
-std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> records,
-                                              const FitOptions& options, const FitResult& law) {
-  std::vector<TermCandidate> candidates;
+/// A candidate of one selection.
+struct Candidate {
+  ConsideredTerm considered;
+  TermChoice choice;
+
+  [[nodiscard]] bool Has(std::string_view term) const {
+    return std::ranges::find(choice.terms, term) != choice.terms.end();
+  }
+  [[nodiscard]] bool is_of_speed() const {
+    return Has("viscous") || Has("speed_exponent") || Has("slip_speed") || Has("drag_fraction");
+  }
+};
+
+Candidate CandidateOf(const TermGroup& group) {
+  Candidate candidate;
+  candidate.considered.name = group.name;
+  candidate.choice.terms.assign(group.terms.begin(), group.terms.end());
+  return candidate;
+}
+
+std::vector<Candidate> ListCandidates(std::span<const RecordView> records,
+                                      const FitOptions& options, const FitResult& law) {
+  std::vector<Candidate> candidates;
   const auto is_timed = [](const RecordView& record) { return !record.time.empty(); };
   const bool timed = std::ranges::all_of(records, is_timed);
   for (const TermGroup& group : TermGroups()) {
-    if (!group.is_tried) continue;
-    TermCandidate candidate;
-    candidate.considered.name = group.name;
-    bool has_data = true;
-    for (const std::string_view name : group.terms) {
-      const Term& term = *FindTerm(name);
-      has_data = has_data && (timed || !term.needs_time);
-      if (!HasTerm(options, std::string(name))) candidate.terms.emplace_back(name);
-    }
-    if (has_data && !candidate.terms.empty()) candidates.push_back(std::move(candidate));
+    const bool has_data = std::ranges::all_of(
+        group.terms, [&](std::string_view name) { return timed || !FindTerm(name)->needs_time; });
+    if (group.is_tried && has_data) candidates.push_back(CandidateOf(group));
   }
   std::vector<std::string> columns = options.covariates;
   for (const loop::Covariate& covariate : records.front().covariates) {
@@ -120,24 +103,20 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
       return HasCovariate(record, covariate.name);
     };
     if (is_there || !std::ranges::all_of(records, has_it) || IsConstant(covariate.values)) continue;
-    const std::string_view obstacle = ObstacleTo(covariate, records.front(), law, columns);
-    TermCandidate& candidate = candidates.emplace_back();
+    Candidate& candidate = candidates.emplace_back();
     candidate.considered.name = NameOfCovariate(covariate.name);
-    candidate.considered.obstacle = obstacle;
-    if (obstacle == "same_channel") continue;  // reported, never fitted
+    candidate.considered.obstacle = ObstacleToColumn(covariate, records.front(), law, columns);
+    if (candidate.considered.obstacle == "same_channel") continue;  // reported, never fitted
     columns.push_back(covariate.name);
-    candidate.covariate = covariate.name;
+    candidate.choice.covariate = covariate.name;
   }
   return candidates;
 }
 
-/// True if the slip force lies within a quarter of its value.
-bool KnowsSlipForce(const FitResult& fit) {
-  constexpr double kQuarter = 0.25;
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  if (slip_force.status == ParameterStatus::kFixed) return true;
-  return slip_force.lower95 && slip_force.upper95 &&
-         *slip_force.upper95 - *slip_force.lower95 <= 2 * kQuarter * std::abs(slip_force.value);
+/// True if hardly more than white noise is left.
+bool IsNearlyWhite(const FitResult& fit) {
+  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
+  return fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
 }
 
 /// True if the interval of the slip force was closed and is open.
@@ -159,16 +138,11 @@ bool StopsAtLimit(const FitResult& fit) {
     const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
                              estimate.status == ParameterStatus::kAtUpperBound;
     const Term& term = *TermOfParameter(estimate.name);
-    const bool may_end = term.positive || term.theory_bound != TheoryBound::kNone ||
+    const bool may_end = term.presence == Presence::kAlways ||
+                         term.theory_bound != TheoryBound::kNone ||
                          term.id == TermId::kDisplacementOffset;
     return is_at_bound && !may_end;
   });
-}
-
-/// True if hardly more than white noise is left.
-bool IsNearlyWhite(const FitResult& fit) {
-  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
-  return fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
 }
 
 bool IsPositiveTerm(std::string_view parameter) {
@@ -181,50 +155,6 @@ bool IsUnphysical(const FitResult& fit) {
     return IsPositiveTerm(estimate.name) && estimate.status != ParameterStatus::kFixed &&
            estimate.value < 0;
   });
-}
-
-bool IsUnphysical(const TermScore& score) {
-  return std::ranges::any_of(score.values, [](const auto& value) {
-    return IsPositiveTerm(value.first) && value.second < 0;
-  });
-}
-
-/// Holds the law that another candidate of a round gives in place of the one that was added.
-struct Alternative {
-  std::string name;
-  std::map<std::string, double> law;  // differences of θ of σ, α and Tc
-  double sum_of_squares = 0.0;        // with it, to first order
-};
-
-/// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
-/// slides has carried.
-void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
-                         FitResult& fit) {
-  const loop::LoopFacts& facts = fit.WidestRecord().facts;
-  const bool slides = loop::Slides(facts);
-  for (const Alternative& alternative : alternatives) {
-    for (const auto& [name, difference] : alternative.law) {
-      const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
-      if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
-      const double step = std::clamp(difference, -kFarthestStep, kFarthestStep);
-      const bool is_shape = name == "alpha";
-      double value =
-          is_shape ? std::max(0.0, estimate->value + step) : estimate->value * std::exp(step);
-      if (name == "slip_force" && slides) {
-        const double ratio = fit.WidestRecord().load_ratio;
-        value = std::clamp(value, std::min(*facts.half_gap / ratio, estimate->value),
-                           std::max(facts.peak_force / ratio, estimate->value));
-      }
-      Include(*estimate, {.source = IntervalSource::kOmittedTerms, .lower = value, .upper = value});
-    }
-  }
-  for (Finding& finding : FindWideIntervals(fit, thresholds)) {
-    const bool is_there = std::ranges::any_of(fit.findings, [&](const Finding& other) {
-      return std::string_view(other.code) == std::string_view(finding.code);
-    });
-    if (!is_there) fit.findings.push_back(std::move(finding));
-  }
-  Judge(fit.parameters, fit.findings);
 }
 
 /// Drops the causes whose remedy was tried and refused: advice that would be followed in vain.
@@ -246,6 +176,7 @@ void StartFrom(const FitResult& fit, FitOptions& options) {
   }
 }
 
+/// Adds terms to a law, a few at a time.
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -253,619 +184,349 @@ class Selection {
       : records_(records), selection_(options), result_(result) {}
 
   void Run(const FitOptions& options);
-  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law);
   bool RunNamed(FitOptions options, std::span<const std::string> names);
+  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law);
 
  private:
-  /// A candidate that was scored in a round.
-  struct TermTrial {
-    TermCandidate* candidate;
-    TermScore score;
-    double sum_of_squares;  // in units of rounding, after the linear step
-    double rank;            // ln of the rms of prediction; or ΔAICc
+  /// A model of the selection, fitted at Depth::kEstimate.
+  struct Model {
+    FitOptions options;  // as the user gives them, with terms
+    FitResult fit;
   };
 
-  [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
-  std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
-                                        const std::map<std::string, double>& starts);
-  bool Begin(const FitOptions& options, const FitResult& law);
-  void MakeScores(const FitOptions& options, const FitResult& law);
-  void DivideIntoParts(const FitResult& fit);
-  void Judge(const TermScore& base, const TermScore& trial, ConsideredTerm& considered) const;
-  [[nodiscard]] Evidence EvidenceOfJudged() const;
-  TermCandidate* FindCandidate(std::string_view name);
-  std::vector<TermTrial> ScoreCandidates();
-  bool IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const;
-  std::vector<const TermTrial*> WithSimpler(const TermTrial& trial,
-                                            std::span<const TermTrial> trials) const;
-  bool Round();
-  void AddMeasuredGap();
-  bool Accept(const CandidateModel& model);
-  void Add(TermCandidate& candidate, CandidateModel model, double gain);
-  bool MoveWithout(const std::vector<std::string_view>& dropped, std::string_view instead);
-  void Simplify();
-  [[nodiscard]] bool MayBeVirgin(const FitOptions& options);
-  void FitLast();
-  void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
-  [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
-  [[nodiscard]] bool MayFit(std::size_t more) const {
-    return result_.estimates + more + kMostLast <= selection_.most_fits;
-  }
+  /// A candidate and its score.
+  struct Gain {
+    std::size_t candidate;
+    TermScore score;
+  };
 
-  static constexpr std::size_t kMostLast = 4;  // fits of FitLast()
+  bool Begin(const FitOptions& options, const FitResult& law, std::vector<Candidate> candidates);
+  [[nodiscard]] std::optional<std::size_t> Find(std::string_view name) const;
+  std::vector<Gain> Score();
+  [[nodiscard]] bool IsRefused(const Gain& gain);
+  [[nodiscard]] const Gain& Simplest(std::span<const Gain> gains) const;
+  Model FitWith(const TermChoice& choice, const std::map<std::string, double>& starts);
+  Model FitAnew(const TermChoice& choice);
+  Model Fitted(FitOptions with, FitOptions options);
+  [[nodiscard]] bool Leaves(const FitResult& fit) const;
+  [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
+  bool Add(std::size_t candidate, Model model);
+  bool Round();
+  void FitLast(const FitResult& law);
+
+  static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
   std::span<const RecordView> records_;
   const TermSelectionOptions& selection_;
   TermSelection& result_;
-  std::vector<TermCandidate> candidates_;
-  CandidateModel base_;  // with the terms that were added
-  FitResult judged_;     // the last one with intervals; of base_ or of a smaller model
+  std::vector<Candidate> candidates_;
+  Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
-  std::vector<Alternative> alternatives_;
-  ScoredSamples samples_;
+  bool is_found_anew_ = true;  // from starts of its own
   std::vector<Part> parts_;
-  std::size_t folds_ = 0;
   std::vector<std::vector<bool>> held_out_;
-  loop::LoopFacts facts_;    // of the widest record
-  double load_ratio_ = 1.0;  // likewise
+  loop::LoopFacts facts_;  // of the widest record
 };
 
-FitOptions Selection::With(const TermCandidate& candidate, FitOptions options) const {
-  options.terms.insert(options.terms.end(), candidate.terms.begin(), candidate.terms.end());
-  if (!candidate.covariate.empty()) options.covariates.push_back(candidate.covariate);
-  return options;
+std::optional<std::size_t> Selection::Find(std::string_view name) const {
+  const auto found = std::ranges::find(candidates_, name, [](const Candidate& candidate) {
+    return std::string_view(candidate.considered.name);
+  });
+  if (found == candidates_.end()) return std::nullopt;
+  return found - candidates_.begin();
 }
 
-/// Fits from the solution of a smaller model; nothing where the data are not enough, or it fails.
-/// @param options  with the terms of the larger one
-/// @param starts   of these
-std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, FitOptions options,
-                                                 const std::map<std::string, double>& starts) {
-  CandidateModel model;
-  model.options = options;
-  HoldInitialStates(base.fit, options);
-  options.preparation.force_sense = base.fit.force_sense;
-  options.preparation.held_out = held_out_;
-  options.starts = 1;
-  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  StartFrom(base.fit, options);
-  for (const auto& [name, value] : starts) options.start[name] = value;
-  try {
-    ++result_.estimates;
-    Fitter fitter(options);
-    model.fit = fitter.Fit(records_, Depth::kEstimate);
-  } catch (const InvalidArgument&) {
-    return std::nullopt;  // not identifiable here, or the rig is softer than the loop
-  }
-  if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
-  if (const std::optional<FitOptions> within =
-          WithinMeasuredForce(facts_, load_ratio_, model.fit.law.slip_force, model.options)) {
-    std::map<std::string, double> at_bound = starts;
-    at_bound["slip_force"] = within->bounds.at("slip_force").upper;
-    return FitFrom(model, *within, at_bound);
-  }
-  model.sum_of_squares = SquaresOf(model.fit.rms);
-  return model;
-}
-
-/// Prepares the records for all candidates at once. What a lag leaves out is left out for all: else
-/// fits would be compared on other samples.
-void Selection::MakeScores(const FitOptions& options, const FitResult& law) {
-  std::vector<std::string> terms;
-  std::vector<std::string> covariates = options.covariates;
-  for (const TermCandidate& candidate : candidates_) {
-    terms.insert(terms.end(), candidate.terms.begin(), candidate.terms.end());
-    if (!candidate.covariate.empty()) covariates.push_back(candidate.covariate);
-  }
+/// Prepares the records for all candidates at once, since what a lag leaves out is left out for
+/// all, and fits the law to them.
+/// @returns false where it has no fit
+bool Selection::Begin(const FitOptions& options, const FitResult& law,
+                      std::vector<Candidate> candidates) {
+  candidates_ = std::move(candidates);
+  std::vector<TermChoice> choices;
+  for (const Candidate& candidate : candidates_) choices.push_back(candidate.choice);
   FitOptions as_fitted = options;
   as_fitted.preparation.force_sense = law.force_sense;
   try {
-    scores_.emplace(records_, as_fitted, terms, covariates);
+    scores_.emplace(records_, as_fitted, choices);
   } catch (const InvalidArgument&) {
-    std::erase(terms, "lag");  // no time that goes on
-    scores_.emplace(records_, as_fitted, terms, covariates);
+    const auto lag = Find("lag");  // no time that goes on
+    if (!lag) throw;
+    candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*lag));
+    choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(*lag));
+    scores_.emplace(records_, as_fitted, choices);
   }
   held_out_ = scores_->LeftOut();
-}
-
-/// Into cycles where there are four, else into strokes.
-void Selection::DivideIntoParts(const FitResult& fit) {
+  facts_ = law.WidestRecord().facts;
+  base_ = {.options = options, .fit = law};
+  bool counts_alike = true;
+  for (std::size_t r = 0; r < held_out_.size(); ++r) {
+    counts_alike =
+        counts_alike && std::ranges::equal(held_out_[r], law.records[r].counts, {}, {},
+                                           [](unsigned char counts) { return counts == 0; });
+  }
+  if (!counts_alike) base_ = FitWith({}, {});
+  if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
+  // Into cycles where there are four, else into strokes; no more than are dealt to the folds.
   constexpr std::size_t kEnoughCycles = 4;
-  parts_ = ClosedCycles(fit, samples_.mask, 0);
-  if (parts_.size() < kEnoughCycles) parts_ = Strokes(fit, samples_.mask, 0);
-  folds_ = std::min(selection_.folds, parts_.size());
-  if (folds_ % 2 == 0 && folds_ > 2) --folds_;
+  constexpr std::size_t kMostParts = 60;
+  const ScoredSamples samples = CountedSamples(base_.fit, records_);
+  std::size_t cycles = 0;
+  for (const RecordFit& record : base_.fit.records) cycles += record.reversals.size() / 2;
+  parts_ = PartsOf(base_.fit, samples.mask, 0, 2 * (cycles / kMostParts + 1), 2);
+  if (parts_.size() < kEnoughCycles) parts_ = PartsOf(base_.fit, samples.mask, 0, 1, 4);
   result_.held_out_parts = parts_.size();
+  return true;
 }
 
-/// The gain of prediction, by the logarithms of the ratios of errors, part by part, which a few
-/// parts with large errors do not make or hide; and its probability by chance, by the terms'
-/// effects on the parts or, of few parts, by these logarithms.
-void Selection::Judge(const TermScore& base, const TermScore& trial,
-                      ConsideredTerm& considered) const {
-  const double rounding = samples_.rounding * samples_.rounding;
-  std::vector<double> log_ratio(parts_.size());
-  for (std::size_t c = 0; c < parts_.size(); ++c) {
-    log_ratio[c] = std::log(std::max(base.predictions[c], rounding) /
-                            std::max(trial.predictions[c], rounding)) /
-                   2;
-  }
-  const MeanOverParts gain = Mean(log_ratio, parts_, folds_);
-  considered.gain = 1 - std::exp(-gain.mean);
-  considered.p_value = trial.p_value ? *trial.p_value : ChanceOfMean(gain, parts_.size());
-}
-
-/// Weighs fits by the independent samples that the judged one has.
-Evidence Selection::EvidenceOfJudged() const {
-  return Evidence(samples_.count, std::min(judged_.residuals.effective_samples,
-                                           static_cast<double>(samples_.count)));
-}
-
-/// Returns a null pointer where the records do not allow that candidate.
-TermCandidate* Selection::FindCandidate(std::string_view name) {
-  const auto found = std::ranges::find_if(candidates_, [&](const TermCandidate& candidate) {
-    return candidate.considered.name == name;
-  });
-  return found == candidates_.end() ? nullptr : &*found;
-}
-
-/// Scores every candidate that is left by a linear step; the best first.
-std::vector<Selection::TermTrial> Selection::ScoreCandidates() {
-  const Evidence evidence = EvidenceOfJudged();
-  const std::size_t free = CountFreeParameters(base_.fit);
-  scores_->StepFrom(base_.fit, base_.options, parts_, folds_);
-  const TermScore before = scores_->OfFit();
-  std::vector<TermTrial> trials;
-  for (TermCandidate& candidate : candidates_) {
-    ConsideredTerm& considered = candidate.considered;
-    if (considered.added) continue;
-    std::erase_if(candidate.terms,
+/// Scores the candidates at the present solution and returns them, the best first.
+std::vector<Selection::Gain> Selection::Score() {
+  std::vector<TermChoice> choices;
+  for (Candidate& candidate : candidates_) {
+    std::erase_if(candidate.choice.terms,
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
-    if (candidate.size() == 0) {  // another one that was added has it all
-      considered.gain = 0.0;
-      considered.p_value = 1.0;
-      continue;
-    }
-    std::optional<TermScore> score;
-    try {
-      score = scores_->Of(With(candidate, base_.options));
-    } catch (const InvalidArgument&) {
-      continue;  // no lag where time does not go on
-    }
-    if (!score) continue;
-    considered.is_predicted = !parts_.empty();
-    if (considered.obstacle != "confounded") considered.obstacle = "";
-    TermTrial trial{&candidate, std::move(*score), 0.0, 0.0};
-    trial.sum_of_squares = SquaresOf(trial.score.rms);
-    if (considered.is_predicted) {
-      Judge(before, trial.score, considered);
-      trial.rank = -considered.gain;
-    } else {
-      const double squares = SquaresOf(before.rms);
-      const double ratio = evidence.LikelihoodRatio(squares, trial.sum_of_squares);
-      considered.gain = 1 - std::min(trial.score.rms / before.rms, 1.0);
-      considered.p_value =
-          ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(candidate.size())) : 1.0;
-      trial.rank = evidence.Aicc(trial.sum_of_squares, free + candidate.size()) -
-                   evidence.Aicc(squares, free);
-    }
-    trials.push_back(std::move(trial));
+    choices.push_back(candidate.considered.added ? TermChoice() : candidate.choice);
   }
-  std::ranges::stable_sort(trials, {}, &TermTrial::rank);
-  return trials;
+  std::size_t folds = std::min(selection_.folds, parts_.size());
+  if (folds % 2 == 0 && folds > 2) --folds;
+  scores_->StepFrom(base_.fit, base_.options, choices, parts_, folds);
+  std::vector<Gain> gains;
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    ConsideredTerm& considered = candidates_[c].considered;
+    if (considered.added) continue;
+    const bool stays = considered.obstacle == "confounded" || considered.obstacle == "same_channel";
+    if (!stays) considered.obstacle = "";
+    std::optional<TermScore> score = scores_->Of(c);
+    considered.gain = score ? score->gain : 0.0;
+    considered.p_value = score ? score->p_value : 1.0;
+    considered.is_predicted = !parts_.empty();
+    if (score) gains.push_back({c, std::move(*score)});
+  }
+  std::ranges::stable_sort(gains, std::greater(), [](const Gain& one) { return one.score.gain; });
+  return gains;
 }
 
 /// True if a candidate that gains is not to be added, and says why where that is to be reported.
-bool Selection::IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const {
-  ConsideredTerm& considered = trial.candidate->considered;
-  if (considered.obstacle == "confounded") return true;
+bool Selection::IsRefused(const Gain& gain) {
+  Candidate& candidate = candidates_[gain.candidate];
   // Beside a slip force of the speed a further force of speed and the slip force at rest are
   // confounded; a drag is that force with the slip force that at v₀.
-  const bool has_slip_speed = std::ranges::find(result_.added, "slip_speed") != result_.added.end();
-  if (trial.candidate->is_drag() && !has_slip_speed) return true;
-  const bool is_of_knee =
-      trial.candidate->is_lag() && std::ranges::any_of(trials, [&](const TermTrial& other) {
-        return other.candidate->is_of_speed() && other.sum_of_squares < 2 * trial.sum_of_squares;
-      });
-  if (is_of_knee) considered.obstacle = "rate_dependent";
-  if (IsUnphysical(trial.score)) considered.obstacle = "unphysical";
-  return !considered.obstacle.empty();
-}
-
-/// Returns the candidates that have some of a candidate's terms and at least half its gain, the
-/// simplest first, and the candidate itself.
-std::vector<const Selection::TermTrial*> Selection::WithSimpler(
-    const TermTrial& trial, std::span<const TermTrial> trials) const {
-  constexpr double kOfGain = 0.5;
-  std::vector<const TermTrial*> all;
-  for (const TermTrial& other : trials) {
-    const std::vector<std::string>& terms = trial.candidate->terms;
-    const auto is_of_trial = [&](const std::string& term) {
-      return std::ranges::find(terms, term) != terms.end();
-    };
-    const bool is_simpler = other.candidate->covariate.empty() &&
-                            other.candidate->terms.size() < terms.size() &&
-                            std::ranges::all_of(other.candidate->terms, is_of_trial);
-    const bool gains =
-        other.candidate->considered.gain >= kOfGain * trial.candidate->considered.gain;
-    if (is_simpler && gains && !IsRefused(other, trials)) all.push_back(&other);
+  if (candidate.considered.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
+  if (std::ranges::any_of(gain.score.values, [](const auto& value) {
+        return IsPositiveTerm(value.first) && value.second < 0;
+      })) {
+    candidate.considered.obstacle = "unphysical";
   }
-  std::ranges::stable_sort(all, {}, [](const TermTrial* one) { return one->candidate->size(); });
-  all.push_back(&trial);
-  return all;
+  return !candidate.considered.obstacle.empty();
 }
 
-/// Keeps what candidates that gain at least half as much as the one that is added would make of the
-/// law: the record may have been made by them.
-void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials,
-                                 double chance) {
+/// Returns the best, or what has some of its terms only and gains at least half as much.
+const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
   constexpr double kOfGain = 0.5;
-  for (const TermTrial& other : trials) {
-    const ConsideredTerm& considered = other.candidate->considered;
-    const bool explains = considered.p_value < chance &&
-                          considered.gain >= kOfGain * added.candidate->considered.gain;
-    if (&other == &added || !explains || !other.candidate->covariate.empty()) continue;
-    if (considered.obstacle == "unphysical") continue;
-    Alternative& alternative =
-        alternatives_.emplace_back(Alternative{considered.name, {}, other.sum_of_squares});
-    for (const auto& [name, step] : other.score.law) {
-      const auto of_added = added.score.law.find(name);
-      if (of_added != added.score.law.end()) alternative.law.emplace(name, step - of_added->second);
-    }
+  const Gain& most = gains.front();
+  const Gain* best = &most;
+  for (const Gain& one : gains) {
+    const TermChoice& choice = candidates_[one.candidate].choice;
+    const bool is_part =
+        choice.covariate.empty() && std::ranges::all_of(choice.terms, [&](const std::string& term) {
+          return candidates_[most.candidate].Has(term);
+        });
+    const bool is_smaller = one.score.values.size() < best->score.values.size();
+    if (is_part && is_smaller && one.score.gain >= kOfGain * most.score.gain) best = &one;
   }
+  return *best;
 }
 
-/// Moves to the model with the best candidate that is no chance; false where there is none.
+/// Fits the present model with some more terms, from its solution.
+Selection::Model Selection::FitWith(const TermChoice& choice,
+                                    const std::map<std::string, double>& starts) {
+  const FitOptions with = choice.AddedTo(base_.options);
+  FitOptions options = with;
+  HoldInitialStates(base_.fit, options);
+  options.starts = 1;
+  StartFrom(base_.fit, options);
+  for (const auto& [name, value] : starts) options.start[name] = value;
+  return Fitted(with, options);
+}
+
+/// Fits it from starts of its own.
+Selection::Model Selection::FitAnew(const TermChoice& choice) {
+  const FitOptions with = choice.AddedTo(base_.options);
+  return Fitted(with, with);
+}
+
+/// @param with     as the user gives them
+/// @param options  of the search
+Selection::Model Selection::Fitted(FitOptions with, FitOptions options) {
+  constexpr int kEnoughIterations = 60;  // what needs more is nearly confounded with the rest
+  Model model{.options = std::move(with), .fit = {}};
+  options.preparation.force_sense = base_.fit.force_sense;
+  options.preparation.held_out = held_out_;
+  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
+  try {
+    ++result_.estimates;
+    model.fit = Fitter(options).Fit(records_, Depth::kEstimate);
+  } catch (const InvalidArgument&) {
+    model.fit = {};  // not identifiable here, or the rig is softer than the loop
+  }
+  return model;
+}
+
+/// True if Tc leaves the half gap that was measured, and more than noise is left.
+bool Selection::Leaves(const FitResult& fit) const {
+  return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) && !IsNearlyWhite(fit);
+}
+
+/// Says why a larger model does not replace the present one; empty where it does.
+std::string_view Selection::ObstacleTo(const Model& model) const {
+  const FitResult& fit = model.fit;
+  if (!IsFitted(fit) || !fit.converged) return "not_converged";
+  if (IsUnphysical(fit)) return "unphysical";
+  const bool gains = fit.rms <= (1 - selection_.smallest_gain) * base_.fit.rms;
+  const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
+  return Leaves(fit) || stops || !gains ? "confounded" : "";
+}
+
+/// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate keeps.
+bool Selection::Add(std::size_t candidate, Model model) {
+  ConsideredTerm& considered = candidates_[candidate].considered;
+  considered.obstacle = ObstacleTo(model);
+  if (!considered.obstacle.empty()) return false;
+  considered.added = true;
+  result_.added.push_back(considered.name);
+  base_ = std::move(model);
+  // An initial state that was found without the term may be another with it.
+  Model anew = FitAnew({});
+  const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
+  const double gain = is_fit ? 1 - anew.fit.rms / base_.fit.rms : -1.0;
+  is_found_anew_ = gain > -selection_.smallest_gain;
+  if (gain > selection_.smallest_gain) base_ = std::move(anew);
+  return true;
+}
+
+/// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
-  constexpr std::size_t kMostTried = 4;  // fits a round
-  const std::vector<TermTrial> trials = ScoreCandidates();
+  constexpr double kOfSpeed = 0.5;  // of a lag's gain
+  std::vector<Gain> gains = Score();
+  double of_speed = 0.0;
+  for (const auto& [c, score] : gains) {
+    if (candidates_[c].is_of_speed()) of_speed = std::max(of_speed, score.gain);
+  }
   const double chance =
-      selection_.chance / static_cast<double>(std::max<std::size_t>(trials.size(), 1));
-  // A simpler candidate is taken where a larger one would not leave that much less.
-  const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
-  const bool is_first = result_.added.empty();
-  std::map<const TermCandidate*, std::optional<CandidateModel>> fitted;
-  const auto fit = [&](const TermTrial& trial) -> std::optional<CandidateModel>* {
-    const auto found = fitted.find(trial.candidate);
-    if (found != fitted.end()) return &found->second;
-    if (fitted.size() == (is_first ? 2 * kMostTried : kMostTried) || !MayFit(1)) return nullptr;
-    return &fitted
-                .emplace(trial.candidate,
-                         FitFrom(base_, With(*trial.candidate, base_.options), trial.score.values))
-                .first->second;
-  };
-  const auto is_wanted = [&](const TermTrial& trial) {
-    const ConsideredTerm& considered = trial.candidate->considered;
-    if (parts_.empty() && !(trial.rank < 0)) return false;
-    return considered.p_value < chance && considered.gain >= selection_.smallest_gain &&
-           !IsRefused(trial, trials);
-  };
-  const auto add = [&](const TermTrial& trial, CandidateModel& model) {
-    ConsideredTerm& considered = trial.candidate->considered;
-    const double gain = 1 - std::sqrt(model.sum_of_squares / base_.sum_of_squares);
-    if (gain < selection_.smallest_gain) return false;
-    if (IsUnphysical(model.fit)) {
-      considered.obstacle = "unphysical";
-      return false;
-    }
-    if (!Accept(model)) {
-      considered.obstacle = "confounded";
-      return false;
-    }
-    KeepAlternatives(trial, trials, chance);
-    Add(*trial.candidate, std::move(model), gain);
-    return true;
-  };
-  // One term that leaves nothing but noise comes before any that only predicts best at first, the
-  // simplest before others; it gains most of what is missed already to first order.
-  constexpr double kMost = 0.5;
-  std::vector<std::pair<const TermTrial*, CandidateModel>> alone;
-  for (const TermTrial& trial : trials) {
-    if (!is_first || fitted.size() == kMostTried || !MayFit(2)) break;
-    if (!is_wanted(trial) || trial.candidate->considered.gain < kMost) continue;
-    std::optional<CandidateModel> model = *fit(trial);
-    if (model && IsNearlyWhite(model->fit)) alone.emplace_back(&trial, std::move(*model));
-  }
-  std::ranges::stable_sort(alone, {}, [](const auto& one) { return one.first->candidate->size(); });
-  for (auto& [trial, model] : alone) {
-    if (add(*trial, model)) return true;
-  }
-  for (const TermTrial& best : trials) {
-    if (!is_wanted(best)) continue;
-    for (const TermTrial* trial : WithSimpler(best, trials)) {
-      if (!trial->candidate->considered.obstacle.empty()) continue;
-      std::optional<CandidateModel>* const model = fit(*trial);
-      if (model == nullptr) return false;
-      if (!*model || !((*model)->sum_of_squares < base_.sum_of_squares)) continue;
-      if (trial != &best && (*model)->sum_of_squares > nearly * best.sum_of_squares) continue;
-      if (add(*trial, **model)) return true;
-    }
+      selection_.chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
+  std::erase_if(gains, [&](const Gain& gain) {
+    if (gain.score.gain < selection_.smallest_gain || !(gain.score.p_value < chance)) return true;
+    Candidate& candidate = candidates_[gain.candidate];
+    const bool is_of_speed = candidate.Has("lag") && of_speed > kOfSpeed * gain.score.gain;
+    if (is_of_speed) candidate.considered.obstacle = "rate_dependent";
+    return IsRefused(gain);
+  });
+  while (!gains.empty() && result_.estimates + kLastFits < selection_.most_fits) {
+    const Gain& best = Simplest(gains);
+    const std::size_t candidate = best.candidate;
+    if (Add(candidate, FitWith(candidates_[candidate].choice, best.score.values))) return true;
+    std::erase_if(gains, [&](const Gain& gain) { return gain.candidate == candidate; });
   }
   return false;
 }
 
-/// Moves to the model with a gap that was measured without one, in all records, where that gains:
-/// no linear step from a contact that is too soft for the want of a gap predicts it.
-void Selection::AddMeasuredGap() {
-  TermCandidate* const gap = FindCandidate("backlash");
-  const bool is_measured = std::ranges::all_of(
-      judged_.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
-  if (gap == nullptr || !is_measured) return;
-  CandidateModel from = base_;
-  from.fit.parameters.clear();  // from starts of its own
-  std::optional<CandidateModel> model = FitFrom(from, With(*gap, base_.options), {});
-  if (!model || !(model->sum_of_squares < base_.sum_of_squares)) return;
-  const double ratio =
-      EvidenceOfJudged().LikelihoodRatio(base_.sum_of_squares, model->sum_of_squares);
-  const double p_value = PValueOfChiSquared(ratio, 1.0);
-  const double gain = 1 - std::sqrt(model->sum_of_squares / base_.sum_of_squares);
-  if (gain < selection_.smallest_gain || !(p_value < selection_.chance) ||
-      IsUnphysical(model->fit) || !Accept(*model)) {
-    return;
-  }
-  gap->considered.p_value = p_value;
-  Add(*gap, std::move(*model), gain);
-}
-
-/// True if a larger model keeps the slip force of the smaller one. Of a loop that slides over most
-/// of its stroke the half gap is enough to see that, and the estimates are; otherwise, or where the
-/// residuals are nearly white, the larger model is judged, and replaces the one that was.
-bool Selection::Accept(const CandidateModel& model) {
-  const FitResult& fit = model.fit;
-  const bool is_nearly_white = IsNearlyWhite(fit);
-  if (LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) && !is_nearly_white) {
-    return false;
-  }
-  if (StopsAtLimit(fit) && !StopsAtLimit(base_.fit)) return false;
-  if (loop::Slides(facts_) && !is_nearly_white) return true;
-  ++result_.estimates;
-  Fitter fitter(ContinuedFrom(fit, model.options));
-  const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
-  // At a limit of the search no parameter would be known.
-  const bool is_limited = now.FindFinding("search_limit") != nullptr;
-  if (!IsFitted(now) || IsUnphysical(now)) return false;
-  if (is_limited && judged_.FindFinding("search_limit") == nullptr) return false;
-  if (OpensSlipForce(judged_, now, model.options.thresholds.widest_ratio)) return false;
-  judged_ = now;
-  return true;
-}
-
-/// Moves to the model with a candidate.
-/// @param gain  reduction of the rms [-]
-void Selection::Add(TermCandidate& candidate, CandidateModel model, double gain) {
-  candidate.considered.gain = gain;
-  candidate.considered.added = true;
-  result_.added.push_back(candidate.considered.name);
-  base_ = std::move(model);
-}
-
-/// Moves to the model without some terms, and with one in their place unless that is empty, where
-/// it leaves nothing but noise and has no larger AICc.
-/// @returns false where the present model stays
-bool Selection::MoveWithout(const std::vector<std::string_view>& dropped,
-                            std::string_view instead) {
-  CandidateModel from = base_;
-  for (const std::string_view name : dropped) {
-    for (const std::string& term : FindCandidate(name)->terms) {
-      std::erase(from.options.terms, term);
-      std::erase_if(from.fit.parameters, [&](const ParameterEstimate& estimate) {
-        return TermNameOf(estimate.name) == term;
-      });
-    }
-  }
-  TermCandidate* const simpler = FindCandidate(instead);
-  if (!instead.empty()) {
-    if (simpler == nullptr || simpler->considered.added) return false;
-    from.options = With(*simpler, from.options);
-    from.fit.parameters.clear();  // from starts of its own
-  }
-  if (!MayFit(1)) return false;
-  std::optional<CandidateModel> model = FitFrom(from, from.options, {});
-  if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
-      !IsNearlyWhite(model->fit)) {
-    return false;
-  }
-  const Evidence evidence = EvidenceOfJudged();
-  if (evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) >
-      evidence.Aicc(base_.sum_of_squares, CountFreeParameters(base_.fit))) {
-    return false;
-  }
-  for (const std::string_view name : dropped) {
-    FindCandidate(name)->considered.added = false;
-    std::erase(result_.added, std::string(name));
-  }
-  alternatives_.clear();  // to terms that are not there any more
-  if (simpler == nullptr) {
-    base_ = std::move(*model);
-  } else {
-    simpler->considered.obstacle = "";
-    const double gain = 1 - std::sqrt(model->sum_of_squares / SquaresOf(result_.fit.rms));
-    Add(*simpler, std::move(*model), gain);
-  }
-  return true;
-}
-
-/// Drops the terms that are needless where nothing but noise is left: one that was added early may
-/// have nothing left to do beside those added later, and a slip force of the speed with a drag may
-/// be a slip force and a force of the speed, which takes a part of the half gap: where nothing but
-/// noise is left, that is no reason against it.
-void Selection::Simplify() {
-  if (!IsNearlyWhite(base_.fit)) return;  // what is needless shows where nothing else is wrong
-  const auto is_added = [&](std::string_view name) {
-    const TermCandidate* const candidate = FindCandidate(name);
-    return candidate != nullptr && candidate->considered.added;
-  };
-  if (is_added("slip_speed") && is_added("drag")) {
-    for (const std::string_view simpler : {"viscous", "speed_exponent"}) {
-      if (MoveWithout({"slip_speed", "drag"}, simpler)) break;
-    }
-  }
-  if (result_.added.size() < 2) return;
-  for (const std::string& name : std::vector<std::string>(result_.added)) {
-    const bool is_needed = name == "slip_speed" && is_added("drag");
-    if (!is_needed && FindCandidate(name)->covariate.empty()) MoveWithout({name}, "");
-  }
-}
-
-/// Lists the candidates and takes the law as the model to add to; false where it has no fit.
-bool Selection::Begin(const FitOptions& options, const FitResult& law) {
-  candidates_ = ListTermCandidates(records_, options, law);
-  MakeScores(options, law);
-  facts_ = law.WidestRecord().facts;
-  load_ratio_ = law.WidestRecord().load_ratio;
-  samples_ = CountedSamples(law, records_);
-  base_.fit = law;
-  std::optional<CandidateModel> start = FitFrom(base_, options, {});
-  if (!start) return false;
-  base_ = std::move(*start);
-  DivideIntoParts(base_.fit);
-  judged_ = law;
-  return true;
-}
-
-std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
-  std::vector<std::string> names;
-  if (!IsFitted(law) || !Begin(options, law)) return names;
-  if (std::ranges::all_of(
-          law.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); })) {
-    names.emplace_back("backlash");
-  }
-  const std::vector<TermTrial> trials = ScoreCandidates();
-  for (const TermTrial& trial : trials) {
-    const ConsideredTerm& considered = trial.candidate->considered;
-    const bool gains = considered.gain >= selection_.smallest_gain;
-    const bool is_there = std::ranges::find(names, considered.name) != names.end();
-    if (gains && !is_there && !IsRefused(trial, trials)) names.push_back(considered.name);
-  }
-  return names;
-}
-
 void Selection::Run(const FitOptions& options) {
   ++result_.estimates;
-  Fitter first(options);
   result_.options = options;
-  result_.fit = first.Fit(records_, Depth::kFull);
-  const Adequacy& adequacy = result_.fit.adequacy;
-  const bool is_described = adequacy.verdict == AdequacyVerdict::kAdequate ||
-                            (selection_.only_for_use && adequacy.use == Use::kQuantitative &&
-                             KnowsSlipForce(result_.fit));
+  result_.fit = Fitter(options).Fit(records_, Depth::kFull);
+  const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
-
-  if (!Begin(options, result_.fit)) return;
-  AddMeasuredGap();
-  while (judged_.adequacy.verdict != AdequacyVerdict::kAdequate &&
-         result_.added.size() < selection_.most_terms && Round()) {
+  const FitResult law = result_.fit;
+  if (!Begin(options, law, ListCandidates(records_, options, law))) return;
+  // A gap that was measured without a model is tried first: no linear step from a contact that is
+  // too soft for the want of a gap predicts it.
+  const auto has_gap = [](const RecordFit& record) { return record.facts.backlash.has_value(); };
+  if (std::ranges::all_of(law.records, has_gap)) {
+    const std::size_t gap = *Find("backlash");
+    Add(gap, FitAnew(candidates_[gap].choice));
   }
-  if (!result_.added.empty()) {
-    Simplify();
-    FitResult law = std::move(result_.fit);
-    FitLast();
-    // Terms replace a law of quantitative use where nothing but noise is left.
-    const bool is_of_no_use =
-        selection_.only_for_use && (result_.fit.adequacy.use == Use::kNone ||
-                                    (law.adequacy.use == Use::kQuantitative &&
-                                     result_.fit.adequacy.verdict != AdequacyVerdict::kAdequate));
-    if (!IsFitted(result_.fit) || is_of_no_use) {
-      result_.fit = std::move(law);
-      result_.added.clear();
-      for (TermCandidate& candidate : candidates_) candidate.considered.added = false;
-    } else {
-      result_.options.terms = base_.options.terms;
-      result_.options.covariates = base_.options.covariates;
-    }
+  while (Round()) {
   }
-  for (const TermCandidate& candidate : candidates_) {
+  if (!result_.added.empty()) FitLast(law);
+  for (const Candidate& candidate : candidates_) {
     const ConsideredTerm& considered = candidate.considered;
     if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
     result_.considered.push_back(considered);
   }
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
-  const auto place = [&](const ConsideredTerm& term) {
+  std::ranges::stable_sort(result_.considered, {}, [&](const ConsideredTerm& term) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
-  };
-  std::ranges::stable_sort(result_.considered, {}, place);
-}
-
-/// True if an initial state that was found steady may be virgin: what was held out, and the want of
-/// terms, may have hidden it.
-/// @param options  with starts where the chosen model is
-bool Selection::MayBeVirgin(const FitOptions& options) {
-  const bool is_open = !options.initial_state && options.initial_states.empty() &&
-                       std::ranges::any_of(base_.fit.records, [](const RecordFit& record) {
-                         return record.initial_state == models::InitialState::kSteady;
-                       });
-  if (!is_open) return false;
-  const auto rms_of = [&](const FitOptions& tried) {
-    ++result_.estimates;
-    const FitResult estimate = Fitter(tried).Fit(records_, Depth::kEstimate);
-    return IsFitted(estimate) && estimate.converged ? estimate.rms
-                                                    : std::numeric_limits<double>::infinity();
-  };
-  FitOptions virgin = options;
-  virgin.initial_state = models::InitialState::kVirgin;
-  return rms_of(virgin) < (1 - selection_.smallest_gain) * rms_of(options);
-}
-
-/// Fits the chosen model at full depth from where it is. A slip force that was kept within the
-/// measured force is let go where the model is adequate.
-void Selection::FitLast() {
-  FitOptions from_here = base_.options;
-  StartFrom(base_.fit, from_here);
-  if (MayBeVirgin(from_here)) from_here = base_.options;  // from all starts
-  const auto fit = [&] {
-    ++result_.estimates;
-    Fitter last(from_here);
-    result_.fit = last.Fit(records_, Depth::kFull);
-  };
-  fit();
-  const bool is_bounded_by_user = result_.options.bounds.contains("slip_force");
-  const bool is_bounded = from_here.bounds.contains("slip_force") && !is_bounded_by_user;
-  if (is_bounded && IsFitted(result_.fit) &&
-      result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate) {
-    from_here.bounds.erase("slip_force");
-    fit();
-  }
-  // One term that leaves but noise rules out what leaves twice as much.
-  const bool is_settled =
-      result_.added.size() == 1 && result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
-  std::erase_if(alternatives_, [&](const Alternative& alternative) {
-    return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
-           (is_settled && alternative.sum_of_squares > 2 * SquaresOf(result_.fit.rms));
   });
-  if (IsFitted(result_.fit)) {
-    IncludeAlternatives(alternatives_, base_.options.thresholds, result_.fit);
-  }
 }
 
-/// Adds the named terms one after the other, each from the solution without it.
-/// @returns false where one of them cannot be fitted
-bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
-  result_.options = options;
-  for (const std::string& name : names) {
-    TermCandidate& candidate = candidates_.emplace_back();
-    candidate.considered.name = name;
-    for (const std::string_view term : FindTermGroup(name)->terms) {
-      if (std::erase(options.terms, std::string(term)) > 0) candidate.terms.emplace_back(term);
+/// Fits the chosen model at full depth: from starts of its own, as where the terms are named, if
+/// these lead there, else from where it is. The law stays where its Tc would be lost.
+void Selection::FitLast(const FitResult& law) {
+  FitOptions from_here = base_.options;
+  HoldInitialStates(base_.fit, from_here);
+  StartFrom(base_.fit, from_here);
+  std::vector<FitOptions> tried = {std::move(from_here)};
+  if (is_found_anew_) tried.insert(tried.begin(), base_.options);
+  for (const FitOptions& options : tried) {
+    try {
+      ++result_.estimates;
+      FitResult last = Fitter(options).Fit(records_, Depth::kFull);
+      if (!IsFitted(last) || Leaves(last)) continue;
+      if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
+      result_.fit = std::move(last);
+      result_.options = base_.options;
+      return;
+    } catch (const InvalidArgument&) {
+      // a term that all samples, with what was left out for others, do not determine
     }
   }
-  ++result_.estimates;
-  base_ = {.options = options, .fit = Fitter(options).Fit(records_, Depth::kErrors)};
-  if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
-  MakeScores(options, base_.fit);
-  held_out_ = options.preparation.held_out;
-  facts_ = base_.fit.WidestRecord().facts;
-  load_ratio_ = base_.fit.WidestRecord().load_ratio;
-  samples_ = CountedSamples(base_.fit, records_);
-  for (const TermCandidate& candidate : candidates_) {
-    scores_->StepFrom(base_.fit, base_.options, {}, 0);
-    const std::optional<TermScore> score = scores_->Of(With(candidate, base_.options));
-    if (!score) return false;
-    std::optional<CandidateModel> model =
-        FitFrom(base_, With(candidate, base_.options), score->values);
-    if (!model) return false;
-    base_ = std::move(*model);
+  for (const std::string& name : result_.added) {
+    ConsideredTerm& considered = candidates_[*Find(name)].considered;
+    considered.added = false;
+    considered.obstacle = "confounded";
   }
-  FitLast();
-  return IsFitted(result_.fit);
+  result_.added.clear();
+}
+
+/// Adds the named terms, from the solution without them.
+/// @returns false where one of them cannot be fitted so
+bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
+  result_.options = options;
+  std::vector<Candidate> candidates;
+  for (const std::string& name : names) {
+    Candidate candidate = CandidateOf(*FindTermGroup(name));
+    std::erase_if(candidate.choice.terms,
+                  [&](const std::string& term) { return std::erase(options.terms, term) == 0; });
+    candidates.push_back(std::move(candidate));
+  }
+  ++result_.estimates;
+  const FitResult law = Fitter(options).Fit(records_, Depth::kErrors);
+  if (!IsFitted(law) || !law.converged || !Begin(options, law, std::move(candidates))) return false;
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    Score();
+    const std::optional<TermScore> score = scores_->Of(c);
+    if (!score) return false;
+    Model model = FitWith(candidates_[c].choice, score->values);
+    if (!IsFitted(model.fit) || !model.fit.converged) return false;
+    base_ = std::move(model);
+  }
+  FitOptions from_here = base_.options;
+  StartFrom(base_.fit, from_here);
+  ++result_.estimates;
+  result_.fit = Fitter(from_here).Fit(records_, Depth::kFull);
+  return candidates_.size() == names.size() && IsFitted(result_.fit);
+}
+
+std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
+  std::vector<std::string> names;
+  if (!IsFitted(law) || !Begin(options, law, ListCandidates(records_, options, law))) return names;
+  const auto has_gap = [](const RecordFit& record) { return record.facts.backlash.has_value(); };
+  if (std::ranges::all_of(law.records, has_gap)) names.emplace_back("backlash");
+  for (const Gain& gain : Score()) {
+    const std::string& name = candidates_[gain.candidate].considered.name;
+    const bool is_there = std::ranges::find(names, name) != names.end();
+    if (gain.score.gain < selection_.smallest_gain || is_there || IsRefused(gain)) continue;
+    names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace

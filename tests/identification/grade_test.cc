@@ -36,7 +36,8 @@ TEST(Grade, LeavesTheHalfGapWhereTcIsMoreThanAQuarterOffToEitherSide) {
   EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 10.1));
   EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.5));
   EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 6.3));
-  EXPECT_FALSE(LeavesHalfGap(facts, 11.0, 6.3)) << "it was not there before";
+  EXPECT_FALSE(LeavesHalfGap(facts, 11.0, 6.3)) << "it comes nearer";
+  EXPECT_TRUE(LeavesHalfGap(facts, 11.0, 4.3));
   facts.energy_ratio = 0.5;
   EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.3)) << "the loop does not slide";
 }

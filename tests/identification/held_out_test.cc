@@ -20,22 +20,22 @@ SampleMask CountingFrom(std::size_t first) {
   return mask;
 }
 
-TEST(ClosedCycles, BeginWithTheFirstThatIsNotSkipped) {
+TEST(PartsOf, CyclesBeginWithTheFirstThatIsNotSkipped) {
   const FitResult fit = FitThatTurns();
-  const std::vector<Part> all = ClosedCycles(fit, CountingFrom(0), 0);
+  const std::vector<Part> all = PartsOf(fit, CountingFrom(0), 0, 2, 2);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_EQ(all[0].begin, 10U);
   EXPECT_EQ(all[0].end, 30U);
   EXPECT_EQ(all[0].samples, 20.0);
   // One cycle skipped: to the second turn.
-  const std::vector<Part> later = ClosedCycles(fit, CountingFrom(20), 1);
+  const std::vector<Part> later = PartsOf(fit, CountingFrom(20), 1, 2, 2);
   ASSERT_EQ(later.size(), 2U);
   EXPECT_EQ(later[0].begin, 20U);
   EXPECT_EQ(later[1].end, 60U);
 }
 
-TEST(Strokes, BeginWithTheFirstThatIsNotSkipped) {
-  const std::vector<Part> strokes = Strokes(FitThatTurns(), CountingFrom(20), 1);
+TEST(PartsOf, StrokesBeginWithTheFirstThatIsNotSkipped) {
+  const std::vector<Part> strokes = PartsOf(FitThatTurns(), CountingFrom(20), 1, 1, 4);
   ASSERT_EQ(strokes.size(), 5U);
   EXPECT_EQ(strokes.front().begin, 20U);
   EXPECT_EQ(strokes.back().end, 70U);
@@ -54,7 +54,7 @@ struct ThreeCycles {
     fit = FitOne(record, options);
     views = {record};
     samples = CountedSamples(fit, views);
-    cycles = ClosedCycles(fit, samples.mask, 0);
+    cycles = PartsOf(fit, samples.mask, 0, 2, 2);
   }
 
   std::vector<double> Predict(std::size_t free) const {
@@ -107,17 +107,17 @@ TEST(TermScores, ValuesOfLinearTermsAreThoseOfTheFitWithThem) {
   FitOptions options;
   options.preparation.force_sense = 1;
   const FitResult fit = FitOne(record, options);
-  FitOptions with = options;
-  with.terms = {"viscous", "force_drift"};
+  const std::vector<TermChoice> choices = {{.terms = {"viscous", "force_drift"}, .covariate = ""}};
   const std::vector<loop::RecordView> views = {record};
-  TermScores scores(views, options, with.terms, {});
-  scores.StepFrom(fit, options, {}, 0);
-  const std::optional<TermScore> score = scores.Of(with);
+  TermScores scores(views, options, choices);
+  scores.StepFrom(fit, options, choices, {}, 0);
+  const std::optional<TermScore> score = scores.Of(0);
   ASSERT_TRUE(score);
   // The law moves, too, which one step does only to first order.
   EXPECT_NEAR(score->values.at("viscous") / kViscosity, 1, 0.05);
   EXPECT_NEAR(score->values.at("force_drift") / kDrift, 1, 0.05);
-  EXPECT_LT(score->rms, 0.1 * fit.residuals.rms);
+  EXPECT_GT(score->gain, 0.5);
+  EXPECT_LT(score->p_value, 1e-6);
 }
 
 }  // namespace

@@ -196,9 +196,9 @@ Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed, bool adds
   const Loop loop = MakeLoop(kind, level, seed);
   try {
     const std::span<const mindahl::loop::Record> record(&loop.record, 1);
-    return Judge(adds_terms ? identification::SelectTerms(record, {}, {.only_for_use = true}).fit
-                            : identification::Fit(record),
-                 loop.expected);
+    return Judge(
+        adds_terms ? identification::SelectTerms(record, {}).fit : identification::Fit(record),
+        loop.expected);
   } catch (const InvalidArgument& refusal) {
     return {.outcome = Outcome::kUndecided,
             .alarms = true,

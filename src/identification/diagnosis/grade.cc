@@ -31,8 +31,11 @@ bool RanAway(double slip_force, double half_gap) {
 }
 
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
-  return loop::Slides(facts) && !RanAway(without, *facts.half_gap) &&
-         RanAway(with, *facts.half_gap);
+  if (!loop::Slides(facts) || !RanAway(with, *facts.half_gap)) return false;
+  const auto distance = [&](double slip_force) {
+    return std::abs(slip_force / *facts.half_gap - 1);
+  };
+  return !(distance(with) < distance(without));
 }
 
 std::optional<FitOptions> WithinMeasuredForce(const loop::LoopFacts& facts, double load_ratio,

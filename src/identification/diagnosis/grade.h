@@ -16,7 +16,8 @@ namespace mindahl::identification {
 /// True if a slip force [N] ran away: it is more than a quarter off the measured half gap [N].
 bool RanAway(double slip_force, double half_gap);
 
-/// True if, of a loop that slides, Tc ran away from the half gap that was measured.
+/// True if, of a loop that slides, Tc ran away from the half gap that was measured, no nearer than
+/// before.
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
