@@ -194,6 +194,8 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
   at_fit_ = LinearizeAt(problem, theta, response_, inside);
+  names_.clear();
+  for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
   const Eigen::VectorXd& residual = at_fit_.residual;
   effective_samples_ =
       EffectiveSamples(data_, {residual.data(), static_cast<std::size_t>(residual.size())});
@@ -323,6 +325,10 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
   step.values = StepBy(whole_, step.places);
   TermScore score;
   PutValues(choice, step, score.values);
+  for (const char* const name : {"sigma", "alpha", "slip_force"}) {
+    const auto place = std::ranges::find(names_, name) - names_.begin();
+    if (place < std::ssize(names_)) score.law.emplace(name, step.values[place] / norms_[place]);
+  }
   const double rounding = kRoundingRms * kRoundingRms;  // of a residual's square
   const auto squares_of_all = [&](const std::vector<Eigen::Index>& places) {
     return SquaresAfter(whole_, places, StepBy(whole_, places)) +
@@ -330,6 +336,7 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
   };
   const double without = squares_of_all(before);
   const double with = squares_of_all(step.places);
+  score.rms = data_.force * std::sqrt(with / static_cast<double>(data_.counted));
   if (of_part_.empty()) {
     score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
   } else {

@@ -34,7 +34,9 @@ struct TermScore {
   /// errors do not make or hide it.
   double gain = 0.0;
   double p_value = 1.0;                  // that chance alone makes its effect
+  double rms = 0.0;                      // of all samples after the step [N]
   std::map<std::string, double> values;  // of its parameters, for a search to begin with
+  std::map<std::string, double> law;     // by how much θ of σ, α and Tc moves
 };
 
 /// Scores terms by one Gauss-Newton step from a fit that does not have them: of the Jacobian of the
@@ -100,6 +102,7 @@ class TermScores {
   models::InitialState state_ = models::InitialState::kSteady;
   double effective_samples_ = 1.0;
   Linearization at_fit_;  // in those that are inside their bounds; the first columns of all
+  std::vector<std::string> names_;  // of these
   // The choices:
   std::vector<std::vector<Added>> choices_;
   Eigen::VectorXd norms_;                 // of all columns

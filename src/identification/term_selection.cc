@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/intervals.h"
+#include "identification/judge/judge.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
@@ -176,7 +178,40 @@ void StartFrom(const FitResult& fit, FitOptions& options) {
   }
 }
 
-/// Adds terms to a law, a few at a time.
+/// Holds the law that another candidate of a round gives in place of the one that was added.
+struct Alternative {
+  std::string name;
+  std::map<std::string, double> law;  // differences of θ of σ, α and Tc
+  double rms = 0.0;                   // with it, to first order
+};
+
+/// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
+/// slides has carried.
+void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
+                         FitResult& fit) {
+  const RecordFit& widest = fit.WidestRecord();
+  for (const Alternative& alternative : alternatives) {
+    for (const auto& [name, difference] : alternative.law) {
+      const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
+      if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
+      const double step = std::clamp(difference, -kFarthestStep, kFarthestStep);
+      double value = name == "alpha" ? std::max(0.0, estimate->value + step)
+                                     : estimate->value * std::exp(step);
+      if (name == "slip_force" && loop::Slides(widest.facts)) {
+        value =
+            std::clamp(value, std::min(*widest.facts.half_gap / widest.load_ratio, estimate->value),
+                       std::max(widest.facts.peak_force / widest.load_ratio, estimate->value));
+      }
+      Include(*estimate, {.source = IntervalSource::kOmittedTerms, .lower = value, .upper = value});
+    }
+  }
+  for (Finding& finding : FindWideIntervals(fit, thresholds)) {
+    if (fit.FindFinding(finding.code) == nullptr) fit.findings.push_back(std::move(finding));
+  }
+  Judge(fit.parameters, fit.findings);
+}
+
+/// Adds terms to a law, one after the other.
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -212,6 +247,7 @@ class Selection {
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(std::size_t candidate, Model model);
   bool Round();
+  void KeepAlternatives(const Gain& added, std::span<const Gain> gains);
   void FitLast(const FitResult& law);
 
   static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
@@ -221,6 +257,7 @@ class Selection {
   std::vector<Candidate> candidates_;
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
+  std::vector<Alternative> alternatives_;
   bool is_found_anew_ = true;  // from starts of its own
   std::vector<Part> parts_;
   std::vector<std::vector<bool>> held_out_;
@@ -402,6 +439,23 @@ bool Selection::Add(std::size_t candidate, Model model) {
   return true;
 }
 
+/// Keeps what candidates that gain at least half as much as the one that is added would make of the
+/// law: the record may have been made by them.
+void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains) {
+  constexpr double kOfGain = 0.5;
+  for (const auto& [c, score] : gains) {
+    const bool is_column = !candidates_[c].choice.covariate.empty();
+    if (candidates_[c].considered.obstacle == "unphysical") continue;
+    if (is_column || score.gain < kOfGain * added.score.gain) continue;
+    Alternative& alternative =
+        alternatives_.emplace_back(Alternative{candidates_[c].considered.name, {}, score.rms});
+    for (const auto& [name, step] : score.law) {
+      const auto of_added = added.score.law.find(name);
+      if (of_added != added.score.law.end()) alternative.law[name] = step - of_added->second;
+    }
+  }
+}
+
 /// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
   constexpr double kOfSpeed = 0.5;  // of a lag's gain
@@ -413,7 +467,10 @@ bool Selection::Round() {
   const double chance =
       selection_.chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
   std::erase_if(gains, [&](const Gain& gain) {
-    if (gain.score.gain < selection_.smallest_gain || !(gain.score.p_value < chance)) return true;
+    return gain.score.gain < selection_.smallest_gain || !(gain.score.p_value < chance);
+  });
+  const std::vector<Gain> explaining = gains;
+  std::erase_if(gains, [&](const Gain& gain) {
     Candidate& candidate = candidates_[gain.candidate];
     const bool is_of_speed = candidate.Has("lag") && of_speed > kOfSpeed * gain.score.gain;
     if (is_of_speed) candidate.considered.obstacle = "rate_dependent";
@@ -422,7 +479,10 @@ bool Selection::Round() {
   while (!gains.empty() && result_.estimates + kLastFits < selection_.most_fits) {
     const Gain& best = Simplest(gains);
     const std::size_t candidate = best.candidate;
-    if (Add(candidate, FitWith(candidates_[candidate].choice, best.score.values))) return true;
+    if (Add(candidate, FitWith(candidates_[candidate].choice, best.score.values))) {
+      KeepAlternatives(best, explaining);
+      return true;
+    }
     std::erase_if(gains, [&](const Gain& gain) { return gain.candidate == candidate; });
   }
   return false;
@@ -471,6 +531,14 @@ void Selection::FitLast(const FitResult& law) {
       FitResult last = Fitter(options).Fit(records_, Depth::kFull);
       if (!IsFitted(last) || Leaves(last)) continue;
       if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
+      // One term that leaves but noise rules out what leaves much more.
+      const bool is_settled =
+          result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
+      std::erase_if(alternatives_, [&](const Alternative& alternative) {
+        return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
+               (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
+      });
+      IncludeAlternatives(alternatives_, options.thresholds, last);
       result_.fit = std::move(last);
       result_.options = base_.options;
       return;
