@@ -1,7 +1,7 @@
 
 
 #include "identification/diagnosis/adequacy.h"
-#include "identification/inference/trials.h"
+#include "identification/gram/trials.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 

@@ -1,4 +1,4 @@
-#include "identification/inference/trials.h"
+#include "identification/gram/trials.h"
 
 #include <algorithm>
 #include <array>
