@@ -38,19 +38,28 @@ TEST(Confidence, IntervalsAreInProportionToStudentsQuantile) {
 
 TEST(Confidence, FractionOfIntervalsThatContainTheTruthIsIt) {
   constexpr int kLoops = 300;
-  for (const double confidence : {0.68, 0.95, 0.99}) {
-    int covered = 0;
+  const std::vector<std::pair<const char*, double>> truth = {{"sigma", kLaw.tangential_stiffness},
+                                                             {"alpha", kLaw.shape_exponent},
+                                                             {"slip_force", kLaw.slip_force}};
+  for (const double confidence : {0.5, 0.68, 0.95}) {
+    std::vector<int> covered(truth.size(), 0);
     for (int seed = 1; seed <= kLoops; ++seed) {
       const auto record = NoisyLoop(static_cast<std::uint64_t>(seed));
-      const FitResult fit = FitWith(confidence, record, Depth::kIntervals);
-      const ParameterEstimate& sigma = *fit.Find("sigma");
-      ASSERT_TRUE(sigma.lower95 && sigma.upper95);
-      const double truth = kLaw.tangential_stiffness;
-      covered += *sigma.lower95 <= truth && truth <= *sigma.upper95 ? 1 : 0;
+      const FitResult fit = FitWith(confidence, record, Depth::kFull);
+      for (std::size_t k = 0; k < truth.size(); ++k) {
+        const ParameterEstimate& estimate = *fit.Find(truth[k].first);
+        ASSERT_TRUE(estimate.lower95 && estimate.upper95);
+        const bool contains =
+            *estimate.lower95 <= truth[k].second && truth[k].second <= *estimate.upper95;
+        covered[k] += contains ? 1 : 0;
+      }
     }
     // Four standard deviations of a binomial count: beyond them once in 16 000.
     const double scatter = std::sqrt(confidence * (1 - confidence) / kLoops);
-    EXPECT_NEAR(static_cast<double>(covered) / kLoops, confidence, 4 * scatter) << confidence;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_NEAR(static_cast<double>(covered[k]) / kLoops, confidence, 4 * scatter)
+          << truth[k].first << " " << confidence;
+    }
   }
 }
 
