@@ -139,9 +139,9 @@ void AddTrack(py::module_& module) {
       .def_readwrite("threads", &TrackRequest::threads)
       .def_property(
           "skips_broken_rows",
-          [](const TrackRequest& self) { return self.broken_rows == io::BrokenRows::kSkip; },
+          [](const TrackRequest& self) { return self.fit.columns.skip_broken_rows; },
           [](TrackRequest& self, bool skips) {
-            self.broken_rows = skips ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+            self.fit.columns.skip_broken_rows = skips;
           });
   module.def(
       "track",

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -12,8 +12,6 @@
 
 namespace mindahl::io {
 namespace {
-
-constexpr std::size_t kTimePlace = 2;
 
 /// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
 std::string ImpliedTimeUnit(std::string_view word, double first) {
@@ -28,6 +26,13 @@ std::string ImpliedTimeUnit(std::string_view word, double first) {
     if (first >= kFrom2001 * scale && first <= kTo2100 * scale) return std::string(unit);
   }
   return "";
+}
+
+std::vector<double>& ColumnOf(Samples& samples, Role role) {
+  return role == Role::kDisplacement ? samples.displacement
+         : role == Role::kForce      ? samples.force
+         : role == Role::kTime       ? samples.time
+                                     : samples.normal_load;
 }
 
 /// Refuses numbers of a register whose highest bit is a sign: none lies in the upper half of those
@@ -56,38 +61,36 @@ void RequireNoSignBit(const ColumnNames& names, std::size_t column, const RoleRu
 }  // namespace
 
 RecordBuilder::RecordBuilder(const CsvTable& table, const RecordColumns& columns)
-    : name_(table.file), last_time_(-std::numeric_limits<double>::infinity()) {
-  if (columns.sample_rate) {
-    if (!(*columns.sample_rate > 0) || !std::isfinite(*columns.sample_rate)) {
-      throw InputError(
-          fmt::format("--sample-rate {}: must be finite and > 0 Hz", *columns.sample_rate));
-    }
-    if (!columns.time.empty()) {
-      throw InputError(fmt::format("{}: --time and --sample-rate exclude each other", name_));
-    }
+    : name_(table.file), skip_broken_(columns.skip_broken_rows) {
+  const std::optional<double>& rate = columns.sample_rate;
+  if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
+    throw InputError(fmt::format("--sample-rate {}: must be finite and > 0 Hz", *rate));
+  }
+  if (rate && !columns.time.empty()) {
+    throw InputError(fmt::format("{}: --time and --sample-rate exclude each other", name_));
   }
   file_.notes = table.notes;
   const ColumnNames names(table);
   Roles roles = AssignRoles(names, columns, file_.notes);
   file_.is_torsional = roles.is_torsional;
-  Add(names, Role::kDisplacement, std::move(roles.displacement), columns.displacement,
-      file_.displacement);
-  Add(names, Role::kForce, std::move(roles.force), columns.force, file_.force);
-  if (!roles.time.terms.empty()) AddTime(names, roles.time, columns.time);
+  Choose(names, Role::kDisplacement, std::move(roles.displacement), columns.displacement,
+         file_.displacement);
+  Choose(names, Role::kForce, std::move(roles.force), columns.force, file_.force);
+  if (!roles.time.terms.empty()) ChooseTime(names, roles.time, columns.time);
   if (!roles.normal_load.terms.empty()) {
-    Add(names, Role::kNormalLoad, std::move(roles.normal_load), columns.normal_load,
-        file_.normal_load.emplace());
+    Choose(names, Role::kNormalLoad, std::move(roles.normal_load), columns.normal_load,
+           file_.normal_load.emplace());
   }
   if (file_.time) return;
-  interval_ = columns.sample_rate ? 1.0 / *columns.sample_rate : table.interval;
-  if (table.interval > 0 && !columns.sample_rate) {
+  interval_ = rate ? 1.0 / *rate : table.interval;
+  if (table.interval > 0 && !rate) {
     file_.notes.push_back(
         fmt::format("{}: has no time: its header states {} s between rows", name_, table.interval));
   }
 }
 
-void RecordBuilder::Add(const ColumnNames& names, Role role, Expression columns,
-                        const std::string& text, ChosenColumn& described) {
+void RecordBuilder::Choose(const ColumnNames& names, Role role, Expression columns,
+                           const std::string& text, ChosenColumn& described) {
   const RoleRules& rules = RulesOf(role, file_.is_torsional);
   const Unit unit = FindUnit(names, rules, columns, file_.notes);
   const std::size_t first = columns.terms.front().column;
@@ -97,17 +100,17 @@ void RecordBuilder::Add(const ColumnNames& names, Role role, Expression columns,
   described = {.name = columns.is_plain() ? names.table().columns[first].name : text,
                .index = first + 1,
                .unit = unit.symbol};
-  for (Expression::Term& term : columns.terms) {
-    auto place = std::ranges::find(wanted_, term.column);
-    if (place == wanted_.end()) place = wanted_.insert(wanted_.end(), term.column);
-    term.column = static_cast<std::size_t>(place - wanted_.begin());
+  for (const Expression::Term& term : columns.terms) {
+    if (names.table().columns[term.column].values.empty()) {
+      static_cast<void>(names.table().Numbers(term.column));  // throws
+    }
+    if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
   }
-  const std::size_t place = role == Role::kNormalLoad ? 3 : static_cast<std::size_t>(role);
-  channels_.push_back({place, std::move(columns), unit, rules.name});
+  channels_.push_back({role, std::move(columns), unit, rules.name});
 }
 
-void RecordBuilder::AddTime(const ColumnNames& names, const Expression& given,
-                            const std::string& text) {
+void RecordBuilder::ChooseTime(const ColumnNames& names, const Expression& given,
+                               const std::string& text) {
   Expression columns = given;
   const std::size_t first = columns.terms.front().column;
   const TableColumn& column = names.table().columns[first];
@@ -139,22 +142,58 @@ void RecordBuilder::AddTime(const ColumnNames& names, const Expression& given,
       note(fmt::format("names no unit: taken as {}", columns.unit));
     }
   }
-  Add(names, Role::kTime, std::move(columns), text, file_.time.emplace());
+  Choose(names, Role::kTime, std::move(columns), text, file_.time.emplace());
   file_.time->is_clock = column.is_clock;
 }
 
-std::string RecordBuilder::Convert(std::span<const double> cells, std::size_t line, std::size_t row,
-                                   bool begins_block, RowValues& values) {
-  for (const Channel& channel : channels_) {
-    double value = channel.sum.offset;
-    for (const Expression::Term& term : channel.sum.terms)
-      value += term.weight * cells[term.column];
+std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
+  auto block = table.blocks.begin();
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::size_t number = rows_++;
+    if (block != table.blocks.end() && row == *block) {
+      begins_block_ = true;
+      ++block;
+    }
+    bool is_missing = false;
+    const std::string fault = Convert(table, row, is_missing);
+    if (!fault.empty()) {
+      if (!is_missing && !skip_broken_) return fault;
+      left_out_.Add(table.lines[row], fault);
+      continue;
+    }
+    begins_block_ = false;
+    for (const Channel& channel : channels_)
+      ColumnOf(samples, channel.role).push_back(channel.value);
+    if (!file_.time && interval_ > 0) {
+      samples.time.push_back(static_cast<double>(number) * interval_);
+    }
+    samples.lines.push_back(table.lines[row]);
+  }
+  return "";
+}
+
+/// Computes the values of a row.
+/// @returns its fault; "" where there is none
+std::string RecordBuilder::Convert(const CsvTable& table, std::size_t row, bool& is_missing) {
+  for (Channel& channel : channels_) {
+    channel.value = channel.sum.offset;
+    for (const Expression::Term& term : channel.sum.terms) {
+      const TableColumn& column = table.columns[term.column];
+      channel.value += term.weight * column.values[row];
+      if (!std::isnan(column.values[row])) continue;
+      const bool is_fault = !column.fault.empty() && column.fault_row == row;
+      is_missing = !is_fault;
+      return is_fault || column.missing.empty() ? column.fault : column.missing;
+    }
+  }
+  for (Channel& channel : channels_) {
     const auto at = [&] {
-      return fmt::format("{}:{}:{}", name_, line, wanted_[channel.sum.terms.front().column] + 1);
+      return fmt::format("{}:{}:{}", name_, table.lines[row], channel.sum.terms.front().column + 1);
     };
-    if (channel.place == kTimePlace) {
+    double value = channel.value;
+    if (channel.role == Role::kTime) {
       value -= time_origin_;
-      if (begins_block && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
+      if (begins_block_ && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
       value += shift_;
       const double above = std::exchange(last_time_, value);
       if (value < above) {
@@ -166,29 +205,22 @@ std::string RecordBuilder::Convert(std::span<const double> cells, std::size_t li
       }
       if (std::isfinite(above)) last_step_ = value - above;
     }
-    values[channel.place] = channel.unit.ToSi(value);
-    if (!std::isfinite(values[channel.place])) {
+    channel.value = channel.unit.ToSi(value);
+    if (!std::isfinite(channel.value)) {
       return fmt::format("{}: {} = {} {} is too large: must be below 1.8e308 in SI units", at(),
                          channel.name, value, channel.unit.symbol);
     }
   }
-  if (!file_.time && interval_ > 0) values[kTimePlace] = static_cast<double>(row) * interval_;
   return "";
 }
 
-void MissingRows::Count(std::size_t line, const std::string& fault) {
-  if (rows.count++ > 0) return;
-  rows.first_line = line;
-  first = fault;
-}
-
-void MissingRows::RequireFew(std::size_t of_rows) const {
+std::string RecordBuilder::TooManyLeftOut() const {
   // One in a hundred, rounded up from a hundred on.
   constexpr std::size_t kOneIn = 100;
-  const std::size_t most = of_rows < kOneIn ? 0 : (of_rows + kOneIn - 1) / kOneIn;
-  if (rows.count <= most) return;
-  throw InputError(fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
-                               first, rows.count, of_rows));
+  const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
+  if (skip_broken_ || left_out_.count <= most) return "";
+  return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
+                     left_out_.fault, left_out_.count, rows_);
 }
 
 }  // namespace mindahl::io

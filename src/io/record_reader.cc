@@ -22,19 +22,22 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool IsNumber(double value) { return !std::isnan(value); }
 
-/// Keeps some rows of a table's column.
-std::vector<double> AtRows(std::span<const double> values, const std::vector<std::size_t>& rows) {
+/// Returns the numbers of a table's column in the rows of some lines.
+std::vector<double> AtLines(const CsvTable& table, std::size_t column,
+                            const std::vector<std::size_t>& lines) {
+  const std::vector<double>& values = table.columns[column].values;
   std::vector<double> kept;
-  if (values.empty()) return kept;
-  kept.reserve(rows.size());
-  for (const std::size_t row : rows) kept.push_back(values[row]);
+  kept.reserve(lines.size());
+  for (std::size_t row = 0; row < values.size() && kept.size() < lines.size(); ++row) {
+    if (table.lines[row] == lines[kept.size()]) kept.push_back(values[row]);
+  }
   return kept;
 }
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
 void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
-                   const std::vector<std::size_t>& rows, RecordFile& file) {
+                   RecordFile& file) {
   const CsvTable& table = names.table();
   const RoleRules& rules = RulesOf(Role::kOther);
   const auto add = [&](std::size_t column, const std::string& name, std::vector<double> values) {
@@ -58,7 +61,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
       throw InputError(fmt::format("{}: {} is chosen twice as a {}: choose it once", table.file,
                                    names.Label(column), rules.name));
     }
-    std::vector<double> values = AtRows(table.columns[column].values, rows);
+    std::vector<double> values = AtLines(table, column, file.lines);
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) {
       static_cast<void>(table.Numbers(column));  // throws
     }
@@ -71,7 +74,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
                           (file.normal_load && column + 1 == file.normal_load->index);
     if (has_role || is_read(column) || !names.StatesOneUnit(column)) continue;
     if (table.columns[column].values.empty() || table.columns[column].is_clock) continue;
-    std::vector<double> values = AtRows(table.columns[column].values, rows);
+    std::vector<double> values = AtLines(table, column, file.lines);
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (!changes || !std::ranges::all_of(values, IsNumber)) continue;
     add(column, names.NameOf(column), std::move(values));
@@ -175,63 +178,25 @@ std::vector<double> ReadPathColumn(const CsvTable& table, Role role, const std::
 
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   RecordBuilder builder(table, columns);
-  const std::vector<std::size_t>& wanted = builder.wanted();
-  std::string fault;
-  std::size_t fault_row = table.rows();
-  for (const std::size_t column : wanted) {
-    const TableColumn& of = table.columns[column];
-    if (of.values.empty()) static_cast<void>(table.Numbers(column));  // throws
-    if (of.fault.empty() || of.fault_row >= fault_row) continue;
-    fault = of.fault;
-    fault_row = of.fault_row;
-  }
-  if (!fault.empty() && !columns.skip_broken_rows) throw InputError(fault);
-
+  Samples samples;
+  std::string fault = builder.Add(table, samples);
+  if (fault.empty()) fault = builder.TooManyLeftOut();
   RecordFile& file = builder.file();
-  std::vector<double> cells(wanted.size());
-  std::vector<std::size_t> rows;
-  rows.reserve(table.rows());
-  MissingRows missing;
-  RowValues values{};
-  auto block = table.blocks.begin();
-  bool begins_block = false;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (block != table.blocks.end() && row == *block) {
-      begins_block = true;
-      ++block;
-    }
-    const std::string* first_missing = nullptr;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      cells[k] = table.columns[wanted[k]].values[row];
-      if (IsNumber(cells[k]) || first_missing != nullptr) continue;
-      const TableColumn& of = table.columns[wanted[k]];
-      first_missing = of.missing.empty() ? &of.fault : &of.missing;
-    }
-    if (first_missing != nullptr) {
-      missing.Count(table.lines[row], *first_missing);
-      continue;
-    }
-    const std::string broken = builder.Convert(cells, table.lines[row], row, begins_block, values);
-    if (!broken.empty()) {
-      if (!columns.skip_broken_rows) throw InputError(broken);
-      missing.Count(table.lines[row], broken);
-      continue;
-    }
-    begins_block = false;
-    builder.Append(values, file.record);
-    file.lines.push_back(table.lines[row]);
-    rows.push_back(row);
-  }
-  if (!columns.skip_broken_rows) missing.RequireFew(table.rows());
-  if (rows.empty()) throw InputError(missing.first);
-  file.left_out = missing.rows;
-  if (missing.rows.count > 0) {
+  file.left_out = builder.left_out();
+  if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
+  if (!fault.empty()) throw InputError(fault);
+  if (file.left_out.count > 0) {
     file.notes.push_back(fmt::format(
         "{}: {} of {} rows have no number in a column that is used and are left out, the first in "
         "line {}",
-        table.file, missing.rows.count, table.rows(), missing.rows.first_line));
+        table.file, file.left_out.count, table.rows(), file.left_out.first_line));
   }
-  AddCovariates(ColumnNames(table), columns.covariates, rows, file);
+  file.record = {.displacement = std::move(samples.displacement),
+                 .force = std::move(samples.force),
+                 .time = std::move(samples.time),
+                 .normal_load = std::move(samples.normal_load)};
+  file.lines = std::move(samples.lines);
+  AddCovariates(ColumnNames(table), columns.covariates, file);
   return std::move(file);
 }
 

@@ -7,6 +7,11 @@
 namespace mindahl::io::csv_writer_test {
 namespace {
 
+CsvTable Parse(const std::string& text) {
+  const TemporaryDirectory directory;
+  return ReadCsvTable(directory.Write("x.csv", text));
+}
+
 using Numbers = std::vector<double>;
 
 TEST(CsvWriter, WritesHeaderAndRows) {
@@ -26,7 +31,7 @@ TEST(CsvWriter, WritesEveryDoubleSoThatItReadsBackAsItself) {
                           std::numeric_limits<double>::max(),
                           1e23,
                           std::nextafter(1.0, 2.0)};
-  const CsvTable table = ParseCsvTable(CsvText({{"x", values}}), "x.csv");
+  const CsvTable table = Parse(CsvText({{"x", values}}));
   const auto read = table.Numbers(0);
   ASSERT_EQ(read.size(), values.size());
   for (std::size_t row = 0; row < values.size(); ++row) {
@@ -41,7 +46,7 @@ TEST(CsvWriter, QuotesNamesSoThatTheyReadBackAsThemselves) {
   std::vector<CsvColumn> columns;
   for (const std::string& name : names) columns.push_back({name, one});
   const std::string text = CsvText(columns);
-  const CsvTable table = ParseCsvTable(text, "x.csv");
+  const CsvTable table = Parse(text);
   for (std::size_t k = 0; k < names.size(); ++k) {
     EXPECT_EQ(table.columns[k].name, k == 2 ? "a b" : names[k]);
   }

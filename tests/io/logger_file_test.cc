@@ -47,7 +47,7 @@ struct Streamed {
 };
 
 Streamed Stream(const std::filesystem::path& path, const RecordColumns& columns) {
-  RecordStream stream(path, columns, BrokenRows::kRefuse);
+  RecordStream stream(path, columns);
   Streamed all{.layout = stream.layout(), .samples = {}};
   for (Samples piece; stream.Next(piece);) {
     const auto append = [](const auto& from, auto& to) {

@@ -31,9 +31,14 @@ class RecordStreamTest : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-Samples ReadAll(const std::filesystem::path& path, const RecordColumns& columns = {},
-                BrokenRows broken = BrokenRows::kRefuse) {
-  RecordStream stream(path, columns, broken);
+const RecordColumns kSkipping = [] {
+  RecordColumns columns;
+  columns.skip_broken_rows = true;
+  return columns;
+}();
+
+Samples ReadAll(const std::filesystem::path& path, const RecordColumns& columns = {}) {
+  RecordStream stream(path, columns);
   Samples all;
   Samples piece;
   const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
@@ -108,7 +113,7 @@ constexpr std::size_t kManyRows = 60'000;  // 3 MB
 TEST_F(RecordStreamTest, ReadsALongFileInPieces) {
   const std::filesystem::path path = Write(LongText(kManyRows));
   ExpectSameAsWhole(path);
-  RecordStream stream(path, {}, BrokenRows::kRefuse);
+  RecordStream stream(path);
   Samples samples;
   ASSERT_TRUE(stream.Next(samples));
   EXPECT_LT(samples.size(), kManyRows / 2);
@@ -132,11 +137,11 @@ TEST_F(RecordStreamTest, RefusesATimeThatRunsBackwardsAsTheWholeReaderDoes) {
 
 TEST_F(RecordStreamTest, SkipsOneRowWhereAClockStartsAgain) {
   const std::filesystem::path path = Write("t,x,F\n5,0,.5\n6,1,1\n0,2,2\n1,3,3\n2,4,4\n");
-  RecordStream stream(path, {}, BrokenRows::kSkip);
+  RecordStream stream(path, kSkipping);
   Samples samples;
   ASSERT_TRUE(stream.Next(samples));
   EXPECT_EQ(samples.lines, (std::vector<std::size_t>{2, 3, 5, 6}));
-  EXPECT_EQ(stream.broken_rows(), 1u);
+  EXPECT_EQ(stream.left_out().count, 1u);
 }
 
 TEST_F(RecordStreamTest, RefusesASecondDecimalMarkAsTheWholeReaderDoes) {
@@ -147,14 +152,14 @@ TEST_F(RecordStreamTest, RefusesASecondDecimalMarkAsTheWholeReaderDoes) {
 TEST_F(RecordStreamTest, SkipsBrokenRowsAndCountsThem) {
   const std::filesystem::path path =
       Write("x,F [N]\n0,.5\n1.5,oops\n1,2\n\"3,4\n5,6\n7\n8,9,10\n-2,1E5\n");
-  RecordStream stream(path, {}, BrokenRows::kSkip);
+  RecordStream stream(path, kSkipping);
   Samples samples;
   ASSERT_TRUE(stream.Next(samples));
   EXPECT_EQ(samples.displacement, (std::vector<double>{0, 1, 5, -2}));
   EXPECT_EQ(samples.lines, (std::vector<std::size_t>{2, 4, 6, 9}));
   EXPECT_FALSE(stream.Next(samples));
-  EXPECT_EQ(stream.broken_rows(), 4u);
-  EXPECT_EQ(stream.first_broken_row(),
+  EXPECT_EQ(stream.left_out().count, 4u);
+  EXPECT_EQ(stream.left_out().fault,
             fmt::format("{}:3:2: 'oops' is not a number: write it like -1.5e-3, or remove the row",
                         path.string()));
 }
@@ -186,20 +191,20 @@ TEST_F(RecordStreamTest, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirst
     }
     const std::filesystem::path path =
         Write(text + at.broken + '\n' + fmt::format(fmt::runtime(at.row), 3));
-    RecordStream stream(path, {}, BrokenRows::kSkip);
+    RecordStream stream(path, kSkipping);
     Samples samples;
     std::size_t rows = 0;
     while (stream.Next(samples)) rows += samples.size();
     EXPECT_EQ(rows, kRows + 1) << at.header;
-    EXPECT_EQ(stream.broken_rows(), 1u);
-    EXPECT_THAT(stream.first_broken_row(),
+    EXPECT_EQ(stream.left_out().count, 1u);
+    EXPECT_THAT(stream.left_out().fault,
                 ::testing::HasSubstr(fmt::format("{}:{}{}", path.string(), kRows + 2, at.fault)));
   }
 }
 
 TEST_F(RecordStreamTest, GivesTheSamplesBeforeARowThatItRefuses) {
   const std::filesystem::path path = Write("x,F\n0,.5\n1.5,1\n1,oops\n-2,1E5\n3,4\n");
-  RecordStream stream(path, {}, BrokenRows::kRefuse);
+  RecordStream stream(path);
   Samples samples;
   ASSERT_TRUE(stream.Next(samples));
   EXPECT_EQ(samples.displacement, (std::vector<double>{0, 1.5}));
@@ -213,7 +218,7 @@ TEST_F(RecordStreamTest, RefusesWhatHoldsNoRecord) {
     const std::string whole = RefusalOf([&] { ReadRecord(path); });
     EXPECT_EQ(RefusalOf([&] { ReadAll(path); }), whole) << text;
   }
-  EXPECT_THROW(RecordStream("/nonexistent/loop.csv", {}, BrokenRows::kRefuse), InputError);
+  EXPECT_THROW(RecordStream("/nonexistent/loop.csv", {}), InputError);
 }
 
 }  // namespace

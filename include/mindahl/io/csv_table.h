@@ -38,6 +38,19 @@ struct ReadLimits {
   }
 };
 
+/// Rows that were left out, and the fault of the first.
+struct LeftOutRows {
+  std::size_t count = 0;
+  std::size_t first_line = 0;  ///< in the file, 1-based
+  std::string fault = {};      ///< "file:line:column: …"
+
+  void Add(std::size_t line, const std::string& of_row) {
+    if (count++ > 0) return;
+    first_line = line;
+    fault = of_row;
+  }
+};
+
 /// A column of a table.
 struct TableColumn {
   std::string name;  ///< header cell as written, "" without one
@@ -69,7 +82,7 @@ struct CsvTable {
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
 };
 
-/// Reads a delimited text as a table.
+/// Reads a delimited text as a table, from a file that is plain or compressed by gzip.
 ///
 /// *Text.* UTF-8 or ASCII; lines end in LF or CRLF, the last one optionally. Blank lines, rows of
 /// delimiters alone and lines that begin with '#' are skipped, but for error values of a
@@ -99,13 +112,7 @@ struct CsvTable {
 ///
 /// *Blocks.* Text among the rows is an error, unless it ends with the header once more.
 ///
-/// @param text  the file's content
-/// @param file  its name, for messages
-/// @throws InputError naming file, line and, where there is one, column
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
-CsvTable ParseCsvTable(std::string_view text, std::string file);
-
-/// Parses a file as ParseCsvTable() does, plain or compressed by gzip.
 /// @param path         kStandardInput reads that, called "standard input" in messages
 /// @param encoding     as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS, GB18030 or
 ///   Windows-1252 by the first bytes, with a note of the latter three

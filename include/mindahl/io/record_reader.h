@@ -38,12 +38,6 @@ struct ChosenColumn {
   bool is_clock = false;  ///< its cells are times of day
 };
 
-/// Rows that were left out, since a cell that is used is empty or holds no number.
-struct LeftOutRows {
-  std::size_t count = 0;
-  std::size_t first_line = 0;  ///< in the file, 1-based
-};
-
 /// Locates a record within a file that holds several constant loads.
 struct LoadPiece {
   double normal_load = 0.0;    ///< [N], the median
