@@ -140,9 +140,7 @@ void AddTrack(py::module_& module) {
       .def_property(
           "skips_broken_rows",
           [](const TrackRequest& self) { return self.fit.columns.skip_broken_rows; },
-          [](TrackRequest& self, bool skips) {
-            self.fit.columns.skip_broken_rows = skips;
-          });
+          [](TrackRequest& self, bool skips) { self.fit.columns.skip_broken_rows = skips; });
   module.def(
       "track",
       [](const TrackRequest& request, const std::vector<NamedRecord>& records) {
