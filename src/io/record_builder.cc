@@ -146,70 +146,105 @@ void RecordBuilder::ChooseTime(const ColumnNames& names, const Expression& given
   file_.time->is_clock = column.is_clock;
 }
 
+double RecordBuilder::Channel::ValueAt(const CsvTable& table, std::size_t row) const {
+  double value = sum.offset;
+  for (const Expression::Term& term : sum.terms) {
+    value += term.weight * table.columns[term.column].values[row];
+  }
+  return value;
+}
+
 std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
+  const std::size_t rows = table.rows();
+  Channel* time = nullptr;
+  for (Channel& channel : channels_) {
+    channel.values = table.columns[channel.sum.terms.front().column].values;
+    if (!channel.sum.is_plain()) {
+      for (std::size_t row = 0; row < rows; ++row)
+        channel.values[row] = channel.ValueAt(table, row);
+    }
+    if (channel.role == Role::kTime) {
+      time = &channel;
+    } else {
+      for (double& value : channel.values) value = channel.unit.ToSi(value);
+    }
+  }
   auto block = table.blocks.begin();
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::size_t number = rows_++;
+  std::string refusal;
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < rows; ++row, ++rows_) {
     if (block != table.blocks.end() && row == *block) {
       begins_block_ = true;
       ++block;
     }
-    bool is_missing = false;
-    const std::string fault = Convert(table, row, is_missing);
-    if (!fault.empty()) {
-      if (!is_missing && !skip_broken_) return fault;
+    bool is_whole = true;
+    for (const Channel& channel : channels_) {
+      is_whole = is_whole && std::isfinite(channel.values[row]);
+    }
+    if (!is_whole || (time != nullptr && !Follows(*time, row))) {
+      bool is_missing = false;
+      std::string fault = FaultOf(table, row, is_missing);
+      if (!is_missing && !skip_broken_) {
+        refusal = std::move(fault);
+        break;
+      }
       left_out_.Add(table.lines[row], fault);
       continue;
     }
     begins_block_ = false;
-    for (const Channel& channel : channels_)
-      ColumnOf(samples, channel.role).push_back(channel.value);
-    if (!file_.time && interval_ > 0) {
-      samples.time.push_back(static_cast<double>(number) * interval_);
+    for (Channel& channel : channels_) channel.values[kept] = channel.values[row];
+    ++kept;
+    if (time == nullptr && interval_ > 0) {
+      samples.time.push_back(static_cast<double>(rows_) * interval_);
     }
     samples.lines.push_back(table.lines[row]);
   }
-  return "";
+  for (const Channel& channel : channels_) {
+    std::vector<double>& to = ColumnOf(samples, channel.role);
+    const auto end = channel.values.begin() + static_cast<std::ptrdiff_t>(kept);
+    to.insert(to.end(), channel.values.begin(), end);
+  }
+  return refusal;
 }
 
-/// Computes the values of a row.
-/// @returns its fault; "" where there is none
-std::string RecordBuilder::Convert(const CsvTable& table, std::size_t row, bool& is_missing) {
-  for (Channel& channel : channels_) {
-    channel.value = channel.sum.offset;
+/// Converts a time.
+/// @returns false where it is before the last
+bool RecordBuilder::Follows(Channel& time, std::size_t row) {
+  double& value = time.values[row];
+  value -= time_origin_;
+  if (begins_block_ && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
+  value += shift_;
+  time_above_ = std::exchange(last_time_, value);
+  if (value < time_above_) return false;
+  if (std::isfinite(time_above_)) last_step_ = value - time_above_;
+  value = time.unit.ToSi(value);
+  return std::isfinite(value);
+}
+
+/// Describes what is wrong with a row.
+std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+  for (const Channel& channel : channels_) {
     for (const Expression::Term& term : channel.sum.terms) {
       const TableColumn& column = table.columns[term.column];
-      channel.value += term.weight * column.values[row];
       if (!std::isnan(column.values[row])) continue;
-      const bool is_fault = !column.fault.empty() && column.fault_row == row;
-      is_missing = !is_fault;
-      return is_fault || column.missing.empty() ? column.fault : column.missing;
+      is_missing = column.fault.empty() || column.fault_row != row;
+      return is_missing && !column.missing.empty() ? column.missing : column.fault;
     }
   }
-  for (Channel& channel : channels_) {
-    const auto at = [&] {
-      return fmt::format("{}:{}:{}", name_, table.lines[row], channel.sum.terms.front().column + 1);
-    };
-    double value = channel.value;
-    if (channel.role == Role::kTime) {
-      value -= time_origin_;
-      if (begins_block_ && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
-      value += shift_;
-      const double above = std::exchange(last_time_, value);
-      if (value < above) {
-        return fmt::format(
-            "{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
-            "rows, split the file where a clock starts again, or rename the column if it holds no "
-            "time",
-            at(), value, channel.unit.symbol, above, channel.unit.symbol);
-      }
-      if (std::isfinite(above)) last_step_ = value - above;
-    }
-    channel.value = channel.unit.ToSi(value);
-    if (!std::isfinite(channel.value)) {
-      return fmt::format("{}: {} = {} {} is too large: must be below 1.8e308 in SI units", at(),
+  for (const Channel& channel : channels_) {
+    const std::string at =
+        fmt::format("{}:{}:{}", name_, table.lines[row], channel.sum.terms.front().column + 1);
+    const double value = channel.ValueAt(table, row);
+    if (!std::isfinite(channel.unit.ToSi(value))) {
+      return fmt::format("{}: {} = {} {} is too large: must be below 1.8e308 in SI units", at,
                          channel.name, value, channel.unit.symbol);
     }
+    if (channel.role != Role::kTime || !(last_time_ < time_above_)) continue;
+    return fmt::format(
+        "{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
+        "rows, split the file where a clock starts again, or rename the column if it holds no "
+        "time",
+        at, last_time_, channel.unit.symbol, time_above_, channel.unit.symbol);
   }
   return "";
 }

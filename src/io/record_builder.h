@@ -41,12 +41,15 @@ class RecordBuilder {
     Expression sum;  // of columns
     Unit unit;
     std::string_view name;
-    double value = 0.0;  // of the row
+    std::vector<double> values = {};  // of a table's rows
+
+    [[nodiscard]] double ValueAt(const CsvTable& table, std::size_t row) const;
   };
   void Choose(const ColumnNames& names, Role role, Expression columns, const std::string& text,
               ChosenColumn& described);
   void ChooseTime(const ColumnNames& names, const Expression& columns, const std::string& text);
-  std::string Convert(const CsvTable& table, std::size_t row, bool& is_missing);
+  bool Follows(Channel& time, std::size_t row);
+  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
 
   std::string name_;
   RecordFile file_;
@@ -60,6 +63,7 @@ class RecordBuilder {
   double shift_ = 0.0;        // of the times of a block, in their unit
   bool begins_block_ = false;
   double last_time_ = -std::numeric_limits<double>::infinity();
+  double time_above_ = 0.0;  // the one before the last
   double last_step_ = 0.0;
 };
 

@@ -199,7 +199,7 @@ void LinePieces::ReadMore() {
   if (bytes_ == size)
     ends_lines_in_cr_ = added.find('\n') == added.npos && added.find('\r') != added.npos;
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
-  lines_ += static_cast<std::uintmax_t>(std::ranges::count(added, '\n'));
+  for (std::size_t at = added.find('\n'); at != added.npos; at = added.find('\n', at + 1)) ++lines_;
 }
 
 std::size_t LinePieces::ReadBytes(char* to) {

@@ -92,9 +92,8 @@ void TableReader::ReadRow(std::string_view row) {
     if (!cell.is_missing) column.fault_row = table_.rows();
   }
   table_.lines.push_back(row_line_);
-  for (std::size_t k = 0; k < wanted_.size(); ++k) {
-    table_.columns[wanted_[k]].values.push_back(values_[k]);
-  }
+  auto value = values_.begin();
+  for (const std::size_t column : wanted_) table_.columns[column].values.push_back(*value++);
 }
 
 /// Reads the values of a row.
@@ -105,7 +104,7 @@ bool TableReader::ReadCells(std::string_view row) {
   std::size_t column = 0;
   for (; column < places_.size() && cells.has_next(); ++column) {
     if (places_[column] < 0) {
-      has_content = !cells.Take().empty() || has_content;
+      has_content = cells.Skip() || has_content;
       continue;
     }
     const auto place = static_cast<std::size_t>(places_[column]);
@@ -122,6 +121,9 @@ bool TableReader::ReadCells(std::string_view row) {
         mark_line_ = row_line_;
       }
     }
+  }
+  if (has_content && cell_faults_.empty() && column == places_.size() && !cells.has_next()) {
+    return true;
   }
   const std::size_t count = column;
   std::string too_many;
@@ -202,7 +204,7 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
   std::size_t column = 0;
   for (; column < layout_.columns && !layout_.mostly_numbers[column]; ++column) {
-    if (cells.has_next()) static_cast<void>(cells.Take());
+    if (cells.has_next()) cells.Skip();
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
   if (column == layout_.columns ||
