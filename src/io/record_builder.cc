@@ -129,7 +129,7 @@ void RecordBuilder::ChooseTime(const ColumnNames& names, const Expression& given
     const auto unit = TimeUnit(names.UnitOf(first, "--time"));
     if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
   } else if (columns.unit.empty() && columns.is_plain()) {
-    const std::string_view word = EvidenceOf(names.split(first).name).word;
+    const std::string_view word = names[first].name.evidence.word;
     columns.unit = ImpliedTimeUnit(word, start);
     if (columns.unit.empty()) {
       columns.unit = "s";

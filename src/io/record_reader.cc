@@ -82,24 +82,46 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
 }
 
-/// The time of a table, by which another is joined to it; empty where it has none.
+/// Returns the columns that are given for a role, else the one that is recognised; none where there
+/// is none.
+Expression FindColumns(const ColumnNames& names, Role role, const std::string& text,
+                       const std::vector<bool>& taken) {
+  Expression columns = names.Read(text, RulesOf(role));
+  const std::optional<std::size_t> found =
+      columns.terms.empty() ? FindColumnOf(names, role, taken) : std::nullopt;
+  if (found) columns.terms = {{*found, 1.0}};
+  return columns;
+}
+
+/// Returns the numbers of a role's columns in SI units.
+/// @throws InputError where one is missing or too large
+std::vector<double> NumbersOf(const ColumnNames& names, const RoleRules& rules, Expression columns,
+                              std::vector<std::string>& notes) {
+  const CsvTable& table = names.table();
+  const Unit unit = FindUnit(names, rules, columns, notes);
+  std::vector<double> values(table.rows(), columns.offset);
+  for (const Expression::Term& term : columns.terms) {
+    const std::span<const double> numbers = table.Numbers(term.column);
+    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
+  }
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const double value = std::exchange(values[row], unit.ToSi(values[row]));
+    if (std::isfinite(values[row])) continue;
+    throw InputError(fmt::format(
+        "{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units", table.file,
+        table.lines[row], columns.terms.front().column + 1, rules.name, value, unit.symbol));
+  }
+  return values;
+}
+
+/// Returns the times of a table, by which another is joined to it; none where it has none.
 std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
-  const std::vector<bool> taken(table.columns.size());
-  Expression time = given.empty() ? Expression{} : names.Read(given, RulesOf(Role::kTime));
-  if (time.terms.empty()) {
-    const std::optional<std::size_t> column = FindColumnOf(names, Role::kTime, taken);
-    if (!column) return {};
-    time.terms = {{*column, 1.0}};
-  }
-  const std::size_t column = time.terms.front().column;
+  Expression time = FindColumns(names, Role::kTime, given, std::vector<bool>(names.size()));
+  if (time.terms.empty()) return {};
+  if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
-  const Unit unit = table.columns[column].is_clock
-                        ? Unit{.symbol = "s"}
-                        : FindUnit(names, RulesOf(Role::kTime), time, notes);
-  std::vector<double> times(table.columns[column].values);
-  for (double& value : times) value = unit.ToSi(value);
-  return times;
+  return NumbersOf(names, RulesOf(Role::kTime), std::move(time), notes);
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
@@ -145,33 +167,19 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
 /// recognised. Taking SI for granted is the documented default here.
 std::vector<double> ReadPathColumn(const CsvTable& table, Role role, const std::string& text) {
   const ColumnNames names(table);
-  const std::vector<bool> taken(table.columns.size());
+  const std::vector<bool> taken(names.size());
   Expression columns = names.Read(text, RulesOf(role));
   if (columns.terms.empty()) {
     const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
     const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
     columns.terms = {{found.value_or(0), 1.0}};
   }
-  const Dimension dimension = columns.unit.empty() ? names.DimensionOf(columns.terms.front().column)
+  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
                                                    : DimensionOfUnit(columns.unit);
   const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
-  const bool may_be = role != Role::kForce;
   std::vector<std::string> notes;
-  const RoleRules& rules = RulesOf(role, is_torsional && may_be);
-  const Unit unit = FindUnit(names, rules, columns, notes);
-  std::vector<double> values(table.rows(), columns.offset);
-  for (const Expression::Term& term : columns.terms) {
-    const std::span<const double> numbers = table.Numbers(term.column);
-    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
-  }
-  for (std::size_t row = 0; row < values.size(); ++row) {
-    const double value = std::exchange(values[row], unit.ToSi(values[row]));
-    if (std::isfinite(values[row])) continue;
-    throw InputError(fmt::format(
-        "{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units", table.file,
-        table.lines[row], columns.terms.front().column + 1, rules.name, value, unit.symbol));
-  }
-  return values;
+  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), std::move(columns),
+                   notes);
 }
 
 }  // namespace
@@ -220,25 +228,24 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   SweepFile sweep;
   sweep.lines = table.lines;
   sweep.notes = table.notes;
-  std::vector<bool> taken(table.columns.size());
+  std::vector<bool> taken(names.size());
+  const auto is_chosen = [&](Role role, const std::string& text) {
+    return !names.Read(text, RulesOf(role)).terms.empty();
+  };
   const auto find = [&](Role role, const std::string& text) {
-    Expression found = names.Read(text, RulesOf(role));
-    if (found.terms.empty()) {
-      if (const auto column = FindColumnOf(names, role, taken)) found.terms = {{*column, 1.0}};
-    }
+    Expression found = FindColumns(names, role, text, taken);
     if (!found.terms.empty()) taken[found.terms.front().column] = true;
     return found;
-  };
-  const auto is_chosen = [&](const std::string& text, Role role) {
-    return !names.Read(text, RulesOf(role)).terms.empty();
   };
   Expression responses = find(Role::kResponse, response);
   Expression displacement;
   Expression force;
-  if (!is_chosen(columns.force, Role::kForce))
+  if (!is_chosen(Role::kForce, columns.force)) {
     displacement = find(Role::kDisplacement, columns.displacement);
-  if (!is_chosen(columns.displacement, Role::kDisplacement))
+  }
+  if (!is_chosen(Role::kDisplacement, columns.displacement)) {
     force = find(Role::kForce, columns.force);
+  }
   if (responses.terms.empty()) {
     throw InputError(
         fmt::format("{}: no column of a stiffness or compliance is recognised: name it "
@@ -256,24 +263,19 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
       responses.unit.empty() ? names.UnitOf(of_response, "--response") : responses.unit;
   sweep.is_compliance =
       LengthUnit(stated.substr(0, stated.find('/'))).has_value() ||
-      (stated.empty() && EvidenceOf(names.split(of_response).name).word.ends_with("compliance"));
-  const auto read = [&](Role role, Expression& of) {
-    const RoleRules& rules = RulesOf(role);
-    const Unit unit = FindUnit(names, rules, of, sweep.notes);
+      (stated.empty() && names[of_response].name.evidence.word.ends_with("compliance"));
+  const auto read = [&](Role role, Expression of) {
     const std::size_t column = of.terms.front().column;
-    std::vector<double> values;
-    for (const double number : table.Numbers(column)) {
-      values.push_back(unit.ToSi(of.terms.front().weight * number + of.offset));
-      if (values.back() > 0 && std::isfinite(values.back())) continue;
-      throw InputError(
-          fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row", table.file,
-                      table.lines[values.size() - 1], column + 1, values.back()));
-    }
-    return values;
+    std::vector<double> values = NumbersOf(names, RulesOf(role), std::move(of), sweep.notes);
+    const auto bad = std::ranges::find_if(values, [](double value) { return !(value > 0); });
+    if (bad == values.end()) return values;
+    throw InputError(
+        fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row", table.file,
+                    table.lines[static_cast<std::size_t>(bad - values.begin())], column + 1, *bad));
   };
-  sweep.amplitude = read(sweep.over_force ? Role::kForce : Role::kDisplacement,
-                         sweep.over_force ? force : displacement);
-  sweep.response = read(Role::kResponse, responses);
+  sweep.amplitude = sweep.over_force ? read(Role::kForce, std::move(force))
+                                     : read(Role::kDisplacement, std::move(displacement));
+  sweep.response = read(Role::kResponse, std::move(responses));
   return sweep;
 }
 
