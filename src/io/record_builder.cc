@@ -15,7 +15,7 @@ namespace {
 
 /// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
 std::string ImpliedTimeUnit(std::string_view word, double first) {
-  if (word == "millis" || word == "msec") return "ms";
+  if (word == "ms" || word == "millis" || word == "msec") return "ms";
   if (word == "micros") return "us";
   if (word == "nanos") return "ns";
   constexpr std::array<std::pair<double, std::string_view>, 4> kScales = {

@@ -325,6 +325,8 @@ class RoleAssigner {
     const RoleRules& rules = RulesOf(role);
     for (std::size_t column = 0; column < names_.size(); ++column) {
       if (EvidenceFor(names_[column], role) <= 0 || names_[column].is_numeric) continue;
+      const TableColumn& of = names_.table().columns[column];
+      if (!of.values.empty() && !of.fault.empty()) throw InputError(of.fault);
       throw InputError(fmt::format(
           "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
           names_.table().file, names_.Label(column), rules.name, rules.option));

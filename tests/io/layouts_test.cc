@@ -345,6 +345,7 @@ TEST(Expression, AddsScalesAndShiftsColumns) {
       << "each in its own unit";
   EXPECT_EQ(ReadColumns(text, "1", "raw*0.5-10 [mN]").record.force, (Numbers{0.04, 0.09}));
   EXPECT_EQ(ReadColumns(text, "1", "-2*raw/4").record.force, (Numbers{-50, -100}));
+  EXPECT_EQ(ReadColumns(text, "1", "-raw").record.force, (Numbers{-100, -200}));
   EXPECT_EQ(ReadColumns(text, "1", "raw [kN]").record.force, (Numbers{1e5, 2e5}));
   const RecordFile file = ReadColumns(text, "1 [um]", "cell1 - cell2");
   EXPECT_EQ(file.record.displacement, (Numbers{1e-6, 2e-6}));
@@ -365,7 +366,7 @@ TEST(Expression, RefusesWhatItCannotBe) {
   };
   EXPECT_THAT(refusal("F*"), HasSubstr("--force F*: is incomplete"));
   EXPECT_THAT(refusal("F*G"), HasSubstr("multiplies columns"));
-  EXPECT_THAT(refusal("2-3"), HasSubstr("write #3 for the column, 3.0 for the number"));
+  EXPECT_THAT(refusal("2-3"), HasSubstr("or #3 for the third column"));
   EXPECT_THAT(refusal("F+H"), HasSubstr("no column is called 'H'"));
   EXPECT_THAT(refusal("9"), HasSubstr("there is no column 9"));
   EXPECT_THAT(refusal("F*0"), HasSubstr("a factor that is 0"));
