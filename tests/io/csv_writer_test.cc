@@ -1,8 +1,6 @@
 
 
-#include "mindahl/io/csv_table.h"
-#include "support/prelude.h"
-#include "temporary_directory.h"
+#include "reading.h"
 
 namespace mindahl::io::csv_writer_test {
 namespace {
@@ -11,8 +9,6 @@ CsvTable Parse(const std::string& text) {
   const TemporaryDirectory directory;
   return ReadCsvTable(directory.Write("x.csv", text));
 }
-
-using Numbers = std::vector<double>;
 
 TEST(CsvWriter, WritesHeaderAndRows) {
   const Numbers time = {0, 1};
