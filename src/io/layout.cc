@@ -96,23 +96,26 @@ Reading ReadAs(std::span<const SampledRow> sampled, char delimiter) {
     reading.columns = columns;
   }
   std::vector<std::size_t> numbers;
+  std::vector<std::size_t> meant;  // and what is meant as one
   for (const Row& row : reading.rows) {
     if (!row.HasData()) continue;
     if (row.CanHave(reading.columns) || row.Columns() > reading.columns) {
       reading.most_cells = std::max(reading.most_cells, row.Columns());
     }
     numbers.resize(std::max(numbers.size(), row.kinds.size()));
+    meant.resize(numbers.size());
     for (std::size_t column = 0; column < row.kinds.size(); ++column) {
       const Cell::Kind kind = row.kinds[column];
       if (kind == Cell::Kind::kNumber || kind == Cell::Kind::kClock) ++numbers[column];
+      if (kind != Cell::Kind::kText && kind != Cell::Kind::kMissing) ++meant[column];
     }
     if (row.Columns() != reading.columns) continue;
     reading.score +=
         static_cast<long>(row.Numbers()) - static_cast<long>(row.Count(Cell::Kind::kBroken));
   }
-  for (const std::size_t count : numbers) {
-    reading.holds_numbers.push_back(count > 0);
-    reading.mostly_numbers.push_back(2 * count > most_rows);
+  for (std::size_t column = 0; column < numbers.size(); ++column) {
+    reading.holds_numbers.push_back(meant[column] > 0);
+    reading.mostly_numbers.push_back(2 * numbers[column] > most_rows);
   }
   return reading;
 }
