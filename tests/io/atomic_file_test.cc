@@ -37,18 +37,13 @@ TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
   EXPECT_EQ(CloseFile(file), 0);
 }
 
-TEST(AtomicFile, WritesEmptyFile) {
-  const TemporaryDirectory directory;
-  WriteFileAtomically(directory.path() / "out", "");
-  EXPECT_EQ(FileContent(directory.path() / "out"), "");
-  EXPECT_EQ(directory.FileCount(), 1u);
-}
-
-TEST(AtomicFile, ReplacesLongerFile) {
+TEST(AtomicFile, ReplacesLongerFileAlsoByNothing) {
   const TemporaryDirectory directory;
   const auto path = directory.Write("out", "a long content");
-  WriteFileAtomically(path, "short");
-  EXPECT_EQ(FileContent(path), "short");
+  for (const char* content : {"short", ""}) {
+    WriteFileAtomically(path, content);
+    EXPECT_EQ(FileContent(path), content);
+  }
 }
 
 TEST(AtomicFile, LeavesOldContentToReaderThatHasTheFileOpen) {
@@ -61,17 +56,13 @@ TEST(AtomicFile, LeavesOldContentToReaderThatHasTheFileOpen) {
   EXPECT_EQ(content, "old");
 }
 
-TEST(AtomicFile, GivesNewFilePermissionsOfUmask) {
+TEST(AtomicFile, GivesANewFilePermissionsOfTheUmaskAndKeepsThoseOfAnother) {
   const TemporaryDirectory directory;
+  const auto path = directory.path() / "out";
   const mode_t old_mask = ::umask(027);
-  WriteFileAtomically(directory.path() / "out", "x");
+  WriteFileAtomically(path, "x");
   ::umask(old_mask);
-  EXPECT_EQ(Permissions(directory.path() / "out"), 0640u);
-}
-
-TEST(AtomicFile, KeepsPermissionsOfExistingFile) {
-  const TemporaryDirectory directory;
-  const auto path = directory.Write("out", "old");
+  EXPECT_EQ(Permissions(path), 0640u);
   ::chmod(path.c_str(), 0604);
   WriteFileAtomically(path, "new");
   EXPECT_EQ(Permissions(path), 0604u);
@@ -121,23 +112,17 @@ TEST(AtomicFile, AppendsToRegularFileBehindDescriptor) {
   EXPECT_EQ(FileContent(path), "begun continued");
 }
 
-TEST(AtomicFile, NamesMissingDirectoryAndReason) {
+TEST(AtomicFile, SaysWhyItCannotWrite) {
   const TemporaryDirectory directory;
+  const auto refusal = [](const std::filesystem::path& path) {
+    return MessageOf<InputError>([&] { WriteFileAtomically(path, "x"); });
+  };
   const auto path = directory.path() / "none" / "x.csv";
-  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(path, "x"); }),
-            "cannot write '" + path.string() + "': No such file or directory");
-}
-
-TEST(AtomicFile, RefusesDirectory) {
-  const TemporaryDirectory directory;
-  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(directory.path(), "x"); }),
+  EXPECT_EQ(refusal(path), "cannot write '" + path.string() + "': No such file or directory");
+  EXPECT_EQ(refusal(directory.path()),
             "cannot write '" + directory.path().string() + "': Is a directory");
-}
-
-TEST(AtomicFile, ReportsFullDevice) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  EXPECT_EQ(MessageOf<InputError>([] { WriteFileAtomically("/dev/full", "x"); }),
-            "cannot write '/dev/full': No space left on device");
+  EXPECT_EQ(refusal("/dev/full"), "cannot write '/dev/full': No space left on device");
 }
 
 TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {

@@ -1,23 +1,14 @@
 
 
-#include "mindahl/io/csv_table.h"
-#include "mindahl/io/record_reader.h"
-#include "support/prelude.h"
+#include "reading.h"
 
 namespace mindahl::io::column_table_test {
 namespace {
 
-using Numbers = std::vector<double>;
-
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::string MessageOf(std::vector<NamedColumn> columns) {
-  try {
-    RecordOf(TableOfColumns(std::move(columns), "frame"));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+std::string Said(const std::vector<NamedColumn>& columns) {
+  return MessageOf<InputError>([&] { RecordOf(TableOfColumns(columns, "frame")); });
 }
 
 TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
@@ -32,24 +23,17 @@ TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
 }
 
 TEST(ColumnTable, NamesRowAndColumnOfAMissingNumber) {
-  EXPECT_EQ(MessageOf({{"x [m]", {0, 1, 2}}, {"F [N]", {0, kMissing, 2}}}),
+  EXPECT_EQ(Said({{"x [m]", {0, 1, 2}}, {"F [N]", {0, kMissing, 2}}}),
             "frame:2:2: holds no number; 1 of 3 rows are so: --broken-rows skip leaves them out");
 }
 
-// 1.000 in a file may be a thousand; a double is what it is.
-TEST(ColumnTable, TakesNoNumberForAThousand) {
-  const RecordFile file = RecordOf(TableOfColumns(
-      {{"x [m]", {998, 999, 1.0, 1.001}}, {"F [N]", {997, 998, 999, 1.0}}}, "frame"));
-  EXPECT_EQ(file.record.displacement, (Numbers{998, 999, 1.0, 1.001}));
-}
-
 TEST(ColumnTable, RefusesColumnsOfTwoLengthsAndNone) {
-  EXPECT_EQ(MessageOf({{"x", {0, 1}}, {"F", {0}}}),
+  EXPECT_EQ(Said({{"x", {0, 1}}, {"F", {0}}}),
             "frame: 'x' has 2 rows and 'F' 1: give as many of both");
-  EXPECT_EQ(MessageOf({{"x", {0, 1}}, {"F", {0, 1, 2}}}),
+  EXPECT_EQ(Said({{"x", {0, 1}}, {"F", {0, 1, 2}}}),
             "frame: 'x' has 2 rows and 'F' 3: give as many of both");
-  EXPECT_EQ(MessageOf({}), "frame: there is no column");
-  EXPECT_EQ(MessageOf({{"x", {}}}), "frame: there is no row");
+  EXPECT_EQ(Said({}), "frame: there is no column");
+  EXPECT_EQ(Said({{"x", {}}}), "frame: there is no row");
 }
 
 }  // namespace

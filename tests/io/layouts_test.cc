@@ -1,6 +1,5 @@
 #include <sstream>
 
-#include "core/text.h"
 #include "reading.h"
 
 // Files as instruments and programs write them, each with a row or two that were written by hand.
@@ -8,7 +7,7 @@ namespace mindahl::io::layouts_test {
 namespace {
 
 // A name, the columns of displacement and force, their first values [m], [N] or [rad], [N m], and
-// the last time [s]; then the text, in which → is a tab and ¶ ends a line.
+// the last time [s]; then the text.
 const std::string kLayouts = R"layouts(
 LabViewWithUnitsAndACommentThatRowsLack 2 3 1.5e-3 2.5 0.01 | LabVIEW Measurement→¶
   Decimal_Separator→,¶X_Columns→One¶Time→10:11:12,5¶***End_of_Header***→¶→¶Channels→2→→¶
@@ -96,21 +95,11 @@ TwoForcesAndDepths 4 5 1.5e-6 2.5e-6 0.1 |
   101→500→0.1→2→3¶
 )layouts";
 
-std::string Replaced(std::string text, const std::string& sign, const std::string& by) {
-  for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign)) {
-    text.replace(at, sign.size(), by);
-  }
-  return text;
-}
-
 TEST(Layouts, AreReadWithoutAnOption) {
-  std::size_t count = 0;
-  // A layout begins with a line that is not indented.
-  std::string layouts = Replaced(Replaced(kLayouts, "\n  ", ""), "→", "\t");
-  for (const std::string_view layout : PartsOf(layouts, '\n')) {
-    const std::size_t bar = layout.find(" | ");
-    if (bar == std::string_view::npos) continue;
-    std::istringstream head{std::string(layout.substr(0, bar))};
+  const std::vector<Strings> layouts = RowsOf(kLayouts);
+  EXPECT_EQ(layouts.size(), 42U);
+  for (const Strings& layout : layouts) {
+    std::istringstream head(layout[0]);
     std::string name;
     std::size_t displacement = 0;
     std::size_t force = 0;
@@ -119,19 +108,17 @@ TEST(Layouts, AreReadWithoutAnOption) {
     std::string last_time;
     head >> name >> displacement >> force >> first_displacement >> first_force >> last_time;
     SCOPED_TRACE(name);
-    const RecordFile file = Read(Replaced(std::string(layout.substr(bar + 3)), "¶", "\n"));
+    const RecordFile file = Read(layout[1]);
     EXPECT_EQ(file.displacement.index, displacement);
     EXPECT_EQ(file.force.index, force);
     EXPECT_DOUBLE_EQ(file.record.displacement.front(), first_displacement);
     EXPECT_DOUBLE_EQ(file.record.force.front(), first_force);
-    EXPECT_EQ(file.is_torsional, layout.substr(0, bar).ends_with("torsional"));
+    EXPECT_EQ(file.is_torsional, layout[0].ends_with("torsional"));
     ASSERT_EQ(file.record.time.empty(), last_time == "-");
     if (last_time != "-") {
       EXPECT_NEAR(file.record.time.back(), std::stod(last_time), 1e-9);
     }
-    ++count;
   }
-  EXPECT_EQ(count, 42U);
 }
 
 TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {

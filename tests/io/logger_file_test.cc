@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 #include <iconv.h>
 
-#include "mindahl/core/units.h"
 #include "reading.h"
 
 // Files as loggers write them: each is read whole and as a stream, to the same numbers.
 namespace mindahl::io::logger_file_test {
 namespace {
-
-using ::testing::DoubleEq;
 
 /// Returns a text in another encoding, by iconv of the system: what the reader must undo.
 std::string Encoded(std::string text, const char* encoding) {
@@ -23,8 +20,6 @@ std::string Encoded(std::string text, const char* encoding) {
   encoded.resize(encoded.size() - room);
   return encoded;
 }
-
-// --- Encodings ----------------------------------------------------------------------------------
 
 TEST(LoggerFile, IsTheSameRecordInEveryEncoding) {
   const std::string western = "Weg [µm];Kraft [N]\n0;1.5\n12;-2.5\n7;3\n";
@@ -77,44 +72,6 @@ TEST(LoggerFile, IsReadInTheEncodingThatIsGiven) {
   EXPECT_THAT(Refusal("x [µm],F [N]\n1,2\n", columns), HasSubstr("--encoding no-such"));
 }
 
-// --- Calibration and units ----------------------------------------------------------------------
-
-TEST(LoggerFile, IsCalibratedByFactorAndOffset) {
-  RecordColumns columns;
-  columns.force = "F*98.0665-245.16625";
-  columns.displacement = "-2*x";
-  const RecordFile file = Read("x [mm],F [V]\n1,2.5\n3,3.5\n", columns);
-  EXPECT_THAT(file.record.force, ElementsAre(::testing::DoubleNear(0, 1e-12), DoubleEq(98.0665)));
-  EXPECT_THAT(file.record.displacement, ElementsAre(DoubleEq(-2e-3), DoubleEq(-6e-3)))
-      << "in the header's unit, which is one of a displacement";
-  columns.force += " [kN]";
-  EXPECT_THAT(Read("x [mm],F [V]\n1,2.5\n3,3.5\n", columns).record.force,
-              ElementsAre(::testing::DoubleNear(0, 1e-9), DoubleEq(98066.5)));
-}
-
-TEST(LoggerFile, MayBeInGramsAndInches) {
-  constexpr double kGravity = 9.80665;  // [m/s²], standard
-  const RecordFile file = Read("x [inch],F [g]\n1,1000\n2,0\n");
-  EXPECT_THAT(file.record.displacement, ElementsAre(DoubleEq(0.0254), DoubleEq(0.0508)));
-  EXPECT_THAT(file.record.force, ElementsAre(DoubleEq(kGravity), 0.0));
-  for (const auto& [symbol, metres] : {std::pair{"cm", 0.01},
-                                       {"ft", 0.3048},
-                                       {"feet", 0.3048},
-                                       {"in", 0.0254},
-                                       {"inches", 0.0254},
-                                       {"mil", 2.54e-5}}) {
-    EXPECT_DOUBLE_EQ(LengthUnit(symbol)->ToSi(1.0), metres) << symbol;
-  }
-  for (const auto& [symbol, newtons] : {std::pair{"gf", 1e-3 * kGravity},
-                                        {"kg", kGravity},
-                                        {"daN", 10.0},
-                                        {"lb", 4.4482216152605}}) {
-    EXPECT_DOUBLE_EQ(ForceUnit(symbol)->ToSi(1.0), newtons) << symbol;
-  }
-}
-
-// --- What stands around the data ----------------------------------------------------------------
-
 std::string Preamble(int lines) {
   std::string text;
   for (int k = 0; k < lines; ++k) {
@@ -150,46 +107,13 @@ TEST(LoggerFile, MayHaveAColumnThatOnlySomeRowsHave) {
   EXPECT_THAT(Refusal("x,F\n0,1\n1,2,3\n2,3\n"), HasSubstr("one cell too many"));
 }
 
-// --- Times of day -------------------------------------------------------------------------------
-
 TEST(LoggerFile, MayHaveTimesOfDay) {
-  const RecordFile file = Read(
-      "Date/Time,x [mm],F [N]\n2021-12-31 23:59:59.500,0,1\n2022-01-01 00:00:00.250,1,2\n"
-      "2022-01-03 12:30:00,2,3\n");
-  constexpr double kDay = 86'400;
-  EXPECT_THAT(file.record.time, ElementsAre(kDay - 0.5, kDay + 0.25, 3 * kDay + 12.5 * 3600));
-  EXPECT_THAT(file.notes, Contains(HasSubstr("times of day")));
+  EXPECT_THAT(Read("Date/Time,x [mm],F [N]\n2021-12-31 23:59:59.500,0,1\n2022-01-01 00:00:00.250,1,"
+                   "2\n2022-01-03 12:30:00,2,3\n")
+                  .record.time,
+              ElementsAre(86'399.5, 86'400.25, 3 * 86'400 + 12.5 * 3600));
   EXPECT_THAT(Refusal("Time,x [mm],F [N]\n11:00:02,0,1\n11:00:01,1,2\n"),
               StartsWith("loop.csv:3:1: time"));
-}
-
-// --- One file a stroke --------------------------------------------------------------------------
-
-TEST(LoggerFile, JoinsPiecesWhoseClockBeginsAnew) {
-  const auto piece = [&](const std::string& rows) {
-    return Read("time [s],x [m],F [N],c\n" + rows);
-  };
-  const RecordFile joined = Joined(
-      {piece("0,0,1,5\n1,1,2,6\n"), piece("0,2,3,7\n1,3,4,8\n"), piece("7,4,5,9\n8,5,6,1\n")},
-      {"a", "b", "c"});
-  EXPECT_THAT(joined.record.time, ElementsAre(0, 1, 2, 3, 9, 10))
-      << "a clock that begins anew goes on by one step, and keeps its zero from there";
-  EXPECT_THAT(joined.record.force, ElementsAre(1, 2, 3, 4, 5, 6));
-  EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(5, 6, 7, 8, 9, 1));
-  EXPECT_THAT(MessageOf<InputError>([&] {
-                Joined({piece("0,0,1,5\n1,1,2,6\n"), Read("x [m],F [N]\n0,1\n1,2\n")}, {"a", "d"});
-              }),
-              HasSubstr("one of a and d has a time"));
-}
-
-TEST(LoggerFile, JoinedPiecesKeepTheCovariatesThatAllHave) {
-  const RecordFile joined =
-      Joined({Read("x [m],F [N],b,c\n0,1,5,7\n1,2,6,8\n"), Read("x [m],F [N],c\n2,3,9\n3,4,0\n")},
-             {"a", "b"});
-  ASSERT_EQ(joined.record.covariates.size(), 1u);
-  EXPECT_EQ(joined.record.covariates.front().name, "c");
-  EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(7, 8, 9, 0));
-  EXPECT_EQ(joined.covariates.size(), 1u);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/io/record_stream.h"
 #include "support/prelude.h"
@@ -15,6 +16,30 @@ namespace mindahl::io {
 using Strings = std::vector<std::string>;
 using Numbers = std::vector<double>;
 using Lines = std::vector<std::size_t>;
+
+inline std::string Replaced(std::string text, const std::string& sign, const std::string& by) {
+  for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign)) {
+    text.replace(at, sign.size(), by);
+  }
+  return text;
+}
+
+/// Returns the rows of a table of texts whose cells are parted by " | ". A row goes on in lines
+/// that are indented by two blanks; → is a tab, ¶ ends a line, ␍ is a carriage return, and - is
+/// nothing.
+inline std::vector<Strings> RowsOf(const std::string& table) {
+  std::vector<Strings> rows;
+  const std::string joined = Replaced(Replaced(table, "\n  ", ""), " | ", "\v");
+  for (const std::string_view line : PartsOf(joined, '\n')) {
+    if (line.empty()) continue;
+    Strings& row = rows.emplace_back();
+    for (const std::string_view cell : PartsOf(line, '\v')) {
+      const std::string text = Replaced(Replaced(std::string(cell), "¶", "\n"), "␍", "\r");
+      row.push_back(text == "-" ? "" : Replaced(text, "→", "\t"));
+    }
+  }
+  return rows;
+}
 
 inline Samples ReadStreamed(const std::filesystem::path& path, const RecordColumns& columns = {}) {
   RecordStream stream(path, columns);

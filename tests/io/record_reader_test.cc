@@ -15,43 +15,38 @@ Strings Notes(const std::string& text, const RecordColumns& columns = {}) {
 
 // --- Which column is which -----------------------------------------------------------------------
 
-struct Header {
-  std::string names;  ///< of the columns 1, 2, 3, 4, comma-separated
-  std::size_t displacement;
-  std::size_t force;
-  std::size_t time = 0;  ///< 0: absent
-  std::size_t normal_load = 0;
-};
+// Names of columns, and the numbers of those of displacement, force, time and normal load.
+const std::string kHeaders = R"headers(
+displacement,force,time,normal load | 1 | 2 | 3 | 4
+Time [s],Normal [uN],Position [mm],Friction [uN] | 3 | 4 | 1 | 2
+time_s,displacement_m,force_N,velocity_m_s | 2 | 3 | 1 | 0
+TIME,POSITION,TORQUE,CONTROL_TORQUE | 2 | 3 | 1 | 0
+F (kN),x [um],a,b | 2 | 1 | 0 | 0
+t,N,x,T | 3 | 4 | 1 | 2
+t,x,F,T | 2 | 3 | 1 | 0
+n,x,F,t | 2 | 3 | 4 | 0
+F_N,F_t,delta,t | 3 | 2 | 4 | 1
+x_mm,F_N,a,b | 1 | 2 | 0 | 0
+F_N,F,x,t | 3 | 2 | 4 | 1
+Time Stamp,normal-force,tangential_force,stroke | 4 | 3 | 1 | 2
+friction force,force,disp_mm,x | 3 | 1 | 0 | 0
+position,displacement,Q,c | 2 | 3 | 0 | 0
+tangential displacement / mm,displacement / mm,Ft,fn | 1 | 3 | 0 | 4
+δ,f,a,b | 1 | 2 | 0 | 0
+Zeit,Weg,Kraft,Normalkraft | 2 | 3 | 1 | 4
+Temps (s),Effort (N),Déplacement (mm),Charge normale (N) | 3 | 2 | 1 | 4
+)headers";
 
 TEST(RecordReader, RecognizesEachQuantityByItsHeader) {
-  const std::vector<Header> headers = {
-      {"displacement,force,time,normal load", 1, 2, 3, 4},
-      {"Time [s],Normal [uN],Position [mm],Friction [uN]", 3, 4, 1, 2},
-      {"time_s,displacement_m,force_N,velocity_m_s", 2, 3, 1},
-      {"TIME,POSITION,TORQUE,CONTROL_TORQUE", 2, 3, 1},
-      {"F (kN),x [um],a,b", 2, 1},
-      {"t,N,x,T", 3, 4, 1, 2},
-      {"t,x,F,T", 2, 3, 1},
-      {"n,x,F,t", 2, 3, 4},
-      {"F_N,F_t,delta,t", 3, 2, 4, 1},
-      {"x_mm,F_N,a,b", 1, 2},
-      {"F_N,F,x,t", 3, 2, 4, 1},
-      {"Time Stamp,normal-force,tangential_force,stroke", 4, 3, 1, 2},
-      {"friction force,force,disp_mm,x", 3, 1},
-      {"position,displacement,Q,c", 2, 3},
-      {"tangential displacement / mm,displacement / mm,Ft,fn", 1, 3, 0, 4},
-      {"δ,f,a,b", 1, 2},
-      {"Zeit,Weg,Kraft,Normalkraft", 2, 3, 1, 4},
-      {"Temps (s),Effort (N),Déplacement (mm),Charge normale (N)", 3, 2, 1, 4}};
-  for (const Header& header : headers) {
-    SCOPED_TRACE(header.names);
-    const RecordFile file = Read(header.names + "\n1.5,2.5,3.5,4.5\n");
-    EXPECT_EQ(file.displacement.index, header.displacement);
-    EXPECT_EQ(file.force.index, header.force);
-    EXPECT_EQ(file.time ? file.time->index : 0, header.time);
-    EXPECT_EQ(file.normal_load ? file.normal_load->index : 0, header.normal_load);
-    EXPECT_EQ(file.record.time.empty(), header.time == 0);
-    EXPECT_EQ(file.record.normal_load.empty(), header.normal_load == 0);
+  for (const Strings& header : RowsOf(kHeaders)) {
+    SCOPED_TRACE(header[0]);
+    const RecordFile file = Read(header[0] + "\n1.5,2.5,3.5,4.5\n");
+    EXPECT_EQ(file.displacement.index, std::stoul(header[1]));
+    EXPECT_EQ(file.force.index, std::stoul(header[2]));
+    EXPECT_EQ(file.time ? file.time->index : 0, std::stoul(header[3]));
+    EXPECT_EQ(file.normal_load ? file.normal_load->index : 0, std::stoul(header[4]));
+    EXPECT_EQ(file.record.time.empty(), !file.time);
+    EXPECT_EQ(file.record.normal_load.empty(), !file.normal_load);
   }
 }
 
@@ -145,98 +140,65 @@ TEST(RecordReader, NotesSkippedPreamble) {
 
 // --- Broken files and choices, and what is said of each ------------------------------------------
 
+// A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
+const std::string kFaults = R"faults(
+t,x,F¶1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the
+   columns are 't' (1), 'x' (2), 'F' (3)
+1,2,3¶ | y | - | : --displacement y: no column is called 'y' (for the displacement): the file
+   names none of its 3 columns: choose by number
+t,x,F¶1,2,3¶ | - | 4 | : --force 4: there is no column 4: the file has 3 columns
+t,x,F¶1,2,3¶ | - | 0 | : --force 0: there is no column 0: the file has 3 columns
+t,x,F¶1,2,3¶ | x | 2 | : 'x' (column 2) is chosen for the force and for another quantity: choose
+   two columns
+¶x,d,F¶1,2,3¶ | - | - | :2: 'x' (column 1) and 'd' (column 2) may each be the displacement: give
+   --displacement 1 or --displacement 2
+x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the displacement: give
+   --displacement 1 or --displacement 2
+x [mm],x [V],F¶1,2,3¶ | x | - | :1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the
+   displacement: give --displacement 1 or --displacement 2
+x¶1¶ | - | - | : no column for the force: the file has 1 column
+x,F¶1,2¶ | [furlong] | - | : the displacement unit 'furlong' is not known: must be one of m, mm,
+   um, nm, cm, in, ft, mil, pm
+¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
+   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit with
+   --force '3 [N]'
+x [m],p [bar]¶1,2¶ | - | p | :1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force:
+   choose another column; pressure times area is an additional force, for which there is
+   --covariate
+x [m],F¶1,2¶ | - | [MPa] | : 'F' (column 2) is a pressure, in MPa, and no force: choose another
+   column; pressure times area is an additional force, for which there is --covariate
+¶t,x [m],Torque [Nm]¶1,2,3¶ | - | - | : 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in
+   Nm do not match: a torque needs an angle, a force a length; choose other columns, or give their
+   units, as in --force '3 [N]'
+angle,F¶1,2¶ | - | [kN] | : 'angle' (column 1) in rad and 'F' (column 2) in kN do not match: a
+   torque needs an angle, a force a length; choose other columns, or give their units, as in
+   --force '2 [N]'
+left,F¶3,0¶2,5¶1,-5¶ | - | - | :2:1: 'left' (column 1) only falls while 'F' (column 2) goes to
+   and fro, as a clock or a counter does: choose the displacement with --displacement, by name or
+   number: the columns are 'left' (1), 'F' (2)
+time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6:1: time = 0.5 ms is
+   before the 2 ms of the row above: times must not fall; sort the rows, split the file where a
+   clock starts again, or rename the column if it holds no time
+x,F¶furlong,N¶1,2¶ | - | - | :1:1: the unit 'furlong' of 'x' (column 1) is not known for the
+   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   --displacement '1 [m]'
+x / m/s,F¶1,2¶ | - | - | :1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the
+   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   --displacement '1 [m]'
+x [mm],F¶um,N¶1,2¶ | - | - | :1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below
+   it: choose its unit with --displacement '1 [mm]'
+x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3:2: force = 1e+307 kN is too large: must be below 1.8e308
+   in SI units
+x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or remove
+   the row
+time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: fill in the cell or remove
+   the row; 1 of 2 rows are so: --broken-rows skip leaves them out
+)faults";
+
 TEST(RecordReader, RefusesWhatItCannotReadInOneLine) {
-  struct Fault {
-    std::string text;
-    RecordColumns columns;
-    std::string message;
-  };
-  const std::vector<Fault> faults = {
-      {"t,x,F\n1,2,3\n", Choose("y"),
-       "loop.csv: --displacement y: no column is called 'y' (for the displacement): the columns "
-       "are 't' (1), 'x' (2), 'F' (3)"},
-      {"1,2,3\n", Choose("y"),
-       "loop.csv: --displacement y: no column is called 'y' (for the displacement): the file names "
-       "none of its 3 columns: choose by number"},
-      {"t,x,F\n1,2,3\n", Choose("", "4"),
-       "loop.csv: --force 4: there is no column 4: the file has 3 columns"},
-      {"t,x,F\n1,2,3\n", Choose("", "0"),
-       "loop.csv: --force 0: there is no column 0: the file has 3 columns"},
-      {"t,x,F\n1,2,3\n", Choose("x", "2"),
-       "loop.csv: 'x' (column 2) is chosen for the force and for another quantity: choose two "
-       "columns"},
-      {"\nx,d,F\n1,2,3\n",
-       {},
-       "loop.csv:2: 'x' (column 1) and 'd' (column 2) may each be the displacement: give "
-       "--displacement 1 or --displacement 2"},
-      {"x,x,F\n1,2,3\n", Choose("x"),
-       "loop.csv:1: 'x' (column 1) and 'x' (column 2) may each be the displacement: give "
-       "--displacement 1 or --displacement 2"},
-      {"x [mm],x [V],F\n1,2,3\n", Choose("x"),
-       "loop.csv:1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the displacement: give "
-       "--displacement 1 or --displacement 2"},
-      {"x\n1\n", {}, "loop.csv: no column for the force: the file has 1 column"},
-      {"x,F\n1,2\n", Choose("[furlong]"),
-       "loop.csv: the displacement unit 'furlong' is not known: must be one of m, mm, um, nm, cm, "
-       "in, ft, mil, pm"},
-      {"\nt,x [m],F [V]\n1,2,3\n",
-       {},
-       "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be one "
-       "of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit with --force '3 "
-       "[N]'"},
-      {"x [m],p [bar]\n1,2\n", Choose("", "p"),
-       "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose another "
-       "column; pressure times area is an additional force, for which there is --covariate"},
-      {"x [m],F\n1,2\n", Choose("", "[MPa]"),
-       "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another column; "
-       "pressure times area is an additional force, for which there is --covariate"},
-      {"\nt,x [m],Torque [Nm]\n1,2,3\n",
-       {},
-       "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not match: a "
-       "torque needs an angle, a force a length; choose other columns, or give their units, as in "
-       "--force '3 [N]'"},
-      {"angle,F\n1,2\n", Choose("", "[kN]"),
-       "loop.csv: 'angle' (column 1) in rad and 'F' (column 2) in kN do not match: a torque needs "
-       "an angle, a force a length; choose other columns, or give their units, as in --force '2 "
-       "[N]'"},
-      {"left,F\n3,0\n2,5\n1,-5\n",
-       {},
-       "loop.csv:2:1: 'left' (column 1) only falls while 'F' (column 2) goes to and fro, as a "
-       "clock or a counter does: choose the displacement with --displacement, by name or number: "
-       "the columns are 'left' (1), 'F' (2)"},
-      {"time [ms],x [m],F [N]\n1,1,1\n2,2,2\n2,3,3\n# a restart\n0.5,4,4\n",
-       {},
-       "loop.csv:6:1: time = 0.5 ms is before the 2 ms of the row above: times must not fall; sort "
-       "the rows, split the file where a clock starts again, or rename the column if it holds no "
-       "time"},
-      {"x,F\nfurlong,N\n1,2\n",
-       {},
-       "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the displacement: must "
-       "be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with --displacement '1 "
-       "[m]'"},
-      {"x / m/s,F\n1,2\n",
-       {},
-       "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the displacement: "
-       "must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with --displacement "
-       "'1 [m]'"},
-      {"x [mm],F\num,N\n1,2\n",
-       {},
-       "loop.csv:1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below it: choose "
-       "its unit with --displacement '1 [mm]'"},
-      {"x [m],F [kN]\n1,2\n1,1e307\n",
-       {},
-       "loop.csv:3:2: force = 1e+307 kN is too large: must be below 1.8e308 in SI units"},
-      {"x [m],F [N]\n1,2\n3,off\n",
-       {},
-       "loop.csv:3:2: 'off' is not a number: write it like -1.5e-3, or remove the row"},
-      {"time,x [m],F [N]\n1,2,3\nnan,2,3\n",
-       {},
-       "loop.csv:3:1: 'nan' is not a number: fill in the cell or remove the row; 1 of 2 rows are "
-       "so: --broken-rows skip leaves them out"},
-  };
-  for (const Fault& fault : faults) {
-    SCOPED_TRACE(fault.text);
-    EXPECT_EQ(Refusal(fault.text, fault.columns), fault.message);
+  for (const Strings& fault : RowsOf(kFaults)) {
+    SCOPED_TRACE(fault[0]);
+    EXPECT_EQ(Refusal(fault[0], Choose(fault[1], fault[2])), "loop.csv" + fault[3]);
   }
 }
 
