@@ -95,8 +95,8 @@ Expression FindColumns(const ColumnNames& names, Role role, const std::string& t
 
 /// Returns the numbers of a role's columns in SI units.
 /// @throws InputError where one is missing or too large
-std::vector<double> NumbersOf(const ColumnNames& names, const RoleRules& rules, Expression columns,
-                              std::vector<std::string>& notes) {
+std::vector<double> NumbersOf(const ColumnNames& names, const RoleRules& rules,
+                              const Expression& columns, std::vector<std::string>& notes) {
   const CsvTable& table = names.table();
   const Unit unit = FindUnit(names, rules, columns, notes);
   std::vector<double> values(table.rows(), columns.offset);
@@ -161,25 +161,6 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
   table.notes.push_back(fmt::format("{}: its columns follow those of {}, {}", other.file,
                                     table.file, by_time ? "at its times" : "row by row"));
   table.header_line = std::max<std::size_t>(table.header_line, 1);
-}
-
-/// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
-/// recognised. Taking SI for granted is the documented default here.
-std::vector<double> ReadPathColumn(const CsvTable& table, Role role, const std::string& text) {
-  const ColumnNames names(table);
-  const std::vector<bool> taken(names.size());
-  Expression columns = names.Read(text, RulesOf(role));
-  if (columns.terms.empty()) {
-    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
-    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
-    columns.terms = {{found.value_or(0), 1.0}};
-  }
-  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
-                                                   : DimensionOfUnit(columns.unit);
-  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
-  std::vector<std::string> notes;
-  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), std::move(columns),
-                   notes);
 }
 
 }  // namespace
@@ -279,21 +260,25 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   return sweep;
 }
 
-std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
-                                         const std::string& displacement) {
-  return ReadPathColumn(ReadCsvTable(path), Role::kDisplacement, displacement);
-}
-
-LoadedPath ReadLoadedPath(const std::filesystem::path& path, const std::string& displacement,
-                          const std::string& normal_load) {
-  const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, Role::kDisplacement, displacement),
-          ReadPathColumn(table, Role::kNormalLoad, normal_load)};
-}
-
-ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force) {
-  const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, Role::kForce, force), table.lines};
+std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
+                                  const std::string& column) {
+  const Role role = quantity == Imposed::kDisplacement ? Role::kDisplacement
+                    : quantity == Imposed::kForce      ? Role::kForce
+                                                       : Role::kNormalLoad;
+  const ColumnNames names(table);
+  const std::vector<bool> taken(names.size());
+  Expression columns = names.Read(column, RulesOf(role));
+  if (columns.terms.empty()) {
+    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
+    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
+    columns.terms = {{found.value_or(0), 1.0}};
+  }
+  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
+                                                   : DimensionOfUnit(columns.unit);
+  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
+  std::vector<std::string> notes;  // SI is the documented default here
+  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), std::move(columns),
+                   notes);
 }
 
 }  // namespace mindahl::io

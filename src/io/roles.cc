@@ -498,7 +498,7 @@ std::string ColumnNames::Header() const {
   return fmt::format("{}:{}", table_.file, table_.header_line);
 }
 
-Unit FindUnit(const ColumnNames& names, const RoleRules& rules, Expression& columns,
+Unit FindUnit(const ColumnNames& names, const RoleRules& rules, const Expression& columns,
               std::vector<std::string>& notes) {
   const std::size_t first = columns.terms.front().column;
   const std::string& file = names.table().file;
@@ -516,17 +516,13 @@ Unit FindUnit(const ColumnNames& names, const RoleRules& rules, Expression& colu
   }
   const std::string stated = names.UnitOf(first, rules.option);
   const std::optional<Unit> unit = rules.find_unit(stated);
-  for (Expression::Term& term : columns.terms) {
-    const std::string other = names.UnitOf(term.column, rules.option);
-    if (other == stated) continue;
-    const std::optional<Unit> of_other = rules.find_unit(other);
-    if (!unit || !of_other) {
-      throw InputError(fmt::format(
-          "{}: {} and {} are not in units of one quantity: give the unit of "
-          "the sum in brackets, as in {} '… [{}]'",
-          file, names.Label(first), names.Label(term.column), rules.option, rules.si_unit));
-    }
-    term.weight *= of_other->ToSi(1.0) / unit->ToSi(1.0);
+  for (const Expression::Term& term : columns.terms) {
+    if (names.UnitOf(term.column, rules.option) == stated) continue;
+    throw InputError(fmt::format(
+        "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
+        "as "
+        "in {} '… [{}]'",
+        file, names.Label(first), names.Label(term.column), rules.option, rules.si_unit));
   }
   if (unit) return *unit;
   const Unit si{.symbol = std::string(rules.si_unit)};

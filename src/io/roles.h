@@ -77,9 +77,8 @@ class ColumnNames {
 };
 
 /// Finds the unit of a role's columns: as given, of the header, or SI with a note.
-/// @param columns  scaled to that unit, where they have several
-/// @throws InputError for a unit that is none of the role's
-Unit FindUnit(const ColumnNames& names, const RoleRules& rules, Expression& columns,
+/// @throws InputError for a unit that is none of the role's, and for columns in several units
+Unit FindUnit(const ColumnNames& names, const RoleRules& rules, const Expression& columns,
               std::vector<std::string>& notes);
 
 /// The columns of a record; none where there is no such quantity.

@@ -174,14 +174,15 @@ TEST(Expression, AddsScalesAndShiftsColumns) {
   };
   EXPECT_EQ(displacement("lvdt2-lvdt1"), (Numbers{2e-3, 3e-3}));
   EXPECT_EQ(displacement("#2-#1"), (Numbers{2e-3, 3e-3}));
-  EXPECT_EQ(force("cell1+cell2"), (Numbers{2010, 3020})) << "each in its own unit";
+  EXPECT_EQ(force("cell1+raw [kN]"), (Numbers{110e3, 220e3}));
+  EXPECT_THAT(Refusal(text, Choose("1", "cell1+cell2")), HasSubstr("are not in one unit"));
   EXPECT_EQ(force("raw*0.5-10 [mN]"), (Numbers{0.04, 0.09}));
   EXPECT_EQ(force("-2*raw/4"), (Numbers{-50, -100}));
   EXPECT_EQ(force("-raw"), (Numbers{-100, -200}));
   EXPECT_EQ(force("raw [kN]"), (Numbers{1e5, 2e5}));
-  const RecordFile file = Read(text, Choose("1 [um]", "cell1 - cell2"));
+  const RecordFile file = Read(text, Choose("1 [um]", "cell1 - raw [N]"));
   EXPECT_EQ(file.record.displacement, (Numbers{1e-6, 2e-6}));
-  EXPECT_EQ(file.force.name, "cell1 - cell2");
+  EXPECT_EQ(file.force.name, "cell1 - raw [N]");
   EXPECT_EQ(file.force.index, 3U);
   EXPECT_EQ(file.force.unit, "N");
 }

@@ -13,8 +13,6 @@ Strings Notes(const std::string& text, const RecordColumns& columns = {}) {
   return notes;
 }
 
-// --- Which column is which -----------------------------------------------------------------------
-
 // Names of columns, and the numbers of those of displacement, force, time and normal load.
 const std::string kHeaders = R"headers(
 displacement,force,time,normal load | 1 | 2 | 3 | 4
@@ -85,35 +83,29 @@ TEST(RecordReader, LeavesOutUnaskedTimeWithoutNumbersWithNote) {
   EXPECT_EQ(Notes(text), (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
 }
 
-// --- Units ---------------------------------------------------------------------------------------
-
-struct UnitHeader {
-  std::string text;
-  std::string unit;     ///< of the displacement
-  double displacement;  ///< [m]
-};
+// Texts of a force of 2.5 kN, and the unit and the value [m] of the displacement.
+const std::string kUnits = R"units(
+x [mm],F (kN)¶1.5,2.5¶ | mm | 1.5e-3
+x[um],F(kN)¶1.5,2.5¶ | um | 1.5e-6
+x [µm],F [kN]¶1.5,2.5¶ | um | 1.5e-6
+x [μm],F [kN]¶1.5,2.5¶ | um | 1.5e-6
+disp_mm,force_kN¶1.5,2.5¶ | mm | 1.5e-3
+disp mm,force kN¶1.5,2.5¶ | mm | 1.5e-3
+"Position, nm","Force, kN"¶1.5,2.5¶ | nm | 1.5e-9
+x / mm,F/kN¶1.5,2.5¶ | mm | 1.5e-3
+x,F¶[in],[kN]¶¶1.5,2.5¶ | in | 0.0381
+x [mm],F¶,kN¶1.5,2.5¶ | mm | 1.5e-3
+x [mm] F [kN]¶1.5 2.5¶ | mm | 1.5e-3
+Zeit [s];Weg [mm];Kraft [kN]¶0,5;1,5;2,5¶ | mm | 1.5e-3
+)units";
 
 TEST(RecordReader, ConvertsToSiFromTheUnitsOfTheHeader) {
-  const std::vector<UnitHeader> headers = {
-      {"x [mm],F (kN)\n1.5,2.5\n", "mm", 1.5e-3},
-      {"x[um],F(kN)\n1.5,2.5\n", "um", 1.5e-6},
-      {"x [\u00b5m],F [kN]\n1.5,2.5\n", "um", 1.5e-6},
-      {"x [\u03bcm],F [kN]\n1.5,2.5\n", "um", 1.5e-6},
-      {"disp_mm,force_kN\n1.5,2.5\n", "mm", 1.5e-3},
-      {"disp mm,force kN\n1.5,2.5\n", "mm", 1.5e-3},
-      {"\"Position, nm\",\"Force, kN\"\n1.5,2.5\n", "nm", 1.5e-9},
-      {"x / mm,F/kN\n1.5,2.5\n", "mm", 1.5e-3},
-      {"x,F\nmm,kN\n1.5,2.5\n", "mm", 1.5e-3},
-      {"x,F\n[in],[kN]\n\n1.5,2.5\n", "in", 0.0381},
-      {"x [mm],F\n,kN\n1.5,2.5\n", "mm", 1.5e-3},
-      {"x [mm] F [kN]\n1.5 2.5\n", "mm", 1.5e-3},
-      {"Zeit [s];Weg [mm];Kraft [kN]\n0,5;1,5;2,5\n", "mm", 1.5e-3}};
-  for (const UnitHeader& header : headers) {
-    SCOPED_TRACE(header.text);
-    const RecordFile file = Read(header.text);
-    EXPECT_EQ(file.displacement.unit, header.unit);
+  for (const Strings& row : RowsOf(kUnits)) {
+    SCOPED_TRACE(row[0]);
+    const RecordFile file = Read(row[0]);
+    EXPECT_EQ(file.displacement.unit, row[1]);
     EXPECT_EQ(file.force.unit, "kN");
-    EXPECT_EQ(file.record.displacement, (Numbers{header.displacement}));
+    EXPECT_EQ(file.record.displacement, (Numbers{std::stod(row[2])}));
     EXPECT_EQ(file.record.force, (Numbers{2500}));
     EXPECT_EQ(file.notes, Strings{});
   }
@@ -137,8 +129,6 @@ TEST(RecordReader, NotesSkippedPreamble) {
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"),
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
 }
-
-// --- Broken files and choices, and what is said of each ------------------------------------------
 
 // A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
 const std::string kFaults = R"faults(
@@ -211,27 +201,26 @@ TEST(RecordReader, TakesASingleStrokeForOne) {
   EXPECT_EQ(Read("0,0\n1,3\n2,-2\n3,5\n4,0\n", Choose("1")).record.displacement, stroke);
 }
 
+// Half a turn and 2 N m, the units chosen, and those that are found.
+const std::string kTorques = R"torques(
+angle [deg],torque [N m]¶180,2¶ | - | - | deg | N m
+angle_deg,torque_Nm¶180,2¶ | - | - | deg | N m
+rotation / rev,T [N·m]¶0.5,2¶ | - | - | rev | N m
+rotation,torque¶deg,Nmm¶180,2000¶ | - | - | deg | N mm
+twist [°],torque¶180,2¶ | - | - | deg | N m
+angle,torque [kN m]¶3.141592653589793,0.002¶ | - | - | rad | kN m
+180,2¶ | [deg] | [Nm] | deg | N m
+)torques";
+
 TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
-  struct Case {
-    const char* text;
-    RecordColumns columns;
-    const char* angle_unit;
-    const char* torque_unit;
-  };
-  for (const Case& c : {Case{"angle [deg],torque [N m]\n180,2\n", {}, "deg", "N m"},
-                        Case{"angle_deg,torque_Nm\n180,2\n", {}, "deg", "N m"},
-                        Case{"rotation / rev,T [N·m]\n0.5,2\n", {}, "rev", "N m"},
-                        Case{"rotation,torque\ndeg,Nmm\n180,2000\n", {}, "deg", "N mm"},
-                        Case{"twist [°],torque\n180,2\n", {}, "deg", "N m"},
-                        Case{"angle,torque [kN m]\n3.141592653589793,0.002\n", {}, "rad", "kN m"},
-                        Case{"180,2\n", Choose("[deg]", "[Nm]"), "deg", "N m"}}) {
-    SCOPED_TRACE(c.text);
-    const RecordFile file = Read(c.text, c.columns);
+  for (const Strings& torque : RowsOf(kTorques)) {
+    SCOPED_TRACE(torque[0]);
+    const RecordFile file = Read(torque[0], Choose(torque[1], torque[2]));
     EXPECT_TRUE(file.is_torsional);
     EXPECT_DOUBLE_EQ(file.record.displacement[0], std::numbers::pi);
     EXPECT_DOUBLE_EQ(file.record.force[0], 2.0);
-    EXPECT_EQ(file.displacement.unit, c.angle_unit);
-    EXPECT_EQ(file.force.unit, c.torque_unit);
+    EXPECT_EQ(file.displacement.unit, torque[3]);
+    EXPECT_EQ(file.force.unit, torque[4]);
   }
   EXPECT_THROW(Read("x [mm],torque\n1,2\n"), InputError) << "a force that is called so";
 }
@@ -244,30 +233,6 @@ TEST(RecordReader, DoesNotTakeARadialForceForAnAngle) {
 TEST(RecordReader, KnowsTheLineOfEverySample) {
   EXPECT_EQ(Read("x,F\n1,2\n# a remark\n3,4\n").lines, (std::vector<std::size_t>{2, 4}));
 }
-
-// --- Displacement paths --------------------------------------------------------------------------
-
-Numbers ReadPath(const std::string& text, const std::string& choice = {}) {
-  const TemporaryDirectory directory;
-  return ReadDisplacementPath(directory.Write("path.csv", text), choice);
-}
-
-TEST(ForcePath, IsTheFirstColumnWithItsUnitAndTheLinesOfTheFile) {
-  const TemporaryDirectory directory;
-  const ForcePath path =
-      ReadForcePath(directory.Write("f.csv", "# a remark\nF [kN],x\n1,2\n\n3,4\n"));
-  EXPECT_EQ(path.force, (Numbers{1000, 3000}));
-  EXPECT_EQ(path.lines, (std::vector<std::size_t>{3, 5}));
-}
-
-TEST(ForcePath, OfARecordWithTimeFirstIsItsForce) {
-  const TemporaryDirectory directory;
-  const auto file = directory.Write("f.csv", "t [s],x [m],F [N]\n0,5,7\n1,6,8\n");
-  EXPECT_EQ(ReadForcePath(file).force, (Numbers{7, 8}));
-  EXPECT_EQ(ReadForcePath(file, "[mN]").force, (Numbers{0.007, 0.008}));
-}
-
-// --- Columns beside the loop ---------------------------------------------------------------------
 
 TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
   RecordColumns columns;
@@ -322,24 +287,24 @@ TEST(Covariates, ThatCannotBeAreRefusedByName) {
             "covariate");
 }
 
-TEST(DisplacementPath, IsTheFirstColumnOrTheOneThatIsChosenInItsUnit) {
-  EXPECT_EQ(ReadPath("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
+TEST(ImposedColumn, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
+  const auto column = [](const std::string& text, Imposed quantity = Imposed::kDisplacement,
+                         const std::string& choice = {}) {
+    const TemporaryDirectory directory;
+    return ImposedColumn(ReadCsvTable(directory.Write("path.csv", text)), quantity, choice);
+  };
+  EXPECT_EQ(column("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
             (Numbers{0.1, 0.1, -0.30000000000000004, 0}));
-  EXPECT_EQ(ReadPath("1e-6\n-1e-6"), (Numbers{1e-6, -1e-6})) << "without a header";
-  EXPECT_EQ(ReadPath("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{0.5, 0.25}));
-  EXPECT_EQ(ReadPath("x [um]\n3\n-7\n"), (Numbers{3e-6, -7e-6}));
-  EXPECT_EQ(ReadPath("a,b\n1,3\n2,-7\n", "b [mm]"), (Numbers{3e-3, -7e-3}));
-  EXPECT_EQ(ReadPath("time [s],displacement [mm],force [N]\n1,2,3\n2,4,5\n"), (Numbers{2e-3, 4e-3}))
-      << "past a time";
-  EXPECT_THROW(ReadPath("force [N],x [m]\n1,2\n"), InputError);
-}
-
-TEST(LoadedPath, HasLoadAndDisplacementInTheirUnits) {
-  const TemporaryDirectory directory;
-  const LoadedPath path =
-      ReadLoadedPath(directory.Write("loop.csv", "x [um],normal [kN]\n1,2\n3,4\n"), {}, "normal");
-  EXPECT_EQ(path.displacement, (Numbers{1e-6, 3e-6}));
-  EXPECT_EQ(path.normal_load, (Numbers{2e3, 4e3}));
+  EXPECT_EQ(column("1e-6\n-1e-6"), (Numbers{1e-6, -1e-6})) << "without a header";
+  EXPECT_EQ(column("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{0.5, 0.25}));
+  EXPECT_EQ(column("x [um]\n3\n-7\n"), (Numbers{3e-6, -7e-6}));
+  EXPECT_EQ(column("a,b\n1,3\n2,-7\n", Imposed::kDisplacement, "b [mm]"), (Numbers{3e-3, -7e-3}));
+  EXPECT_EQ(column("F [kN],x\n1,2\n\n3,4\n", Imposed::kForce), (Numbers{1000, 3000}));
+  const std::string timed = "t [s],x [mm],F [N],normal [kN]\n0,2,7,1\n1,4,8,2\n";
+  EXPECT_EQ(column(timed), (Numbers{2e-3, 4e-3})) << "past a time";
+  EXPECT_EQ(column(timed, Imposed::kForce, "[mN]"), (Numbers{0.007, 0.008}));
+  EXPECT_EQ(column(timed, Imposed::kNormalLoad, "normal"), (Numbers{1e3, 2e3}));
+  EXPECT_THROW(column("force [N],x [m]\n1,2\n"), InputError);
 }
 
 TEST(MeasuredRecords, AreReadByTheirHeaders) {
