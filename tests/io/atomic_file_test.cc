@@ -18,14 +18,6 @@ mode_t Permissions(const std::filesystem::path& path) {
   return status.st_mode & 07777;
 }
 
-TEST(AtomicFile, WritesTextAndBytes) {
-  const TemporaryDirectory directory;
-  const std::string content("a\0b\r\n\xFF", 6);
-  WriteFileAtomically(directory.path() / "out", content);
-  EXPECT_EQ(FileContent(directory.path() / "out"), content);
-  EXPECT_EQ(directory.FileCount(), 1u);
-}
-
 TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
   // A file or a link that another put where a temporary one is to be written stays as it is.
   const TemporaryDirectory directory;
@@ -37,12 +29,14 @@ TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
   EXPECT_EQ(CloseFile(file), 0);
 }
 
-TEST(AtomicFile, ReplacesLongerFileAlsoByNothing) {
+TEST(AtomicFile, ReplacesTheContentByTextBytesAndNothing) {
   const TemporaryDirectory directory;
-  const auto path = directory.Write("out", "a long content");
-  for (const char* content : {"short", ""}) {
+  const auto path = directory.path() / "out";
+  for (const std::string& content : {std::string("a\0b\r\n\xFF", 6), std::string("a long text"),
+                                     std::string("short"), std::string()}) {
     WriteFileAtomically(path, content);
     EXPECT_EQ(FileContent(path), content);
+    EXPECT_EQ(directory.FileCount(), 1u);
   }
 }
 
@@ -86,12 +80,7 @@ TEST(AtomicFile, WritesToNameInWorkingDirectory) {
   EXPECT_EQ(FileContent(directory.path() / "out"), "x");
 }
 
-TEST(AtomicFile, WritesStraightToDevice) {
-  WriteFileAtomically("/dev/null", "x");
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-}
-
-TEST(AtomicFile, WritesStraightToPipe) {
+TEST(AtomicFile, WritesStraightToPipeAndDevice) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "pipe";
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
@@ -101,6 +90,8 @@ TEST(AtomicFile, WritesStraightToPipe) {
   reader.join();
   EXPECT_EQ(read, "through the pipe");
   EXPECT_TRUE(std::filesystem::is_fifo(path));
+  WriteFileAtomically("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST(AtomicFile, AppendsToRegularFileBehindDescriptor) {

@@ -48,39 +48,18 @@ TEST(RecordReader, RecognizesEachQuantityByItsHeader) {
   }
 }
 
-TEST(RecordReader, TakesTheOnlyColumnLeftForTheForce) {
-  const RecordFile file = Read("load,extension\n1.5,2.5\n");
-  EXPECT_EQ(file.displacement.index, 2u);
-  EXPECT_EQ(file.force.index, 1u);
-}
-
 TEST(RecordReader, FindsChosenColumnByNumberNameCaseAndNameWithoutUnit) {
   const std::string text = "Pad [mm],pad,Cell [N],four\n1.5,2.5,3.5,4.5\n";
-  const auto force_column = [&](const std::string& name) {
-    return Read(text, Choose("4 [m]", name + " [N]")).force.index;
-  };
-  EXPECT_EQ(force_column("3"), 3u);
-  EXPECT_EQ(force_column("pad"), 2u);
-  EXPECT_EQ(force_column("PAD [MM]"), 1u);
-  EXPECT_EQ(force_column("cell"), 3u);
-}
-
-TEST(RecordReader, PrefersExactNameToAnotherCase) {
-  EXPECT_EQ(Read("f,F,x\n1.5,2.5,3.5\n", Choose("", "F")).force.index, 2u);
-}
-
-TEST(RecordReader, ReadsTimeAndNormalLoadThatAreAskedFor) {
+  for (const auto& [name, column] :
+       {std::pair{"3", 3U}, {"pad", 2U}, {"PAD [MM]", 1U}, {"cell", 3U}}) {
+    EXPECT_EQ(Read(text, Choose("4 [m]", std::string(name) + " [N]")).force.index, column) << name;
+  }
+  EXPECT_EQ(Read("f,F,x\n1.5,2.5,3.5\n", Choose("", "F")).force.index, 2u) << "the exact name";
   const RecordFile file = Read("1.5,2.5,3.5,4.5\n", Choose("", "", "4 [ms]", "3 [kN]"));
   EXPECT_EQ(file.record.time, (Numbers{4.5e-3}));
   EXPECT_EQ(file.record.normal_load, (Numbers{3500}));
   EXPECT_EQ(file.time->unit, "ms");
   EXPECT_EQ(file.normal_load->unit, "kN");
-}
-
-TEST(RecordReader, LeavesOutUnaskedTimeWithoutNumbersWithNote) {
-  const std::string text = "time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n";
-  EXPECT_FALSE(Read(text).time);
-  EXPECT_EQ(Notes(text), (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
 }
 
 // Texts of a force of 2.5 kN, and the unit and the value [m] of the displacement.
@@ -117,17 +96,16 @@ TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
   EXPECT_EQ(file.record.force, (Numbers{2.5e-3}));
 }
 
-TEST(RecordReader, TakesSiWithNoteWhenNoUnitIsNamed) {
+TEST(RecordReader, NotesWhatItAssumes) {
   EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
             (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m; "
                      "--displacement '1 [m]' says so",
                      "loop.csv: force 'F' (column 2) names no unit: taken as N; "
                      "--force '2 [N]' says so"}));
-}
-
-TEST(RecordReader, NotesSkippedPreamble) {
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"),
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
+  EXPECT_EQ(Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
+            (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
 }
 
 // A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
@@ -223,15 +201,8 @@ TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
     EXPECT_EQ(file.force.unit, torque[4]);
   }
   EXPECT_THROW(Read("x [mm],torque\n1,2\n"), InputError) << "a force that is called so";
-}
-
-TEST(RecordReader, DoesNotTakeARadialForceForAnAngle) {
-  EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.index, 2u);
+  EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.index, 2u) << "a radial force is no angle";
   EXPECT_EQ(Read("x,Fx_rad\n1,2\n", Choose("", "Fx_rad")).force.unit, "N");
-}
-
-TEST(RecordReader, KnowsTheLineOfEverySample) {
-  EXPECT_EQ(Read("x,F\n1,2\n# a remark\n3,4\n").lines, (std::vector<std::size_t>{2, 4}));
 }
 
 TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
@@ -305,6 +276,80 @@ TEST(ImposedColumn, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
   EXPECT_EQ(column(timed, Imposed::kForce, "[mN]"), (Numbers{0.007, 0.008}));
   EXPECT_EQ(column(timed, Imposed::kNormalLoad, "normal"), (Numbers{1e3, 2e3}));
   EXPECT_THROW(column("force [N],x [m]\n1,2\n"), InputError);
+}
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string Said(const std::vector<NamedColumn>& columns) {
+  return MessageOf<InputError>([&] { RecordOf(TableOfColumns(columns, "frame")); });
+}
+
+TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
+  const RecordFile file = RecordOf(TableOfColumns(
+      {{"F (kN)", {1, 2, 3}}, {"temp", {20, 21, 22}}, {"x [um]", {0, 1, 0}}}, "frame"));
+  EXPECT_EQ(file.record.force, (Numbers{1000, 2000, 3000}));
+  EXPECT_EQ(file.record.displacement, (Numbers{0, 1e-6, 0}));
+  EXPECT_EQ(file.displacement.index, 3U);
+  ASSERT_EQ(file.record.covariates.size(), 1U);
+  EXPECT_EQ(file.record.covariates.front().name, "temp");
+  EXPECT_EQ(file.lines, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(ColumnTable, NamesRowAndColumnOfAMissingNumber) {
+  EXPECT_EQ(Said({{"x [m]", {0, 1, 2}}, {"F [N]", {0, kMissing, 2}}}),
+            "frame:2:2: holds no number; 1 of 3 rows are so: --broken-rows skip leaves them out");
+}
+
+TEST(ColumnTable, RefusesColumnsOfTwoLengthsAndNone) {
+  EXPECT_EQ(Said({{"x", {0, 1}}, {"F", {0}}}),
+            "frame: 'x' has 2 rows and 'F' 1: give as many of both");
+  EXPECT_EQ(Said({{"x", {0, 1}}, {"F", {0, 1, 2}}}),
+            "frame: 'x' has 2 rows and 'F' 3: give as many of both");
+  EXPECT_EQ(Said({}), "frame: there is no column");
+  EXPECT_EQ(Said({{"x", {}}}), "frame: there is no row");
+}
+
+SweepFile ReadTable(const std::string& text, const RecordColumns& columns = {},
+                    const std::string& response = {}) {
+  const TemporaryDirectory directory;
+  return ReadSweep(directory.Write("sweep.csv", text), columns, response);
+}
+
+TEST(ReadSweep, TakesAForceOverALengthForAStiffness) {
+  const SweepFile sweep =
+      ReadTable("displacement amplitude [mm],stiffness [kN/mm]\n2,0.5\n4,0.25\n");
+  EXPECT_EQ(sweep.amplitude, (Numbers{2e-3, 4e-3}));
+  EXPECT_EQ(sweep.response, (Numbers{5e5, 2.5e5}));
+  EXPECT_FALSE(sweep.over_force);
+  EXPECT_FALSE(sweep.is_compliance);
+}
+
+TEST(ReadSweep, TakesALengthOverAForceForACompliance) {
+  const SweepFile sweep = ReadTable("force [kN],k [mm/kN]\n1,2\n3,4\n");
+  EXPECT_EQ(sweep.amplitude, (Numbers{1e3, 3e3}));
+  EXPECT_EQ(sweep.response, (Numbers{2e-6, 4e-6}));
+  EXPECT_TRUE(sweep.over_force);
+  EXPECT_TRUE(sweep.is_compliance);
+}
+
+TEST(ReadSweep, GoesByTheNameWhereNoUnitIsStated) {
+  EXPECT_TRUE(ReadTable("force,compliance\n1,2\n").is_compliance);
+  EXPECT_FALSE(ReadTable("force,stiffness\n1,2\n").is_compliance);
+  EXPECT_TRUE(ReadTable("force,stiffness\n1,2\n", {}, "[m/N]").is_compliance);
+}
+
+TEST(ReadSweep, DoesNotTakeTheResponseForTheAmplitude) {
+  const SweepFile sweep = ReadTable("displacement [mm],force [N/mm]\n2,500\n", {}, "force");
+  EXPECT_EQ(sweep.amplitude, (Numbers{2e-3}));
+  EXPECT_EQ(sweep.response, (Numbers{5e5}));
+  EXPECT_FALSE(sweep.over_force);
+}
+
+TEST(ReadSweep, RefusesAResponseThatIsNotPositiveByItsPlace) {
+  EXPECT_NE(MessageOf<InputError>([] {
+              ReadTable("x [m],k [N/m]\n1,2\n1,0\n");
+            }).find("sweep.csv:3:2: 0 in SI units must be > 0"),
+            std::string::npos);
 }
 
 TEST(MeasuredRecords, AreReadByTheirHeaders) {
