@@ -110,10 +110,10 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::string_view TakeRow(std::string_view& text, std::size_t& lines) {
+std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes) {
   std::size_t end = std::min(text.find('\n'), text.size());
   ++lines;
-  if (text.substr(0, end).find('"') != std::string_view::npos) {
+  if (has_quotes && text.substr(0, end).find('"') != std::string_view::npos) {
     const auto is_open = [&](std::size_t to) {
       return std::ranges::count(text.substr(0, to), '"') % 2 != 0;
     };

@@ -13,8 +13,9 @@ std::string_view Trimmed(std::string_view text);
 
 /// Takes the first row off a text, without its end: a line, and those below it while a quotation
 /// mark is open.
-/// @param lines  increased by the number of lines taken
-std::string_view TakeRow(std::string_view& text, std::size_t& lines);
+/// @param lines       increased by the number of lines taken
+/// @param has_quotes  false where the text has no quotation mark
+std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes = true);
 
 /// True for a line that holds no row: blank, or a comment that begins with '#', where that is no
 /// error value of a spreadsheet ("#N/A").

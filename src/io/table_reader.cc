@@ -70,10 +70,12 @@ void TableReader::Refuse(const std::string& fault) {
 }
 
 void TableReader::Read(std::string_view text) {
+  const bool has_quotes = text.find('"') != std::string_view::npos;
   while (!text.empty() && fault_.empty()) {
     row_line_ = line_ + 1;
-    const std::string_view row = TakeRow(text, line_);
-    if (!IsBlankOrComment(row)) ReadRow(row);
+    const std::string_view row = TakeRow(text, line_, has_quotes);
+    const bool may_be_none = row.empty() || row.front() <= '#';  // a blank is below '#'
+    if (!may_be_none || !IsBlankOrComment(row)) ReadRow(row);
   }
 }
 
