@@ -192,7 +192,9 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
       continue;
     }
     begins_block_ = false;
-    for (Channel& channel : channels_) channel.values[kept] = channel.values[row];
+    if (kept < row) {
+      for (Channel& channel : channels_) channel.values[kept] = channel.values[row];
+    }
     ++kept;
     if (time == nullptr && interval_ > 0) {
       samples.time.push_back(static_cast<double>(rows_) * interval_);
