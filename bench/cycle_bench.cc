@@ -186,7 +186,7 @@ void ReadDigits(benchmark::State& state) {
 void Read(benchmark::State& state) {
   const CampaignFile file;
   for (auto _ : state) {
-    io::RecordStream stream(file.path(), {}, io::BrokenRows::kRefuse);
+    io::RecordStream stream(file.path());
     io::Samples samples;
     while (stream.Next(samples)) benchmark::DoNotOptimize(samples.force.data());
   }
@@ -204,7 +204,7 @@ void Track(benchmark::State& state) {
                                   characters += campaign::CycleTableRow(fit, 0.0).size();
                                 }
                               });
-    io::RecordStream stream(file.path(), {}, io::BrokenRows::kRefuse);
+    io::RecordStream stream(file.path());
     io::Samples samples;
     while (stream.Next(samples)) {
       tracker.Add({samples.displacement, samples.force, samples.time}, samples.lines);

@@ -253,7 +253,8 @@ void AddAnswers(py::module_& module) {
       "read_displacement_path",
       [](const std::string& path, const std::string& unit) {
         const std::vector<double> samples =
-            io::ReadDisplacementPath(path, unit.empty() ? "" : "[" + unit + "]");
+            io::ImposedColumn(io::ReadCsvTable(path), io::Imposed::kDisplacement,
+                              unit.empty() ? "" : "[" + unit + "]");
         return Array(static_cast<py::ssize_t>(samples.size()), samples.data());
       },
       py::arg("path"), py::arg("unit"));

@@ -139,10 +139,8 @@ void AddTrack(py::module_& module) {
       .def_readwrite("threads", &TrackRequest::threads)
       .def_property(
           "skips_broken_rows",
-          [](const TrackRequest& self) { return self.broken_rows == io::BrokenRows::kSkip; },
-          [](TrackRequest& self, bool skips) {
-            self.broken_rows = skips ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
-          });
+          [](const TrackRequest& self) { return self.fit.columns.skip_broken_rows; },
+          [](TrackRequest& self, bool skips) { self.fit.columns.skip_broken_rows = skips; });
   module.def(
       "track",
       [](const TrackRequest& request, const std::vector<NamedRecord>& records) {

@@ -623,7 +623,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   WhenCalled(command, [options, &command, &console] {
     options->track.fit.files = FilesOf(options->track.fit.files, options->list);
-    if (options->broken_rows == "skip") options->track.broken_rows = io::BrokenRows::kSkip;
+    options->track.fit.columns.skip_broken_rows = options->broken_rows == "skip";
     RunTrack(*options, command, console);
   });
 }

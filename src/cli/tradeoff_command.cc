@@ -36,8 +36,9 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   request::TradeoffRequest asked = options.study;
   if (!options.path.empty()) {
     asked.path_name = options.path;
-    asked.displacement = io::ReadDisplacementPath(
-        options.path, options.path_unit.empty() ? "" : fmt::format("[{}]", options.path_unit));
+    asked.displacement =
+        io::ImposedColumn(io::ReadCsvTable(options.path), io::Imposed::kDisplacement,
+                          options.path_unit.empty() ? "" : fmt::format("[{}]", options.path_unit));
   }
   asked.tolerance = ParseTolerance(options.tolerance);
   const Messages messages{console.err, "tradeoff"};

@@ -4,125 +4,102 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
+#include <optional>
 #include <system_error>
-#include <utility>
 
-#include "core/from_chars.h"
 #include "core/text.h"
 #include "io/source.h"
 
 namespace mindahl::io {
 namespace {
 
+constexpr std::string_view kDecimalDigits = "0123456789";
+
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
-// Lists the texts that spreadsheets write for a number that they could not compute.
-constexpr std::array<std::string_view, 7> kErrorValues = {"#n/a",   "#value!", "#div/0!", "#ref!",
-                                                          "#name?", "#num!",   "#null!"};
+/// The texts that spreadsheets write for a number that they could not compute, and other marks.
+constexpr std::array<std::string_view, 19> kMissingMarks = {
+    "#n/a", "#value!", "#div/0!",   "#ref!", "#name?", "#num!", "#null!", "nan", "-nan", "+nan",
+    "na",   "n/a",     "-nan(ind)", "null",  "none",   "-",     "--",     "---", "."};
 
 bool IsMissingMark(std::string_view text) {
-  constexpr std::array<std::string_view, 12> kMarks = {
-      "nan", "-nan", "+nan", "-nan(ind)", "na", "n/a", "null", "none", "-", "--", "---", "."};
   if (IsDigit(text.front()) || (text.size() > 1 && IsDigit(text[1]))) return false;
-  const std::string lower = LowerCase(text);
-  return std::ranges::find(kMarks, lower) != kMarks.end() ||
-         std::ranges::find(kErrorValues, lower) != kErrorValues.end();
+  return std::ranges::find(kMissingMarks, LowerCase(text)) != kMissingMarks.end();
 }
 
-Cell ReadWithPoint(std::string_view unsigned_text, bool negative) {
-  Cell cell{.kind = Cell::Kind::kBroken};
-  const char* const begin = unsigned_text.data();
-  const char* const end = begin + unsigned_text.size();
+Cell ReadWithPoint(std::string_view digits, bool negative) {
   double magnitude = 0.0;
-  const auto [stop, error] = FromChars(begin, end, magnitude);
-  if (stop != end) return cell;
+  const auto [stop, error] = FromChars(digits.data(), digits.data() + digits.size(), magnitude);
+  if (stop != digits.data() + digits.size()) return {.kind = Cell::Kind::kBroken};
   if (error == std::errc::result_out_of_range) {
     // from_chars does not say on which side; only a negative exponent can make a number too small.
-    const bool too_small = unsigned_text.find("e-") != std::string_view::npos ||
-                           unsigned_text.find("E-") != std::string_view::npos;
-    if (!too_small) return {.kind = Cell::Kind::kTooLarge};
+    if (LowerCase(digits).find("e-") == std::string::npos) return {.kind = Cell::Kind::kTooLarge};
     magnitude = 0.0;
-  } else if (error != std::errc{}) {
-    return cell;
   }
-  cell.kind = Cell::Kind::kNumber;
-  cell.value = negative ? -magnitude : magnitude;
-  return cell;
+  return {.kind = Cell::Kind::kNumber, .value = negative ? -magnitude : magnitude};
 }
 
-/// Takes a whole number off a text; empty where it does not begin with one.
-std::optional<int> TakeNumber(std::string_view& text) {
-  int number = 0;
-  if (text.empty() || !IsDigit(text.front())) return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc()) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return number;
-}
+/// Holds a text as whole numbers and what stands between them: "05.03.24 1:2:3" is 5, 3, 24, 1, 2,
+/// 3 and "..", " ", "::".
+struct Numbers {
+  std::array<int, 6> numbers{};
+  std::string between;
+  std::size_t count = 0;
+};
 
-bool TakeCharacter(std::string_view& text, char character) {
-  if (!text.starts_with(character)) return false;
-  text.remove_prefix(1);
-  return true;
-}
-
-/// Takes a date, "2024-03-05" or "05.03.24", and what separates it from the time off a text.
-/// @returns the seconds from 1970 until its midnight, where the year is first; else 0; empty where
-///   the text begins with no date
-std::optional<double> TakeDate(std::string_view& text) {
-  constexpr double kDay = 86'400.0;
-  std::string_view rest = text;
-  std::array<int, 3> parts{};
-  char separator = '\0';
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (k == 1) separator = rest.empty() ? '\0' : rest.front();
-    if (k == 1 && std::string_view("/.-").find(separator) == std::string_view::npos) return {};
-    if (k > 0 && !TakeCharacter(rest, separator)) return {};
-    const std::optional<int> number = TakeNumber(rest);
-    if (!number) return {};
-    parts[k] = *number;
+Numbers TakeNumbers(std::string_view& text) {
+  constexpr std::size_t kMostDigits = 6;
+  Numbers taken;
+  while (taken.count < taken.numbers.size()) {
+    const std::size_t size = std::min(text.find_first_not_of(kDecimalDigits), text.size());
+    if (size == 0 || size > kMostDigits) break;
+    taken.numbers[taken.count++] = NumberIn<int>(text.substr(0, size)).value_or(0);
+    text.remove_prefix(size);
+    if (text.empty() || taken.count == taken.numbers.size()) break;
+    if (taken.count == 3 && taken.between == "::") break;  // a time of day without a date
+    taken.between += text.front();
+    text.remove_prefix(1);
+    while (text.starts_with(' ')) text.remove_prefix(1);
   }
-  if (!TakeCharacter(rest, 'T') && !TakeCharacter(rest, ' ')) return {};
-  text = Trimmed(rest);
-  const std::chrono::year_month_day date{std::chrono::year(parts[0]),
-                                         std::chrono::month(static_cast<unsigned>(parts[1])),
-                                         std::chrono::day(static_cast<unsigned>(parts[2]))};
-  if (parts[0] < 1970 || !date.ok()) return 0.0;
-  return kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+  return taken;
+}
+
+bool IsDate(const Numbers& text) {
+  return text.count >= 3 && (text.between.starts_with("--") || text.between.starts_with("..") ||
+                             text.between.starts_with("//"));
 }
 
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
-  const double midnight = TakeDate(text).value_or(0.0);
-  const std::optional<int> hours = TakeNumber(text);
-  if (!hours || *hours > 23 || !TakeCharacter(text, ':')) return std::nullopt;
-  const std::optional<int> minutes = TakeNumber(text);
-  if (!minutes || *minutes > 59 || !TakeCharacter(text, ':')) return std::nullopt;
-  const std::optional<int> seconds = TakeNumber(text);
-  if (!seconds || *seconds > 60) return std::nullopt;  // 60 in a leap second
-  double fraction = 0.0;
-  if (TakeCharacter(text, '.') || TakeCharacter(text, ',') || TakeCharacter(text, ':')) {
-    const std::size_t size = std::min(text.find_first_not_of("0123456789"), text.size());
-    const std::optional<double> read = NumberIn<double>("0." + std::string(text.substr(0, size)));
-    if (!read || size == 0) return std::nullopt;
-    fraction = *read;
-    text.remove_prefix(size);
+  constexpr double kDay = 86'400.0;
+  const Numbers read = TakeNumbers(text);
+  if (!read.between.ends_with("::") || read.count % 3 != 0) return std::nullopt;
+  double midnight = 0.0;
+  if (read.count == 6) {
+    if (!IsDate(read) || (read.between[2] != 'T' && read.between[2] != ' ')) return std::nullopt;
+    const auto& [year, month, day, hour, minute, second] = read.numbers;
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    if (year >= 1970 && date.ok()) {
+      midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+    }
+  }
+  const int* const clock = read.numbers.data() + (read.count - 3);
+  if (clock[0] > 23 || clock[1] > 59 || clock[2] > 60) return std::nullopt;  // 60: a leap second
+  double seconds = 3600.0 * clock[0] + 60.0 * clock[1] + clock[2];
+  if (!text.empty() && std::string_view(".,:").find(text.front()) != std::string_view::npos) {
+    const std::size_t end = std::min(text.find_first_not_of(kDecimalDigits, 1), text.size());
+    const auto fraction = NumberIn<double>("0." + std::string(text.substr(1, end - 1)));
+    if (!fraction || end == 1) return std::nullopt;
+    seconds += *fraction;
+    text.remove_prefix(end);
   }
   // A zone is the same in all rows.
   const bool has_zone = text.starts_with('Z') || text.starts_with('+') || text.starts_with('-');
-  if (!text.empty() && !has_zone) return std::nullopt;
-  return midnight + 3600.0 * *hours + 60.0 * *minutes + *seconds + fraction;
-}
-
-/// True for "2024-03-05" and "5.3.2024", which is no number but meant as none either.
-bool IsDate(std::string_view text) {
-  std::string with_blank(text);
-  with_blank += ' ';
-  std::string_view rest = with_blank;
-  return TakeDate(rest).has_value() && rest.empty();
+  return text.empty() || has_zone ? std::optional(midnight + seconds) : std::nullopt;
 }
 
 }  // namespace
@@ -133,20 +110,20 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::string_view TakeRow(std::string_view& text, std::size_t& lines) {
+std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes) {
   std::size_t end = std::min(text.find('\n'), text.size());
   ++lines;
-  const auto is_open = [&] { return std::ranges::count(text.substr(0, end), '"') % 2 != 0; };
-  if (text.substr(0, end).find('"') != std::string_view::npos) {
-    const std::size_t one = end;
+  if (has_quotes && text.substr(0, end).find('"') != std::string_view::npos) {
+    const auto is_open = [&](std::size_t to) {
+      return std::ranges::count(text.substr(0, to), '"') % 2 != 0;
+    };
+    std::size_t last = end;
     std::size_t more = 0;
-    while (is_open() && end < text.size()) {
-      end = std::min(text.find('\n', end + 1), text.size());
-      ++more;
+    for (; is_open(last) && last < text.size(); ++more) {
+      last = std::min(text.find('\n', last + 1), text.size());
     }
-    if (is_open()) {
-      end = one;  // never closed: a fault of its first line
-    } else {
+    if (!is_open(last)) {  // else never closed: a fault of its first line
+      end = last;
       lines += more;
     }
   }
@@ -157,53 +134,33 @@ std::string_view TakeRow(std::string_view& text, std::size_t& lines) {
 
 bool IsBlankOrComment(std::string_view line) {
   line = Trimmed(line);
-  if (line.empty()) return true;
-  if (line.front() != '#') return false;
-  const std::string first = LowerCase(line.substr(0, line.find_first_of(" \t\r,;\"")));
-  return std::ranges::find(kErrorValues, first) == kErrorValues.end();
+  if (line.empty() || line.front() != '#') return line.empty();
+  return !IsMissingMark(line.substr(0, line.find_first_of(" \t\r,;\"")));
 }
 
-bool Cells::Split(std::string_view row, char delimiter) {
-  cells_.clear();
-  unescaped_.clear();
-  const bool by_blanks = delimiter == kBlanks;
-  if (by_blanks) row = Trimmed(row);
-  const auto ends_cell = [&](std::size_t at) {
-    return at == row.size() || row[at] == delimiter || (by_blanks && row[at] == '\t');
-  };
-  for (std::size_t at = 0;; ++at) {
-    while (at < row.size() && (row[at] == ' ' || row[at] == '\t') &&
-           (by_blanks || !ends_cell(at))) {
-      ++at;
-    }
-    std::size_t end = at;
-    if (at < row.size() && row[at] == '"') {
-      std::string text;
-      for (++end; end < row.size(); ++end) {
-        if (row[end] == '"') {
-          if (end + 1 == row.size() || row[end + 1] != '"') break;
-          ++end;
-        }
-        text += row[end] == '\n' || row[end] == '\r' ? ' ' : row[end];
-      }
-      if (end == row.size()) return false;
-      for (++end; !ends_cell(end); ++end) text += row[end];
-      unescaped_.push_back(std::move(text));
-      cells_.push_back(Trimmed(unescaped_.back()));
-    } else {
-      while (!ends_cell(end)) ++end;
-      cells_.push_back(Trimmed(row.substr(at, end - at)));
-    }
-    if (end == row.size()) break;
-    at = end;
+std::string_view CellCursor::Take() {
+  at_ = SkipBlanks(at_);
+  const char* end = at_;
+  if (at_ == end_ || *at_ != '"') {
+    while (end != end_ && !IsDelimiter(*end)) ++end;
+    const std::string_view cell = Trimmed({at_, static_cast<std::size_t>(end - at_)});
+    GoBehind(end);
+    return cell;
   }
-  return true;
-}
-
-std::size_t Cells::FilledSize() const {
-  std::size_t filled = size();
-  while (filled > 0 && cells_[filled - 1].empty()) --filled;
-  return filled;
+  unescaped_.clear();
+  for (++end; end != end_; ++end) {
+    if (*end == '"') {
+      if (end + 1 == end_ || end[1] != '"') break;
+      ++end;
+    }
+    unescaped_ += *end == '\n' || *end == '\r' ? ' ' : *end;
+  }
+  is_open_ = end == end_;
+  has_next_ = !is_open_;
+  if (is_open_) return {};
+  for (++end; end != end_ && !IsDelimiter(*end); ++end) unescaped_ += *end;
+  GoBehind(end);
+  return Trimmed(unescaped_);
 }
 
 Cell ReadCell(std::string_view text, bool decimal_comma) {
@@ -211,10 +168,8 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
   std::string_view digits = text;
   const bool negative = digits.front() == '-';
   if (negative || digits.front() == '+') digits.remove_prefix(1);
-  const bool starts_as_number =
-      !digits.empty() &&
-      (IsDigit(digits[0]) || (digits[0] == '.' && digits.size() > 1 && IsDigit(digits[1])));
-  if (!starts_as_number) {
+  const std::size_t first = digits.starts_with('.') ? 1 : 0;
+  if (digits.size() <= first || !IsDigit(digits[first])) {
     const std::string lower = LowerCase(digits);
     const bool is_infinite = lower == "inf" || lower == "infinity";
     return {.kind = is_infinite ? Cell::Kind::kBroken : Cell::Kind::kText};
@@ -235,7 +190,9 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
   if (const std::optional<double> seconds = ReadClock(text)) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
-  return {.kind = IsDate(text) ? Cell::Kind::kText : Cell::Kind::kBroken};
+  std::string_view rest = text;
+  const bool is_date = IsDate(TakeNumbers(rest)) && rest.empty();
+  return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
 std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {

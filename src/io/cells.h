@@ -1,12 +1,10 @@
 #pragma once
 
-#include <cstddef>
-#include <deque>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "core/from_chars.h"
 
 namespace mindahl::io {
 
@@ -15,8 +13,9 @@ std::string_view Trimmed(std::string_view text);
 
 /// Takes the first row off a text, without its end: a line, and those below it while a quotation
 /// mark is open.
-/// @param lines  increased by the number of lines taken
-std::string_view TakeRow(std::string_view& text, std::size_t& lines);
+/// @param lines       increased by the number of lines taken
+/// @param has_quotes  false where the text has no quotation mark
+std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes = true);
 
 /// True for a line that holds no row: blank, or a comment that begins with '#', where that is no
 /// error value of a spreadsheet ("#N/A").
@@ -25,26 +24,70 @@ bool IsBlankOrComment(std::string_view line);
 /// Separates the cells of a row; kBlanks is any run of spaces and tabs.
 inline constexpr char kBlanks = ' ';
 
-/// The cells of one row, valid as long as its text.
-class Cells {
+/// Takes the cells off a row one by one (RFC 4180), without the blanks around them. A trailing
+/// delimiter makes an empty cell.
+class CellCursor {
  public:
-  /// Cuts a row into cells (RFC 4180), without the blanks around them. A trailing delimiter makes
-  /// an empty cell.
-  /// @returns false where a quotation mark is never closed
-  bool Split(std::string_view row, char delimiter);
-
-  [[nodiscard]] std::size_t size() const { return cells_.size(); }
-  std::string_view operator[](std::size_t cell) const { return cells_[cell]; }
-  /// Returns the cell; empty where the row has none.
-  [[nodiscard]] std::string_view At(std::size_t cell) const {
-    return cell < cells_.size() ? cells_[cell] : std::string_view();
+  CellCursor(std::string_view row, char delimiter) : delimiter_(delimiter) {
+    if (delimiter == kBlanks) row = Trimmed(row);
+    at_ = row.data();
+    end_ = at_ + row.size();
   }
-  /// Returns the number of cells when the empty ones at the end are left out.
-  [[nodiscard]] std::size_t FilledSize() const;
+
+  /// True if there is a further cell.
+  [[nodiscard]] bool has_next() const { return has_next_; }
+  /// True if a quotation mark is never closed; its cell is not taken.
+  [[nodiscard]] bool is_open() const { return is_open_; }
+
+  /// Takes the next cell; valid until another is taken.
+  std::string_view Take();
+
+  /// Takes the next cell unread.
+  /// @returns true if it is not empty
+  bool Skip() {
+    const char* const begin = SkipBlanks(at_);
+    if (begin != end_ && *begin == '"') return !Take().empty();
+    const char* end = begin;
+    while (end != end_ && !IsDelimiter(*end)) ++end;
+    GoBehind(end);
+    return end != begin;
+  }
+
+  /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
+  /// @returns its text; empty where it is none, and is not taken
+  std::string_view TakeNumber(double& value) {
+    const char* const begin = SkipBlanks(at_);
+    const char* digits = begin;
+    if (digits != end_ && *digits == '-') ++digits;
+    if (digits != end_ && *digits == '.') ++digits;
+    if (digits == end_ || *digits < '0' || *digits > '9') return {};  // nor "nan"
+    const auto [stop, error] = FromChars(begin, end_, value);
+    const char* const after = delimiter_ == kBlanks ? stop : SkipBlanks(stop);
+    if (error != std::errc() || (after != end_ && !IsDelimiter(*after))) return {};
+    GoBehind(after);
+    return {begin, static_cast<std::size_t>(stop - begin)};
+  }
 
  private:
-  std::vector<std::string_view> cells_;
-  std::deque<std::string> unescaped_;  // of cells with a quotation mark within
+  [[nodiscard]] bool IsDelimiter(char character) const {
+    return character == delimiter_ || (delimiter_ == kBlanks && character == '\t');
+  }
+  [[nodiscard]] const char* SkipBlanks(const char* at) const {
+    while (at != end_ && (*at == ' ' || (*at == '\t' && delimiter_ != '\t'))) ++at;
+    return at;
+  }
+  /// @param delimiter  at the end of a cell, or of the row
+  void GoBehind(const char* delimiter) {
+    has_next_ = delimiter != end_;
+    at_ = !has_next_ ? end_ : delimiter_ == kBlanks ? SkipBlanks(delimiter) : delimiter + 1;
+  }
+
+  char delimiter_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;
+  bool has_next_ = true;
+  bool is_open_ = false;
+  std::string unescaped_;
 };
 
 /// Holds what a cell is read as.

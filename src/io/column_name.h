@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "mindahl/core/units.h"
 
 namespace mindahl::io {
 
@@ -17,11 +20,21 @@ Dimension DimensionOfUnit(std::string_view symbol);
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(Dimension dimension, Role role);
 
+/// Holds what the words of a name say; those of words.h.
+struct NameEvidence {
+  std::string_view word = {};  ///< the best; "" where none is known
+  Role role = Role::kOther;
+  int rank = 0;
+  bool is_angular = false;  // of an angle or a torque
+  bool is_lesser = false;   ///< commanded, raw or a statistic
+  std::size_t other_words = 0;
+};
+
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
   std::string name;
   std::string unit = {};  // as written; empty when the header names none
-  Dimension dimension = Dimension::kNone;
+  NameEvidence evidence = {};
 };
 
 /// Takes the unit off a header cell:
@@ -37,17 +50,6 @@ std::string_view WithoutBrackets(std::string_view cell);
 /// True for the symbol of a unit usual in such files (mm, N, V, bar...), and for a word in
 /// brackets.
 bool LooksLikeUnit(std::string_view cell);
-
-/// Holds what the words of a name say; those of words.h.
-struct NameEvidence {
-  std::string_view word = {};  ///< the best; "" where none is known
-  Role role = Role::kOther;
-  int rank = 0;
-  bool is_angular = false;  // of an angle or a torque
-  bool is_lesser = false;   ///< commanded, raw or a statistic
-  std::size_t other_words = 0;
-};
-NameEvidence EvidenceOf(std::string_view name);
 
 /// Returns how many of the header cells have a word or a unit that is known.
 std::size_t CountKnownWords(std::span<const std::string> cells);

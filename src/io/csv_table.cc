@@ -33,75 +33,24 @@ void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t
       name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy));
 }
 
-std::vector<std::size_t> ColumnsOfNumbers(const Layout& layout) {
-  std::vector<std::size_t> columns;
-  for (std::size_t column = 0; column < layout.columns; ++column) {
-    if (layout.holds_numbers[column]) columns.push_back(column);
+/// Returns what a reader has read, at the end of its file.
+CsvTable Finished(TableReader& reader) {
+  if (reader.fault().empty()) reader.Finish();
+  if (!reader.fault().empty()) throw InputError(reader.fault());
+  CsvTable table = std::move(reader.table());
+  if (!table.blocks.empty()) {
+    table.notes.push_back(
+        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", table.file,
+                    table.header_line, table.blocks.size()));
   }
-  return columns;
+  if (const LeftOutRows& skipped = reader.skipped(); skipped.count > 0) {
+    table.notes.push_back(fmt::format("{} broken row{} left out, the first: {}", skipped.count,
+                                      skipped.count == 1 ? " is" : "s are", skipped.fault));
+  }
+  return table;
 }
 
 }  // namespace
-
-TableReader::TableReader(std::string_view text, const std::string& file, bool skip_broken)
-    : layout_(FindLayout(text, file)),
-      wanted_(ColumnsOfNumbers(layout_)),
-      rows_(layout_, file, wanted_),
-      values_(wanted_.size()),
-      line_(layout_.data_line - 1),
-      skip_broken_(skip_broken) {
-  table_.file = file;
-  table_.header_line = layout_.header_line;
-  table_.interval = layout_.interval;
-  table_.columns.resize(layout_.columns);
-  for (std::size_t column = 0; column < layout_.columns; ++column) {
-    if (!layout_.names.empty()) table_.columns[column].name = layout_.names[column];
-    if (!layout_.units.empty()) table_.columns[column].unit = layout_.units[column];
-  }
-  if (layout_.preamble_rows > 0) {
-    table_.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
-                                       layout_.header_line, layout_.preamble_rows,
-                                       layout_.preamble_rows == 1 ? "" : "s"));
-  }
-}
-
-void TableReader::Read(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t line = line_ + 1;
-    const std::string_view row = TakeRow(text, line_);
-    const RowReader::Row kind = rows_.Read(row, line, values_);
-    if (kind == RowReader::Row::kNone) continue;
-    const std::string fault = rows_.TakeFault();
-    if (!fault.empty() && !skip_broken_) throw InputError(fault);
-    if (kind == RowReader::Row::kFault) continue;
-    for (const RowReader::Fault& cell : rows_.cell_faults()) {
-      TableColumn& column = table_.columns[wanted_[cell.place]];
-      std::string& first = cell.is_missing ? column.missing : column.fault;
-      if (!first.empty()) continue;
-      first = cell.message;
-      if (!cell.is_missing) column.fault_row = table_.rows();
-    }
-    if (rows_.begins_block()) table_.blocks.push_back(table_.rows());
-    table_.lines.push_back(line);
-    for (std::size_t k = 0; k < wanted_.size(); ++k) {
-      table_.columns[wanted_[k]].values.push_back(values_[k]);
-    }
-  }
-}
-
-CsvTable TableReader::Finish() {
-  const std::string fault = rows_.TakeFault();
-  if (!fault.empty() && !skip_broken_) throw InputError(fault);
-  for (std::size_t k = 0; k < wanted_.size(); ++k) {
-    table_.columns[wanted_[k]].is_clock = rows_.is_clock(k);
-  }
-  if (!table_.blocks.empty()) {
-    table_.notes.push_back(
-        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", table_.file,
-                    table_.header_line, table_.blocks.size()));
-  }
-  return std::move(table_);
-}
 
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const TableColumn& of = columns.at(column);
@@ -115,12 +64,6 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
   return of.values;
 }
 
-CsvTable ParseCsvTable(std::string_view text, std::string file) {
-  TableReader reader(text, file, /*skip_broken=*/false);
-  reader.Read(text.substr(reader.layout().data_offset));
-  return reader.Finish();
-}
-
 CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits,
                       const std::string& encoding, bool skip_broken) {
   const std::string name = NameOfInput(path);
@@ -129,12 +72,14 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limit
   std::error_code is_no_file;
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
   if (!is_no_file) RequireWithin(limits, 0, size, name);
-  TableReader reader(text, name, skip_broken);
-  for (text.remove_prefix(reader.layout().data_offset); !text.empty(); text = pieces.Next()) {
+  const Layout layout = FindLayout(text, name);
+  TableReader reader(layout, name, skip_broken);
+  for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
-    RequireWithin(limits, reader.rows(), pieces.bytes(), name);
+    if (!reader.fault().empty()) break;
+    RequireWithin(limits, reader.table().rows(), pieces.bytes(), name);
   }
-  CsvTable table = reader.Finish();
+  CsvTable table = Finished(reader);
   if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
   return table;
 }

@@ -20,7 +20,10 @@ struct Expression {
   std::string unit;         // "" where none is given
   bool is_scaled = false;   ///< a factor or an offset is given
 
-  [[nodiscard]] bool is_plain() const { return terms.size() == 1 && !is_scaled; }
+  /// True if it is a column as it is.
+  [[nodiscard]] bool is_plain() const {
+    return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
+  }
 };
 
 /// Returns the column, from 0, of a name; empty where there is none.
@@ -31,9 +34,8 @@ using DescribeUnknown = std::function<std::string(std::string_view)>;
 
 /// Reads what an option says of a column: a name or a number from 1, "Fx", "3"; with a unit in
 /// brackets, "3 [kN]", or that alone, "[kN]"; a sum of columns with factors and an offset,
-/// "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that column. A
-/// number is a column as a whole, in front of the others where no name is in its product, and
-/// behind '#'; else it is a factor or an offset.
+/// "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that column;
+/// in a sum, a column is called by number behind '#'.
 /// @param columns  their number
 /// @param where    begins every message: "a.csv: --force raw*"
 /// @throws InputError

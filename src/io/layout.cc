@@ -27,10 +27,11 @@ struct SampledRow {
   std::size_t offset = 0;
 };
 
-struct ClassifiedRow {
-  SampledRow row;
-  std::vector<std::string> cells;
-  std::vector<Cell::Kind> kinds;
+/// A row under some delimiter.
+struct Row {
+  SampledRow at;
+  std::vector<std::string> cells = {};
+  std::vector<Cell::Kind> kinds = {};
 
   [[nodiscard]] std::size_t Count(Cell::Kind kind) const {
     return static_cast<std::size_t>(std::ranges::count(kinds, kind));
@@ -38,6 +39,7 @@ struct ClassifiedRow {
   [[nodiscard]] std::size_t Numbers() const {
     return Count(Cell::Kind::kNumber) + Count(Cell::Kind::kClock);
   }
+  /// Number of cells, empty ones at the end aside.
   [[nodiscard]] std::size_t FilledSize() const {
     std::size_t filled = cells.size();
     while (filled > 0 && cells[filled - 1].empty()) --filled;
@@ -54,48 +56,38 @@ struct ClassifiedRow {
   /// Looks like data whatever the other rows are: "sample_rate,200" does not, "1,2" does.
   [[nodiscard]] bool HasData() const {
     const bool begins = kinds.front() == Cell::Kind::kNumber || kinds.front() == Cell::Kind::kClock;
-    std::size_t broken = Count(Cell::Kind::kBroken) + Count(Cell::Kind::kTooLarge);
-    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      if (kinds[cell] == Cell::Kind::kMissing && !cells[cell].empty()) ++broken;
-    }
-    return Numbers() >= 1 && (begins || Numbers() + broken >= 2);
+    const auto meant = cells.size() - Count(Cell::Kind::kText) -
+                       static_cast<std::size_t>(std::ranges::count(cells, std::string()));
+    return Numbers() >= 1 && (begins || meant >= 2);
   }
   [[nodiscard]] bool IsText() const { return Numbers() == 0 && Count(Cell::Kind::kText) >= 1; }
-  /// Begins with words, of which few are numbers.
-  [[nodiscard]] bool IsSentence() const {
-    return kinds.front() == Cell::Kind::kText && 2 * Numbers() < kinds.size();
-  }
 };
 
 /// The rows under one delimiter, and how well it explains them as columns of numbers.
 struct Reading {
   char delimiter = ',';
-  std::vector<ClassifiedRow> rows;
+  std::vector<Row> rows = {};
   std::size_t columns = 0;     ///< number in most rows with data; 0 when there are none
   long score = 0;              ///< numbers less broken numbers in the rows with so many columns
   std::size_t most_cells = 0;  // of a row with data
-  std::vector<bool> holds_numbers, mostly_numbers;
+  std::vector<bool> holds_numbers = {}, mostly_numbers = {};
   std::size_t open_quote_line = 0;  // of a quotation mark that is never closed; 0 without one
 };
 
 Reading ReadAs(std::span<const SampledRow> sampled, char delimiter) {
-  Reading reading;
-  reading.delimiter = delimiter;
-  Cells cells;
+  Reading reading{.delimiter = delimiter};
   std::map<std::size_t, std::size_t> rows_with_columns;
-  for (const SampledRow& row : sampled) {
-    if (!cells.Split(row.text, delimiter)) {
-      if (reading.open_quote_line == 0) reading.open_quote_line = row.line;
-      continue;
+  for (const SampledRow& sample : sampled) {
+    Row row{.at = sample};
+    CellCursor cells(sample.text, delimiter);
+    while (cells.has_next()) row.cells.emplace_back(cells.Take());
+    if (cells.is_open() && reading.open_quote_line == 0) reading.open_quote_line = sample.line;
+    if (cells.is_open() || row.FilledSize() == 0) continue;
+    for (const std::string& cell : row.cells) {
+      row.kinds.push_back(ReadCell(cell, delimiter != ',').kind);
     }
-    if (cells.FilledSize() == 0) continue;
-    ClassifiedRow& classified = reading.rows.emplace_back();
-    classified.row = row;
-    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      classified.cells.emplace_back(cells[cell]);
-      classified.kinds.push_back(ReadCell(cells[cell], delimiter != ',').kind);
-    }
-    if (classified.HasData()) ++rows_with_columns[classified.Columns()];
+    if (row.HasData()) ++rows_with_columns[row.Columns()];
+    reading.rows.push_back(std::move(row));
   }
   std::size_t most_rows = 0;
   for (const auto& [columns, rows] : rows_with_columns) {
@@ -104,23 +96,26 @@ Reading ReadAs(std::span<const SampledRow> sampled, char delimiter) {
     reading.columns = columns;
   }
   std::vector<std::size_t> numbers;
-  for (const ClassifiedRow& row : reading.rows) {
+  std::vector<std::size_t> meant;  // and what is meant as one
+  for (const Row& row : reading.rows) {
     if (!row.HasData()) continue;
     if (row.CanHave(reading.columns) || row.Columns() > reading.columns) {
       reading.most_cells = std::max(reading.most_cells, row.Columns());
     }
     numbers.resize(std::max(numbers.size(), row.kinds.size()));
+    meant.resize(numbers.size());
     for (std::size_t column = 0; column < row.kinds.size(); ++column) {
       const Cell::Kind kind = row.kinds[column];
       if (kind == Cell::Kind::kNumber || kind == Cell::Kind::kClock) ++numbers[column];
+      if (kind != Cell::Kind::kText && kind != Cell::Kind::kMissing) ++meant[column];
     }
     if (row.Columns() != reading.columns) continue;
     reading.score +=
         static_cast<long>(row.Numbers()) - static_cast<long>(row.Count(Cell::Kind::kBroken));
   }
-  for (const std::size_t count : numbers) {
-    reading.holds_numbers.push_back(count > 0);
-    reading.mostly_numbers.push_back(2 * count > most_rows);
+  for (std::size_t column = 0; column < numbers.size(); ++column) {
+    reading.holds_numbers.push_back(meant[column] > 0);
+    reading.mostly_numbers.push_back(2 * numbers[column] > most_rows);
   }
   return reading;
 }
@@ -162,9 +157,9 @@ class HeaderFinder {
     Layout layout;
     layout.delimiter = reading_.delimiter;
     layout.columns = reading_.columns;
-    const ClassifiedRow& first = reading_.rows[data_];
-    layout.data_offset = first.row.offset;
-    layout.data_line = first.row.line;
+    const Row& first = reading_.rows[data_];
+    layout.data_offset = first.at.offset;
+    layout.data_line = first.at.line;
     FindNames(layout);
     layout.columns = std::max({layout.columns, layout.names.size(), layout.units.size()});
     if (!layout.names.empty()) layout.names.resize(layout.columns);
@@ -177,55 +172,42 @@ class HeaderFinder {
   }
 
  private:
-  /// Returns the row below the header of a LabVIEW file, or 0.
-  [[nodiscard]] std::size_t RowBelowLabViewHeader() const {
-    std::size_t below = 0;
-    for (std::size_t k = 0; k < reading_.rows.size(); ++k) {
-      const std::string_view text = reading_.rows[k].row.text;
-      if (text.starts_with("***End_of_Header***")) {
-        const bool has_segment = k + 1 < reading_.rows.size() && below == 0;
-        below = k + 1;
-        if (!has_segment) break;
-      } else if (text.starts_with("X_Value")) {
-        break;
-      }
-    }
-    return below;
-  }
-
   [[nodiscard]] std::size_t FirstDataRow() const {
-    const std::size_t begin = RowBelowLabViewHeader();
-    const auto may_be_data = [&](const ClassifiedRow& row) {
-      if (!row.HasData()) return false;
-      if (row.CanHave(reading_.columns)) return true;
-      // A row that has more than most, as an event of a logger, below a header that names them.
-      if (&row == &reading_.rows.front()) return false;
-      const ClassifiedRow& above = *(&row - 1);
-      return row.cells.size() > reading_.columns && above.IsText() &&
-             above.cells.size() >= row.cells.size();
-    };
-    const auto has_text = [&](const ClassifiedRow& row) {
-      for (std::size_t column = 0; column < row.kinds.size(); ++column) {
-        if (reading_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
-      }
-      return false;
-    };
+    const std::vector<Row>& rows = reading_.rows;
+    // A header of LabVIEW has rows of numbers.
+    const auto names = std::ranges::find_if(
+        rows, [](const Row& row) { return row.at.text.starts_with("X_Value"); });
     std::optional<std::size_t> any;
-    for (std::size_t k = begin; k < reading_.rows.size(); ++k) {
-      if (!may_be_data(reading_.rows[k])) continue;
-      if (!has_text(reading_.rows[k])) return k;
-      if (!any) any = k;
+    for (auto row = names == rows.end() ? rows.begin() : names; row != rows.end(); ++row) {
+      // One that has more than most, as an event of a logger, stands below a header that names
+      // them.
+      const bool is_named = row != rows.begin() && row->cells.size() > reading_.columns &&
+                            (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
+      if (!row->HasData() || (!row->CanHave(reading_.columns) && !is_named)) continue;
+      const auto place = static_cast<std::size_t>(row - rows.begin());
+      if (!HasTextAmongNumbers(*row)) return place;
+      if (!any) any = place;
     }
     // Text in every row, each time in another column: the first row is as good as any.
     return any.value_or(0);
   }
 
+  [[nodiscard]] bool HasTextAmongNumbers(const Row& row) const {
+    for (std::size_t column = 0; column < row.kinds.size(); ++column) {
+      if (reading_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
+    }
+    return false;
+  }
+
   /// The cells of a row of text, one for each column of the data; nullopt when it is not that.
   std::optional<std::vector<std::string>> HeaderCells(std::size_t index) const {
-    const ClassifiedRow& row = reading_.rows[index];
+    const Row& row = reading_.rows[index];
     const bool by_blanks = reading_.delimiter == kBlanks;
-    if (!row.IsText() && !(by_blanks && row.IsSentence())) return std::nullopt;
-    const ClassifiedRow& data = reading_.rows[data_];
+    // "Load 1" between blanks is words, of which few are numbers.
+    const bool is_sentence =
+        row.kinds.front() == Cell::Kind::kText && 2 * row.Numbers() < row.kinds.size();
+    if (!row.IsText() && !(by_blanks && is_sentence)) return std::nullopt;
+    const Row& data = reading_.rows[data_];
     // Rows may lack the last column, as that of comments or events.
     const std::size_t columns = std::max(row.FilledSize(), data.FilledSize());
     const std::size_t most = reading_.most_cells + (by_blanks ? 0 : 1);
@@ -234,7 +216,7 @@ class HeaderFinder {
                                       row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
     }
     if (by_blanks) {
-      for (auto& cells : {JoinBracketedUnits(row.cells), SplitAtTwoBlanks(row.row.text)}) {
+      for (auto& cells : {JoinBracketedUnits(row.cells), SplitAtTwoBlanks(row.at.text)}) {
         if (cells.size() == reading_.columns) return cells;
       }
     }
@@ -266,7 +248,7 @@ class HeaderFinder {
     std::size_t header = data_;
     std::size_t most = 0;
     for (std::size_t k = data_; k-- > begin;) {
-      const ClassifiedRow& row = reading_.rows[k];
+      const Row& row = reading_.rows[k];
       const bool may_be_data =
           row.Columns() >= reading_.columns && 2 * row.Numbers() >= row.Columns();
       if (layout.names.empty() && may_be_data) break;
@@ -280,7 +262,7 @@ class HeaderFinder {
         if (!layout.units.empty() || (!states && !layout.names.empty())) continue;
         if (states) cells->front().clear();
         layout.units = std::move(*cells);
-        layout.units_row = row.row.text;
+        layout.units_row = row.at.text;
         if (layout.names.empty()) header = k;
         continue;
       }
@@ -291,7 +273,7 @@ class HeaderFinder {
       most = known;
       header = k;
       layout.names = std::move(*cells);
-      layout.names_row = row.row.text;
+      layout.names_row = row.at.text;
     }
     if (layout.names.empty() && !std::ranges::all_of(layout.units, LooksLikeUnit)) {
       layout.names = std::exchange(layout.units, {});  // one of the names is a symbol of a unit
@@ -300,7 +282,7 @@ class HeaderFinder {
     FindInterval(layout);
     if (data_ == 0) return;
     if (header == data_) ThrowNoHeader();
-    layout.header_line = reading_.rows[header].row.line;
+    layout.header_line = reading_.rows[header].at.line;
     layout.preamble_rows = header;
   }
 
@@ -311,7 +293,7 @@ class HeaderFinder {
 
   /// A row of the preamble that states the units, "Y_Unit_Label" of LabVIEW or "Unit", behind which
   /// those of the columns stand.
-  void FindStatedUnits(const ClassifiedRow& row, Layout& layout) const {
+  void FindStatedUnits(const Row& row, Layout& layout) const {
     if (!layout.units.empty() || row.cells.size() < 2) return;
     if (!StatesUnits(row.cells.front()) || row.cells.size() > reading_.columns + 1) return;
     layout.units = row.cells;
@@ -324,7 +306,7 @@ class HeaderFinder {
     if (layout.names.empty() || layout.names.front() != "X_Value" || reading_.mostly_numbers[0])
       return;
     for (std::size_t k = 0; k < data_; ++k) {
-      const ClassifiedRow& row = reading_.rows[k];
+      const Row& row = reading_.rows[k];
       if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
       const Cell cell = ReadCell(row.cells[1], true);
       if (cell.kind == Cell::Kind::kNumber && cell.value > 0) layout.interval = cell.value;
@@ -332,12 +314,12 @@ class HeaderFinder {
   }
 
   [[noreturn]] void ThrowNoHeader() const {
-    const ClassifiedRow& row = reading_.rows[data_ - 1];
+    const Row& row = reading_.rows[data_ - 1];
     throw InputError(fmt::format(
         "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
         "every column, or begin the line with '#' if it is a comment{}",
-        file_, row.row.line, ForMessage(row.row.text), reading_.columns,
-        reading_.columns == 1 ? "" : "s", reading_.rows[data_].row.line,
+        file_, row.at.line, ForMessage(row.at.text), reading_.columns,
+        reading_.columns == 1 ? "" : "s", reading_.rows[data_].at.line,
         reading_.delimiter == ',' && row.Columns() > 1 && row.Columns() < reading_.columns
             ? "; or leave out commas that separate thousands or are decimal marks"
             : ""));
@@ -352,21 +334,21 @@ class HeaderFinder {
 /// been a number, stand for it.
 [[noreturn]] void ThrowNoNumbers(const std::string& file, const Reading& reading) {
   const auto data = std::ranges::find_if(
-      reading.rows, [](const ClassifiedRow& row) { return row.Count(Cell::Kind::kText) == 0; });
+      reading.rows, [](const Row& row) { return row.Count(Cell::Kind::kText) == 0; });
   if (data == reading.rows.end() && reading.rows.size() == 1) {
     throw InputError(fmt::format(
         "{}:{}: the file ends after its header, with no row of numbers below it: export the data "
         "too",
-        file, reading.rows.front().row.line));
+        file, reading.rows.front().at.line));
   }
-  const ClassifiedRow& row = data == reading.rows.end() ? reading.rows.back() : *data;
+  const Row& row = data == reading.rows.end() ? reading.rows.back() : *data;
   const auto cell = static_cast<std::size_t>(
       std::ranges::find_if(row.kinds, [](Cell::Kind kind) { return kind != Cell::Kind::kNumber; }) -
       row.kinds.begin());
   throw InputError(fmt::format(
       "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected columns "
       "of numbers under an optional header",
-      file, row.row.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size()));
+      file, row.at.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size()));
 }
 
 /// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.

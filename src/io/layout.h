@@ -11,9 +11,10 @@ namespace mindahl::io {
 struct Layout {
   char delimiter = ',';
   std::size_t columns = 0;
-  std::vector<std::string> names;   ///< one a column, or none
-  std::vector<std::string> units;   // of a units row, one a column, or none
-  std::vector<bool> holds_numbers;  ///< some rows, of the first, have a number in the column
+  std::vector<std::string> names;  ///< one a column, or none
+  std::vector<std::string> units;  // of a units row, one a column, or none
+  std::vector<bool>
+      holds_numbers;  ///< some of the first rows have in the column what is meant as a number
   std::vector<bool> mostly_numbers;
   std::size_t header_line = 0;    ///< line of the names, else of the units row; 0 without either
   std::size_t preamble_rows = 0;  ///< rows above the header

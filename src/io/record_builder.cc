@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,11 +13,9 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kTimePlace = 2;
-
 /// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
 std::string ImpliedTimeUnit(std::string_view word, double first) {
-  if (word == "millis" || word == "msec") return "ms";
+  if (word == "ms" || word == "millis" || word == "msec") return "ms";
   if (word == "micros") return "us";
   if (word == "nanos") return "ns";
   constexpr std::array<std::pair<double, std::string_view>, 4> kScales = {
@@ -28,6 +26,13 @@ std::string ImpliedTimeUnit(std::string_view word, double first) {
     if (first >= kFrom2001 * scale && first <= kTo2100 * scale) return std::string(unit);
   }
   return "";
+}
+
+std::vector<double>& ColumnOf(Samples& samples, Role role) {
+  return role == Role::kDisplacement ? samples.displacement
+         : role == Role::kForce      ? samples.force
+         : role == Role::kTime       ? samples.time
+                                     : samples.normal_load;
 }
 
 /// Refuses numbers of a register whose highest bit is a sign: none lies in the upper half of those
@@ -56,38 +61,36 @@ void RequireNoSignBit(const ColumnNames& names, std::size_t column, const RoleRu
 }  // namespace
 
 RecordBuilder::RecordBuilder(const CsvTable& table, const RecordColumns& columns)
-    : name_(table.file), last_time_(-std::numeric_limits<double>::infinity()) {
-  if (columns.sample_rate) {
-    if (!(*columns.sample_rate > 0) || !std::isfinite(*columns.sample_rate)) {
-      throw InputError(
-          fmt::format("--sample-rate {}: must be finite and > 0 Hz", *columns.sample_rate));
-    }
-    if (!columns.time.empty()) {
-      throw InputError(fmt::format("{}: --time and --sample-rate exclude each other", name_));
-    }
+    : name_(table.file), skip_broken_(columns.skip_broken_rows) {
+  const std::optional<double>& rate = columns.sample_rate;
+  if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
+    throw InputError(fmt::format("--sample-rate {}: must be finite and > 0 Hz", *rate));
+  }
+  if (rate && !columns.time.empty()) {
+    throw InputError(fmt::format("{}: --time and --sample-rate exclude each other", name_));
   }
   file_.notes = table.notes;
   const ColumnNames names(table);
   Roles roles = AssignRoles(names, columns, file_.notes);
   file_.is_torsional = roles.is_torsional;
-  Add(names, Role::kDisplacement, std::move(roles.displacement), columns.displacement,
-      file_.displacement);
-  Add(names, Role::kForce, std::move(roles.force), columns.force, file_.force);
-  if (!roles.time.terms.empty()) AddTime(names, roles.time, columns.time);
+  Choose(names, Role::kDisplacement, std::move(roles.displacement), columns.displacement,
+         file_.displacement);
+  Choose(names, Role::kForce, std::move(roles.force), columns.force, file_.force);
+  if (!roles.time.terms.empty()) ChooseTime(names, roles.time, columns.time);
   if (!roles.normal_load.terms.empty()) {
-    Add(names, Role::kNormalLoad, std::move(roles.normal_load), columns.normal_load,
-        file_.normal_load.emplace());
+    Choose(names, Role::kNormalLoad, std::move(roles.normal_load), columns.normal_load,
+           file_.normal_load.emplace());
   }
   if (file_.time) return;
-  interval_ = columns.sample_rate ? 1.0 / *columns.sample_rate : table.interval;
-  if (table.interval > 0 && !columns.sample_rate) {
+  interval_ = rate ? 1.0 / *rate : table.interval;
+  if (table.interval > 0 && !rate) {
     file_.notes.push_back(
         fmt::format("{}: has no time: its header states {} s between rows", name_, table.interval));
   }
 }
 
-void RecordBuilder::Add(const ColumnNames& names, Role role, Expression columns,
-                        const std::string& text, ChosenColumn& described) {
+void RecordBuilder::Choose(const ColumnNames& names, Role role, Expression columns,
+                           const std::string& text, ChosenColumn& described) {
   const RoleRules& rules = RulesOf(role, file_.is_torsional);
   const Unit unit = FindUnit(names, rules, columns, file_.notes);
   const std::size_t first = columns.terms.front().column;
@@ -97,17 +100,17 @@ void RecordBuilder::Add(const ColumnNames& names, Role role, Expression columns,
   described = {.name = columns.is_plain() ? names.table().columns[first].name : text,
                .index = first + 1,
                .unit = unit.symbol};
-  for (Expression::Term& term : columns.terms) {
-    auto place = std::ranges::find(wanted_, term.column);
-    if (place == wanted_.end()) place = wanted_.insert(wanted_.end(), term.column);
-    term.column = static_cast<std::size_t>(place - wanted_.begin());
+  for (const Expression::Term& term : columns.terms) {
+    if (names.table().columns[term.column].values.empty()) {
+      static_cast<void>(names.table().Numbers(term.column));  // throws
+    }
+    if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
   }
-  const std::size_t place = role == Role::kNormalLoad ? 3 : static_cast<std::size_t>(role);
-  channels_.push_back({place, std::move(columns), unit, rules.name});
+  channels_.push_back({role, std::move(columns), unit, rules.name});
 }
 
-void RecordBuilder::AddTime(const ColumnNames& names, const Expression& given,
-                            const std::string& text) {
+void RecordBuilder::ChooseTime(const ColumnNames& names, const Expression& given,
+                               const std::string& text) {
   Expression columns = given;
   const std::size_t first = columns.terms.front().column;
   const TableColumn& column = names.table().columns[first];
@@ -126,7 +129,7 @@ void RecordBuilder::AddTime(const ColumnNames& names, const Expression& given,
     const auto unit = TimeUnit(names.UnitOf(first, "--time"));
     if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
   } else if (columns.unit.empty() && columns.is_plain()) {
-    const std::string_view word = EvidenceOf(names.split(first).name).word;
+    const std::string_view word = names[first].name.evidence.word;
     columns.unit = ImpliedTimeUnit(word, start);
     if (columns.unit.empty()) {
       columns.unit = "s";
@@ -139,56 +142,122 @@ void RecordBuilder::AddTime(const ColumnNames& names, const Expression& given,
       note(fmt::format("names no unit: taken as {}", columns.unit));
     }
   }
-  Add(names, Role::kTime, std::move(columns), text, file_.time.emplace());
+  Choose(names, Role::kTime, std::move(columns), text, file_.time.emplace());
   file_.time->is_clock = column.is_clock;
 }
 
-std::string RecordBuilder::Convert(std::span<const double> cells, std::size_t line, std::size_t row,
-                                   bool begins_block, RowValues& values) {
-  for (const Channel& channel : channels_) {
-    double value = channel.sum.offset;
-    for (const Expression::Term& term : channel.sum.terms)
-      value += term.weight * cells[term.column];
-    const auto at = [&] {
-      return fmt::format("{}:{}:{}", name_, line, wanted_[channel.sum.terms.front().column] + 1);
-    };
-    if (channel.place == kTimePlace) {
-      value -= time_origin_;
-      if (begins_block && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
-      value += shift_;
-      const double above = std::exchange(last_time_, value);
-      if (value < above) {
-        return fmt::format(
-            "{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
-            "rows, split the file where a clock starts again, or rename the column if it holds no "
-            "time",
-            at(), value, channel.unit.symbol, above, channel.unit.symbol);
-      }
-      if (std::isfinite(above)) last_step_ = value - above;
+double RecordBuilder::Channel::ValueAt(const CsvTable& table, std::size_t row) const {
+  double value = sum.offset;
+  for (const Expression::Term& term : sum.terms) {
+    value += term.weight * table.columns[term.column].values[row];
+  }
+  return value;
+}
+
+std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
+  const std::size_t rows = table.rows();
+  Channel* time = nullptr;
+  for (Channel& channel : channels_) {
+    channel.values = table.columns[channel.sum.terms.front().column].values;
+    if (!channel.sum.is_plain()) {
+      for (std::size_t row = 0; row < rows; ++row)
+        channel.values[row] = channel.ValueAt(table, row);
     }
-    values[channel.place] = channel.unit.ToSi(value);
-    if (!std::isfinite(values[channel.place])) {
-      return fmt::format("{}: {} = {} {} is too large: must be below 1.8e308 in SI units", at(),
-                         channel.name, value, channel.unit.symbol);
+    if (channel.role == Role::kTime) {
+      time = &channel;
+    } else {
+      for (double& value : channel.values) value = channel.unit.ToSi(value);
     }
   }
-  if (!file_.time && interval_ > 0) values[kTimePlace] = static_cast<double>(row) * interval_;
+  auto block = table.blocks.begin();
+  std::string refusal;
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < rows; ++row, ++rows_) {
+    if (block != table.blocks.end() && row == *block) {
+      begins_block_ = true;
+      ++block;
+    }
+    bool is_whole = true;
+    for (const Channel& channel : channels_) {
+      is_whole = is_whole && std::isfinite(channel.values[row]);
+    }
+    if (!is_whole || (time != nullptr && !Follows(*time, row))) {
+      bool is_missing = false;
+      std::string fault = FaultOf(table, row, is_missing);
+      if (!is_missing && !skip_broken_) {
+        refusal = std::move(fault);
+        break;
+      }
+      left_out_.Add(table.lines[row], fault);
+      continue;
+    }
+    begins_block_ = false;
+    if (kept < row) {
+      for (Channel& channel : channels_) channel.values[kept] = channel.values[row];
+    }
+    ++kept;
+    if (time == nullptr && interval_ > 0) {
+      samples.time.push_back(static_cast<double>(rows_) * interval_);
+    }
+    samples.lines.push_back(table.lines[row]);
+  }
+  for (const Channel& channel : channels_) {
+    std::vector<double>& to = ColumnOf(samples, channel.role);
+    const auto end = channel.values.begin() + static_cast<std::ptrdiff_t>(kept);
+    to.insert(to.end(), channel.values.begin(), end);
+  }
+  return refusal;
+}
+
+/// Converts a time.
+/// @returns false where it is before the last
+bool RecordBuilder::Follows(Channel& time, std::size_t row) {
+  double& value = time.values[row];
+  value -= time_origin_;
+  if (begins_block_ && value + shift_ < last_time_) shift_ = last_time_ + last_step_ - value;
+  value += shift_;
+  time_above_ = std::exchange(last_time_, value);
+  if (value < time_above_) return false;
+  if (std::isfinite(time_above_)) last_step_ = value - time_above_;
+  value = time.unit.ToSi(value);
+  return std::isfinite(value);
+}
+
+/// Describes what is wrong with a row.
+std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+  for (const Channel& channel : channels_) {
+    for (const Expression::Term& term : channel.sum.terms) {
+      const TableColumn& column = table.columns[term.column];
+      if (!std::isnan(column.values[row])) continue;
+      is_missing = column.fault.empty() || column.fault_row != row;
+      return is_missing && !column.missing.empty() ? column.missing : column.fault;
+    }
+  }
+  for (const Channel& channel : channels_) {
+    const std::string at =
+        fmt::format("{}:{}:{}", name_, table.lines[row], channel.sum.terms.front().column + 1);
+    const double value = channel.ValueAt(table, row);
+    if (!std::isfinite(channel.unit.ToSi(value))) {
+      return fmt::format("{}: {} = {} {} is too large: must be below 1.8e308 in SI units", at,
+                         channel.name, value, channel.unit.symbol);
+    }
+    if (channel.role != Role::kTime || !(last_time_ < time_above_)) continue;
+    return fmt::format(
+        "{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
+        "rows, split the file where a clock starts again, or rename the column if it holds no "
+        "time",
+        at, last_time_, channel.unit.symbol, time_above_, channel.unit.symbol);
+  }
   return "";
 }
 
-void MissingRows::Count(std::size_t line, const std::string& fault) {
-  if (rows.count++ > 0) return;
-  rows.first_line = line;
-  first = fault;
-}
-
-void MissingRows::RequireFew(std::size_t of_rows) const {
+std::string RecordBuilder::TooManyLeftOut() const {
   // One in a hundred, rounded up from a hundred on.
   constexpr std::size_t kOneIn = 100;
-  const std::size_t most = of_rows < kOneIn ? 0 : (of_rows + kOneIn - 1) / kOneIn;
-  if (rows.count <= most) return;
-  throw InputError(fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
-                               first, rows.count, of_rows));
+  const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
+  if (skip_broken_ || left_out_.count <= most) return "";
+  return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
+                     left_out_.fault, left_out_.count, rows_);
 }
 
 }  // namespace mindahl::io

@@ -22,19 +22,22 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool IsNumber(double value) { return !std::isnan(value); }
 
-/// Keeps some rows of a table's column.
-std::vector<double> AtRows(std::span<const double> values, const std::vector<std::size_t>& rows) {
+/// Returns the numbers of a table's column in the rows of some lines.
+std::vector<double> AtLines(const CsvTable& table, std::size_t column,
+                            const std::vector<std::size_t>& lines) {
+  const std::vector<double>& values = table.columns[column].values;
   std::vector<double> kept;
-  if (values.empty()) return kept;
-  kept.reserve(rows.size());
-  for (const std::size_t row : rows) kept.push_back(values[row]);
+  kept.reserve(lines.size());
+  for (std::size_t row = 0; row < values.size() && kept.size() < lines.size(); ++row) {
+    if (table.lines[row] == lines[kept.size()]) kept.push_back(values[row]);
+  }
   return kept;
 }
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
 void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
-                   const std::vector<std::size_t>& rows, RecordFile& file) {
+                   RecordFile& file) {
   const CsvTable& table = names.table();
   const RoleRules& rules = RulesOf(Role::kOther);
   const auto add = [&](std::size_t column, const std::string& name, std::vector<double> values) {
@@ -58,7 +61,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
       throw InputError(fmt::format("{}: {} is chosen twice as a {}: choose it once", table.file,
                                    names.Label(column), rules.name));
     }
-    std::vector<double> values = AtRows(table.columns[column].values, rows);
+    std::vector<double> values = AtLines(table, column, file.lines);
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) {
       static_cast<void>(table.Numbers(column));  // throws
     }
@@ -71,7 +74,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
                           (file.normal_load && column + 1 == file.normal_load->index);
     if (has_role || is_read(column) || !names.StatesOneUnit(column)) continue;
     if (table.columns[column].values.empty() || table.columns[column].is_clock) continue;
-    std::vector<double> values = AtRows(table.columns[column].values, rows);
+    std::vector<double> values = AtLines(table, column, file.lines);
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (!changes || !std::ranges::all_of(values, IsNumber)) continue;
     add(column, names.NameOf(column), std::move(values));
@@ -79,24 +82,46 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
 }
 
-/// The time of a table, by which another is joined to it; empty where it has none.
+/// Returns the columns that are given for a role, else the one that is recognised; none where there
+/// is none.
+Expression FindColumns(const ColumnNames& names, Role role, const std::string& text,
+                       const std::vector<bool>& taken) {
+  Expression columns = names.Read(text, RulesOf(role));
+  const std::optional<std::size_t> found =
+      columns.terms.empty() ? FindColumnOf(names, role, taken) : std::nullopt;
+  if (found) columns.terms = {{*found, 1.0}};
+  return columns;
+}
+
+/// Returns the numbers of a role's columns in SI units.
+/// @throws InputError where one is missing or too large
+std::vector<double> NumbersOf(const ColumnNames& names, const RoleRules& rules,
+                              const Expression& columns, std::vector<std::string>& notes) {
+  const CsvTable& table = names.table();
+  const Unit unit = FindUnit(names, rules, columns, notes);
+  std::vector<double> values(table.rows(), columns.offset);
+  for (const Expression::Term& term : columns.terms) {
+    const std::span<const double> numbers = table.Numbers(term.column);
+    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
+  }
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const double value = std::exchange(values[row], unit.ToSi(values[row]));
+    if (std::isfinite(values[row])) continue;
+    throw InputError(fmt::format(
+        "{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units", table.file,
+        table.lines[row], columns.terms.front().column + 1, rules.name, value, unit.symbol));
+  }
+  return values;
+}
+
+/// Returns the times of a table, by which another is joined to it; none where it has none.
 std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
-  const std::vector<bool> taken(table.columns.size());
-  Expression time = given.empty() ? Expression{} : names.Read(given, RulesOf(Role::kTime));
-  if (time.terms.empty()) {
-    const std::optional<std::size_t> column = FindColumnOf(names, Role::kTime, taken);
-    if (!column) return {};
-    time.terms = {{*column, 1.0}};
-  }
-  const std::size_t column = time.terms.front().column;
+  Expression time = FindColumns(names, Role::kTime, given, std::vector<bool>(names.size()));
+  if (time.terms.empty()) return {};
+  if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
-  const Unit unit = table.columns[column].is_clock
-                        ? Unit{.symbol = "s"}
-                        : FindUnit(names, RulesOf(Role::kTime), time, notes);
-  std::vector<double> times(table.columns[column].values);
-  for (double& value : times) value = unit.ToSi(value);
-  return times;
+  return NumbersOf(names, RulesOf(Role::kTime), std::move(time), notes);
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
@@ -138,100 +163,29 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
   table.header_line = std::max<std::size_t>(table.header_line, 1);
 }
 
-/// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
-/// recognised. Taking SI for granted is the documented default here.
-std::vector<double> ReadPathColumn(const CsvTable& table, Role role, const std::string& text) {
-  const ColumnNames names(table);
-  const std::vector<bool> taken(table.columns.size());
-  Expression columns = names.Read(text, RulesOf(role));
-  if (columns.terms.empty()) {
-    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
-    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
-    columns.terms = {{found.value_or(0), 1.0}};
-  }
-  const Dimension dimension = columns.unit.empty() ? names.DimensionOf(columns.terms.front().column)
-                                                   : DimensionOfUnit(columns.unit);
-  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
-  const bool may_be = role != Role::kForce;
-  std::vector<std::string> notes;
-  const RoleRules& rules = RulesOf(role, is_torsional && may_be);
-  const Unit unit = FindUnit(names, rules, columns, notes);
-  std::vector<double> values(table.rows(), columns.offset);
-  for (const Expression::Term& term : columns.terms) {
-    const std::span<const double> numbers = table.Numbers(term.column);
-    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
-  }
-  for (std::size_t row = 0; row < values.size(); ++row) {
-    const double value = std::exchange(values[row], unit.ToSi(values[row]));
-    if (std::isfinite(values[row])) continue;
-    throw InputError(fmt::format(
-        "{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units", table.file,
-        table.lines[row], columns.terms.front().column + 1, rules.name, value, unit.symbol));
-  }
-  return values;
-}
-
 }  // namespace
 
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   RecordBuilder builder(table, columns);
-  const std::vector<std::size_t>& wanted = builder.wanted();
-  std::string fault;
-  std::size_t fault_row = table.rows();
-  for (const std::size_t column : wanted) {
-    const TableColumn& of = table.columns[column];
-    if (of.values.empty()) static_cast<void>(table.Numbers(column));  // throws
-    if (of.fault.empty() || of.fault_row >= fault_row) continue;
-    fault = of.fault;
-    fault_row = of.fault_row;
-  }
-  if (!fault.empty() && !columns.skip_broken_rows) throw InputError(fault);
-
+  Samples samples;
+  std::string fault = builder.Add(table, samples);
+  if (fault.empty()) fault = builder.TooManyLeftOut();
   RecordFile& file = builder.file();
-  std::vector<double> cells(wanted.size());
-  std::vector<std::size_t> rows;
-  rows.reserve(table.rows());
-  MissingRows missing;
-  RowValues values{};
-  auto block = table.blocks.begin();
-  bool begins_block = false;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (block != table.blocks.end() && row == *block) {
-      begins_block = true;
-      ++block;
-    }
-    const std::string* first_missing = nullptr;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      cells[k] = table.columns[wanted[k]].values[row];
-      if (IsNumber(cells[k]) || first_missing != nullptr) continue;
-      const TableColumn& of = table.columns[wanted[k]];
-      first_missing = of.missing.empty() ? &of.fault : &of.missing;
-    }
-    if (first_missing != nullptr) {
-      missing.Count(table.lines[row], *first_missing);
-      continue;
-    }
-    const std::string broken = builder.Convert(cells, table.lines[row], row, begins_block, values);
-    if (!broken.empty()) {
-      if (!columns.skip_broken_rows) throw InputError(broken);
-      missing.Count(table.lines[row], broken);
-      continue;
-    }
-    begins_block = false;
-    builder.Append(values, file.record);
-    file.lines.push_back(table.lines[row]);
-    rows.push_back(row);
-  }
-  if (!columns.skip_broken_rows) missing.RequireFew(table.rows());
-  if (rows.empty()) throw InputError(missing.first);
-  file.left_out = missing.rows;
-  if (missing.rows.count > 0) {
+  file.left_out = builder.left_out();
+  if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
+  if (!fault.empty()) throw InputError(fault);
+  if (file.left_out.count > 0) {
     file.notes.push_back(fmt::format(
         "{}: {} of {} rows have no number in a column that is used and are left out, the first in "
         "line {}",
-        table.file, missing.rows.count, table.rows(), missing.rows.first_line));
+        table.file, file.left_out.count, table.rows(), file.left_out.first_line));
   }
-  AddCovariates(ColumnNames(table), columns.covariates, rows, file);
+  file.record = {.displacement = std::move(samples.displacement),
+                 .force = std::move(samples.force),
+                 .time = std::move(samples.time),
+                 .normal_load = std::move(samples.normal_load)};
+  file.lines = std::move(samples.lines);
+  AddCovariates(ColumnNames(table), columns.covariates, file);
   return std::move(file);
 }
 
@@ -255,25 +209,24 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
   SweepFile sweep;
   sweep.lines = table.lines;
   sweep.notes = table.notes;
-  std::vector<bool> taken(table.columns.size());
+  std::vector<bool> taken(names.size());
+  const auto is_chosen = [&](Role role, const std::string& text) {
+    return !names.Read(text, RulesOf(role)).terms.empty();
+  };
   const auto find = [&](Role role, const std::string& text) {
-    Expression found = names.Read(text, RulesOf(role));
-    if (found.terms.empty()) {
-      if (const auto column = FindColumnOf(names, role, taken)) found.terms = {{*column, 1.0}};
-    }
+    Expression found = FindColumns(names, role, text, taken);
     if (!found.terms.empty()) taken[found.terms.front().column] = true;
     return found;
-  };
-  const auto is_chosen = [&](const std::string& text, Role role) {
-    return !names.Read(text, RulesOf(role)).terms.empty();
   };
   Expression responses = find(Role::kResponse, response);
   Expression displacement;
   Expression force;
-  if (!is_chosen(columns.force, Role::kForce))
+  if (!is_chosen(Role::kForce, columns.force)) {
     displacement = find(Role::kDisplacement, columns.displacement);
-  if (!is_chosen(columns.displacement, Role::kDisplacement))
+  }
+  if (!is_chosen(Role::kDisplacement, columns.displacement)) {
     force = find(Role::kForce, columns.force);
+  }
   if (responses.terms.empty()) {
     throw InputError(
         fmt::format("{}: no column of a stiffness or compliance is recognised: name it "
@@ -291,42 +244,41 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
       responses.unit.empty() ? names.UnitOf(of_response, "--response") : responses.unit;
   sweep.is_compliance =
       LengthUnit(stated.substr(0, stated.find('/'))).has_value() ||
-      (stated.empty() && EvidenceOf(names.split(of_response).name).word.ends_with("compliance"));
-  const auto read = [&](Role role, Expression& of) {
-    const RoleRules& rules = RulesOf(role);
-    const Unit unit = FindUnit(names, rules, of, sweep.notes);
+      (stated.empty() && names[of_response].name.evidence.word.ends_with("compliance"));
+  const auto read = [&](Role role, Expression of) {
     const std::size_t column = of.terms.front().column;
-    std::vector<double> values;
-    for (const double number : table.Numbers(column)) {
-      values.push_back(unit.ToSi(of.terms.front().weight * number + of.offset));
-      if (values.back() > 0 && std::isfinite(values.back())) continue;
-      throw InputError(
-          fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row", table.file,
-                      table.lines[values.size() - 1], column + 1, values.back()));
-    }
-    return values;
+    std::vector<double> values = NumbersOf(names, RulesOf(role), std::move(of), sweep.notes);
+    const auto bad = std::ranges::find_if(values, [](double value) { return !(value > 0); });
+    if (bad == values.end()) return values;
+    throw InputError(
+        fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row", table.file,
+                    table.lines[static_cast<std::size_t>(bad - values.begin())], column + 1, *bad));
   };
-  sweep.amplitude = read(sweep.over_force ? Role::kForce : Role::kDisplacement,
-                         sweep.over_force ? force : displacement);
-  sweep.response = read(Role::kResponse, responses);
+  sweep.amplitude = sweep.over_force ? read(Role::kForce, std::move(force))
+                                     : read(Role::kDisplacement, std::move(displacement));
+  sweep.response = read(Role::kResponse, std::move(responses));
   return sweep;
 }
 
-std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
-                                         const std::string& displacement) {
-  return ReadPathColumn(ReadCsvTable(path), Role::kDisplacement, displacement);
-}
-
-LoadedPath ReadLoadedPath(const std::filesystem::path& path, const std::string& displacement,
-                          const std::string& normal_load) {
-  const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, Role::kDisplacement, displacement),
-          ReadPathColumn(table, Role::kNormalLoad, normal_load)};
-}
-
-ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force) {
-  const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, Role::kForce, force), table.lines};
+std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
+                                  const std::string& column) {
+  const Role role = quantity == Imposed::kDisplacement ? Role::kDisplacement
+                    : quantity == Imposed::kForce      ? Role::kForce
+                                                       : Role::kNormalLoad;
+  const ColumnNames names(table);
+  const std::vector<bool> taken(names.size());
+  Expression columns = names.Read(column, RulesOf(role));
+  if (columns.terms.empty()) {
+    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
+    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
+    columns.terms = {{found.value_or(0), 1.0}};
+  }
+  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
+                                                   : DimensionOfUnit(columns.unit);
+  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
+  std::vector<std::string> notes;  // SI is the documented default here
+  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), std::move(columns),
+                   notes);
 }
 
 }  // namespace mindahl::io

@@ -192,14 +192,14 @@ void LinePieces::ReadMore() {
   }
   std::string_view added = std::string_view(text_).substr(std::min(before, text_.size()));
   if (const std::size_t zero = added.find('\0'); zero != std::string_view::npos) {
-    throw InputError(fmt::format(
-        "{}:{}: is not text, it holds a zero byte: export it as CSV", name_,
-        lines_ + 1 + static_cast<std::uintmax_t>(std::ranges::count(added.substr(0, zero), '\n'))));
+    const bool is_first = bytes_ == size;
+    const auto line = 1 + std::ranges::count(added.substr(0, zero), '\n');
+    throw InputError(fmt::format("{}{}: is not text, it holds a zero byte: export it as CSV", name_,
+                                 is_first ? fmt::format(":{}", line) : ""));
   }
   if (bytes_ == size)
     ends_lines_in_cr_ = added.find('\n') == added.npos && added.find('\r') != added.npos;
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
-  lines_ += static_cast<std::uintmax_t>(std::ranges::count(added, '\n'));
 }
 
 std::size_t LinePieces::ReadBytes(char* to) {

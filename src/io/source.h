@@ -73,7 +73,6 @@ class LinePieces {
   std::string undecoded_;  // bytes of a character that is cut
   std::string text_;
   std::size_t given_ = 0;  // bytes of it that were returned
-  std::uintmax_t lines_ = 0;
   std::uintmax_t bytes_ = 0;
   bool begun_ = false;
   bool ends_lines_in_cr_ = false;

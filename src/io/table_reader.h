@@ -5,37 +5,65 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cells.h"
 #include "io/layout.h"
-#include "io/row_reader.h"
 #include "mindahl/io/csv_table.h"
 
 namespace mindahl::io {
 
-/// Fills a table from a text that comes in pieces.
+/// Fills a table from the rows of a text that comes in pieces.
 class TableReader {
  public:
-  /// @param text         the begin of the file, in which its layout is found
+  /// @param wanted       columns to read, from 0, each once; the others stay empty
   /// @param skip_broken  rows that are at fault are left out
-  TableReader(std::string_view text, const std::string& file, bool skip_broken);
+  TableReader(const Layout& layout, std::string file, std::vector<std::size_t> wanted,
+              bool skip_broken);
+  /// Reads all columns of numbers.
+  TableReader(const Layout& layout, std::string file, bool skip_broken);
 
-  /// Reads further rows.
+  /// Reads further rows, up to one that is at fault.
   /// @param text  of whole lines; the first piece without what is above the data
-  /// @throws InputError at a row that is at fault
   void Read(std::string_view text);
-  /// @throws InputError for text below the data
-  CsvTable Finish();
+  /// Notes that there are no further rows: text below the data is a fault.
+  void Finish() { EndGap(/*repeats=*/false); }
 
-  [[nodiscard]] const Layout& layout() const { return layout_; }
-  [[nodiscard]] std::size_t rows() const { return table_.rows(); }
+  /// Returns the fault of the row at which reading ended; "" where there is none.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+  [[nodiscard]] const LeftOutRows& skipped() const { return skipped_; }
+  [[nodiscard]] CsvTable& table() { return table_; }
+  /// Forgets the rows read so far.
+  void Clear();
 
  private:
+  void ReadRow(std::string_view row);
+  bool ReadCells(std::string_view row);
+  bool BelongsToHeader(std::string_view row);
+  void EndGap(bool repeats);
+  void AddCellFault(std::size_t place, bool is_missing, const std::string& message);
+  void Refuse(const std::string& fault);
+  [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
+  double ValueOf(std::size_t place, std::string_view text);
+
   Layout layout_;
   CsvTable table_;
-  std::vector<std::size_t> wanted_;  // columns that hold numbers
-  RowReader rows_;
-  std::vector<double> values_;
+  std::vector<std::size_t> wanted_;
+  std::vector<int> places_;  // of each column, among the wanted; -1 where it is not
+  std::vector<double> values_, last_clock_;
+  struct CellFault {
+    std::size_t place;
+    bool is_missing;
+    std::string message;
+  };
+  std::vector<CellFault> cell_faults_;  // of the row
   std::size_t line_;
+  std::size_t row_line_ = 0;
+  char mark_ = '\0';  // the decimal mark, once one was seen
+  std::size_t mark_line_ = 0;
+  std::string gap_fault_;  // of the first row of text since the last row of numbers
+  bool has_repeated_header_ = false;
   bool skip_broken_;
+  LeftOutRows skipped_;
+  std::string fault_;
 };
 
 }  // namespace mindahl::io

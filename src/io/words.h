@@ -38,17 +38,20 @@ inline constexpr std::array kWords = {
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
             "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重"},
-    WordRow{Role::kForce, 2, false, "load|loadcell|last|charge|carga|carico|载荷|荷载"},
+    WordRow{Role::kForce, 2, false,
+            "load|loadcell|last|charge|carga|carico|weight|gewicht|载荷|荷载"},
     WordRow{Role::kForce, 2, true,
             "torque|moment|*drehmoment|couple|coppia|par|tau|τ|扭矩|力矩|トルク"},
     WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},
     WordRow{Role::kForce, 4, false, "F|f|Q|P"},
     WordRow{Role::kForce, 5, false, "T"},
-    WordRow{Role::kTime, 0, false,
-            "time|timestamp|time stamp|elapsed|*zeit|temps|tiempo|tempo|时间|時間|時刻"},
-    WordRow{Role::kTime, 1, false,
-            "t|millis|micros|nanos|seconds|secs|sec|msec|stamp|clock|datetime|date|datum|uhrzeit|"
-            "fecha|hora|heure"},
+    WordRow{
+        Role::kTime, 0, false,
+        "time|timestamp|time stamp|elapsed|*zeit|zeitstempel|temps|tiempo|tempo|时间|時間|時刻"},
+    WordRow{
+        Role::kTime, 1, false,
+        "t|ms|millis|micros|nanos|seconds|secs|sec|msec|stamp|clock|datetime|date|datum|uhrzeit|"
+        "fecha|hora|heure"},
     WordRow{Role::kTime, 2, false, "x value"},
     WordRow{Role::kNormalLoad, 0, false,
             "normal load|normal force|*normalkraft|charge normale|force normale|effort normal|"

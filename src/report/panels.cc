@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/html.h"
+#include "io/drawing.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/report/units.h"
 #include "report/answer.h"
@@ -97,9 +97,6 @@ LoopPanels DrawLoop(const Report& report) {
   panels.residual = {.x_label = along,
                      .y_label = fmt::format("fitted − measured [{}]", units.residual.name),
                      .height = 0.45};
-  // Both leave the same room for the numbers of the vertical axis, and lie over one another.
-  constexpr double kRoom = 76.0;
-  panels.loop.label_room = panels.residual.label_room = kRoom;
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
   for (std::size_t r = 0; r < records; ++r) {

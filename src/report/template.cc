@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <kainjow/mustache.hpp>
 #include <sstream>
 #include <stdexcept>
 
-#include "io/html.h"
-#include "io/panel_drawing.h"
+#include "io/drawing.h"
 #include "mindahl/core/version.h"
 #include "report/templates.h"
 
@@ -147,16 +147,19 @@ std::string_view CssClass(Judgement judgement) {
 
 Json FigureData(const std::optional<io::PlotPanel>& panel, const std::string& id) {
   if (!panel) return {};
-  io::PageDrawing drawing = io::DrawForPage(*panel, id);
+  constexpr int kWidth = 560;  // [px]
+  constexpr std::size_t kMostPoints = 6000;
+  const double axes = std::round(kWidth / 2.0 * panel->height);
   Json legend = Json::array();
-  for (const auto& [symbol, label] : drawing.legend) {
+  for (const auto& [symbol, label] : io::LegendOf(*panel)) {
     legend.push_back({{"symbol", symbol}, {"label", label}});
   }
   return {{"id", id},
-          {"width", drawing.width},
-          {"height", drawing.height},
+          {"width", kWidth},
+          {"height", static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes)},
           {"legend", std::move(legend)},
-          {"elements", std::move(drawing.elements)}};
+          {"elements",
+           io::DrawPanel(*panel, fmt::format("figure '{}'", id), kWidth, axes, kMostPoints)}};
 }
 
 Json VerdictData(std::string_view css_class, std::string_view word, std::string_view sentence) {

@@ -44,14 +44,12 @@ std::string UnitAlone(const std::string& unit) {
 
 ImposedMotion MotionFromFile(const DriveRequest& request) {
   ImposedMotion motion;
-  const std::string displacement = UnitAlone(request.path_unit);
-  if (request.load_column.empty()) {
-    motion.displacement = io::ReadDisplacementPath(request.path, displacement);
-  } else {
-    io::LoadedPath loaded = io::ReadLoadedPath(request.path, displacement,
-                                               request.load_column + UnitAlone(request.load_unit));
-    motion.displacement = std::move(loaded.displacement);
-    motion.normal_load = std::move(loaded.normal_load);
+  const io::CsvTable table = io::ReadCsvTable(request.path);
+  motion.displacement =
+      io::ImposedColumn(table, io::Imposed::kDisplacement, UnitAlone(request.path_unit));
+  if (!request.load_column.empty()) {
+    motion.normal_load = io::ImposedColumn(table, io::Imposed::kNormalLoad,
+                                           request.load_column + UnitAlone(request.load_unit));
   }
   motion.time = CountRows(motion.displacement.size());
   return motion;
@@ -88,15 +86,17 @@ ImposedMotion MotionFromWaveform(const DriveRequest& request, const models::Bran
 }  // namespace
 
 ImposedForce ReadImposedForce(const DriveRequest& request, const models::BranchLaw& law) {
-  io::ForcePath path = io::ReadForcePath(request.force_path, UnitAlone(request.force_path_unit));
-  for (std::size_t i = 0; i < path.force.size(); ++i) {
-    if (std::abs(path.force[i]) < law.slip_force) continue;
+  const io::CsvTable table = io::ReadCsvTable(request.force_path);
+  std::vector<double> force =
+      io::ImposedColumn(table, io::Imposed::kForce, UnitAlone(request.force_path_unit));
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (std::abs(force[i]) < law.slip_force) continue;
     throw InputError(fmt::format(
         "{}:{}: a force of {} N is not within the slip force, {} N, at which the contact slides "
         "any distance: keep forces below it, or impose the displacement with --path",
-        request.force_path, path.lines[i], path.force[i], law.slip_force));
+        request.force_path, table.lines[i], force[i], law.slip_force));
   }
-  return {CountRows(path.force.size()), std::move(path.force)};
+  return {CountRows(force.size()), std::move(force)};
 }
 
 ImposedMotion MakeMotion(const DriveRequest& request, const models::BranchLaw& law) {

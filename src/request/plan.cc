@@ -376,7 +376,6 @@ std::string ToJson(const Plan& plan) {
 io::Plot ToPlot(const Plan& plan) {
   constexpr int kPoints = 60;
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
-  plot.columns = 1;
   const FitOptions fit_options = FitOptionsOf(plan.request);
   for (const auto& [state, name] : kStates) {
     if (plan.request.initial_state.value_or(state) != state) continue;

@@ -148,12 +148,11 @@ std::string ToPage(const TrackedTest& test, const std::vector<Evolution>& evolut
 
 io::Plot ToPlot(const TrackedTest& test, const std::vector<Evolution>& evolutions) {
   constexpr int kPanelHeight = 230;  // [px]
-  io::Plot plot{.title = report::NameOf(test.files),
-                .panels = PanelsOf(test, evolutions),
-                .subtitle = campaign::Headline(evolutions)};
+  io::Plot plot{.title = report::NameOf(test.files), .panels = PanelsOf(test, evolutions)};
   if (plot.panels.empty()) {
     throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
   }
+  plot.panels.front().title = campaign::Headline(evolutions);
   plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
   return plot;
 }
@@ -259,7 +258,7 @@ void TrackRun::EndSource() {
 }
 
 void TrackRun::ReadFile(const std::string& file) {
-  io::RecordStream stream(file, request_.fit.columns, request_.broken_rows);
+  io::RecordStream stream(file, request_.fit.columns);
   for (const std::string& note : stream.layout().notes) {
     if (events_.note) events_.note(note);
   }
@@ -280,18 +279,19 @@ void TrackRun::ReadFile(const std::string& file) {
     if (!stream.Next(piece)) break;
   }
   EndSource();
-  test_.broken_rows += stream.broken_rows();
   bytes_before_ += stream.bytes();
-  const io::LeftOutRows& left_out = stream.left_out();
-  if (left_out.count > 0 && stream.broken_rows() == 0 && events_.note) {
+  const io::LeftOutRows left_out = stream.left_out();
+  const bool skips = request_.fit.columns.skip_broken_rows;
+  if (skips) test_.broken_rows += left_out.count;
+  if (left_out.count > 0 && !skips && events_.note) {
     events_.note(
         fmt::format("{}: {} rows have no number in a column that is used and are left out, the "
                     "first in line {}",
                     file, left_out.count, left_out.first_line));
   }
-  if (stream.broken_rows() > 0 && events_.warn) {
-    events_.warn(fmt::format("{} broken rows of {} were skipped, the first: {}",
-                             stream.broken_rows(), file, stream.first_broken_row()));
+  if (left_out.count > 0 && skips && events_.warn) {
+    events_.warn(fmt::format("{} broken rows of {} were skipped, the first: {}", left_out.count,
+                             file, left_out.fault));
   }
 }
 

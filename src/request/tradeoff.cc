@@ -200,10 +200,7 @@ io::Plot ToPlot(const Tradeoff& study) {
   const std::vector<MeasuredExcitation>& scenes = study.excitations;
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
   io::Plot plot{.title = "Work and precision: largest force error against cost"};
-  plot.columns = scenes.size() > 1 ? 2 : 1;
-  const int rows = static_cast<int>((scenes.size() + 1) / 2);
-  plot.width = plot.columns == 2 ? 1500 : 900;
-  plot.height = 60 + 460 * rows;
+  plot.height = 60 + 460 * static_cast<int>(scenes.size());
   for (const MeasuredExcitation& scene : scenes) {
     io::PlotPanel panel{.x_label = "cost [ns/sample]", .y_label = "largest error of T over T*"};
     panel.log_x = true;
@@ -225,7 +222,7 @@ io::Plot ToPlot(const Tradeoff& study) {
       curves[label].y.push_back(std::max(point.precision.max_force, kRounding));
     }
     // One legend serves all panels: their curves are the same.
-    const bool has_legend = &scene == &scenes.back();
+    const bool has_legend = &scene == &scenes.front();
     for (const std::string& label : order) {
       panel.series.push_back(curves[label]);
       if (!has_legend) panel.series.back().label.clear();

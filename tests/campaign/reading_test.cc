@@ -42,7 +42,7 @@ TEST(ReadHead, GoesOnUntilTheMotionHasTurnedEightTimes) {
     for (int k = 0; k < 100; ++k) rows += row;
   }
   const TemporaryDirectory directory;
-  io::RecordStream stream(directory.Write("long.csv", rows), {}, io::BrokenRows::kRefuse);
+  io::RecordStream stream(directory.Write("long.csv", rows));
   const io::Samples head = ReadHead(stream);
   EXPECT_GE(loop::ChooseReversalGate(head.displacement).count, 8U);
 }

@@ -31,7 +31,7 @@ std::optional<io::RecordFile> ReadWhole(const std::string& path,
 std::optional<io::Samples> ReadStreamed(const std::string& path,
                                         const io::RecordColumns& columns = {}) {
   try {
-    io::RecordStream stream(path, columns, io::BrokenRows::kRefuse);
+    io::RecordStream stream(path, columns);
     io::Samples all;
     io::Samples piece;
     while (stream.Next(piece)) {

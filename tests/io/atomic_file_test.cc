@@ -18,14 +18,6 @@ mode_t Permissions(const std::filesystem::path& path) {
   return status.st_mode & 07777;
 }
 
-TEST(AtomicFile, WritesTextAndBytes) {
-  const TemporaryDirectory directory;
-  const std::string content("a\0b\r\n\xFF", 6);
-  WriteFileAtomically(directory.path() / "out", content);
-  EXPECT_EQ(FileContent(directory.path() / "out"), content);
-  EXPECT_EQ(directory.FileCount(), 1u);
-}
-
 TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
   // A file or a link that another put where a temporary one is to be written stays as it is.
   const TemporaryDirectory directory;
@@ -37,18 +29,15 @@ TEST(OpenFile, OfANewNameFailsWhereOneIsThere) {
   EXPECT_EQ(CloseFile(file), 0);
 }
 
-TEST(AtomicFile, WritesEmptyFile) {
+TEST(AtomicFile, ReplacesTheContentByTextBytesAndNothing) {
   const TemporaryDirectory directory;
-  WriteFileAtomically(directory.path() / "out", "");
-  EXPECT_EQ(FileContent(directory.path() / "out"), "");
-  EXPECT_EQ(directory.FileCount(), 1u);
-}
-
-TEST(AtomicFile, ReplacesLongerFile) {
-  const TemporaryDirectory directory;
-  const auto path = directory.Write("out", "a long content");
-  WriteFileAtomically(path, "short");
-  EXPECT_EQ(FileContent(path), "short");
+  const auto path = directory.path() / "out";
+  for (const std::string& content : {std::string("a\0b\r\n\xFF", 6), std::string("a long text"),
+                                     std::string("short"), std::string()}) {
+    WriteFileAtomically(path, content);
+    EXPECT_EQ(FileContent(path), content);
+    EXPECT_EQ(directory.FileCount(), 1u);
+  }
 }
 
 TEST(AtomicFile, LeavesOldContentToReaderThatHasTheFileOpen) {
@@ -61,17 +50,13 @@ TEST(AtomicFile, LeavesOldContentToReaderThatHasTheFileOpen) {
   EXPECT_EQ(content, "old");
 }
 
-TEST(AtomicFile, GivesNewFilePermissionsOfUmask) {
+TEST(AtomicFile, GivesANewFilePermissionsOfTheUmaskAndKeepsThoseOfAnother) {
   const TemporaryDirectory directory;
+  const auto path = directory.path() / "out";
   const mode_t old_mask = ::umask(027);
-  WriteFileAtomically(directory.path() / "out", "x");
+  WriteFileAtomically(path, "x");
   ::umask(old_mask);
-  EXPECT_EQ(Permissions(directory.path() / "out"), 0640u);
-}
-
-TEST(AtomicFile, KeepsPermissionsOfExistingFile) {
-  const TemporaryDirectory directory;
-  const auto path = directory.Write("out", "old");
+  EXPECT_EQ(Permissions(path), 0640u);
   ::chmod(path.c_str(), 0604);
   WriteFileAtomically(path, "new");
   EXPECT_EQ(Permissions(path), 0604u);
@@ -95,12 +80,7 @@ TEST(AtomicFile, WritesToNameInWorkingDirectory) {
   EXPECT_EQ(FileContent(directory.path() / "out"), "x");
 }
 
-TEST(AtomicFile, WritesStraightToDevice) {
-  WriteFileAtomically("/dev/null", "x");
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-}
-
-TEST(AtomicFile, WritesStraightToPipe) {
+TEST(AtomicFile, WritesStraightToPipeAndDevice) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "pipe";
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
@@ -110,6 +90,8 @@ TEST(AtomicFile, WritesStraightToPipe) {
   reader.join();
   EXPECT_EQ(read, "through the pipe");
   EXPECT_TRUE(std::filesystem::is_fifo(path));
+  WriteFileAtomically("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST(AtomicFile, AppendsToRegularFileBehindDescriptor) {
@@ -121,23 +103,17 @@ TEST(AtomicFile, AppendsToRegularFileBehindDescriptor) {
   EXPECT_EQ(FileContent(path), "begun continued");
 }
 
-TEST(AtomicFile, NamesMissingDirectoryAndReason) {
+TEST(AtomicFile, SaysWhyItCannotWrite) {
   const TemporaryDirectory directory;
+  const auto refusal = [](const std::filesystem::path& path) {
+    return MessageOf<InputError>([&] { WriteFileAtomically(path, "x"); });
+  };
   const auto path = directory.path() / "none" / "x.csv";
-  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(path, "x"); }),
-            "cannot write '" + path.string() + "': No such file or directory");
-}
-
-TEST(AtomicFile, RefusesDirectory) {
-  const TemporaryDirectory directory;
-  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(directory.path(), "x"); }),
+  EXPECT_EQ(refusal(path), "cannot write '" + path.string() + "': No such file or directory");
+  EXPECT_EQ(refusal(directory.path()),
             "cannot write '" + directory.path().string() + "': Is a directory");
-}
-
-TEST(AtomicFile, ReportsFullDevice) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  EXPECT_EQ(MessageOf<InputError>([] { WriteFileAtomically("/dev/full", "x"); }),
-            "cannot write '/dev/full': No space left on device");
+  EXPECT_EQ(refusal("/dev/full"), "cannot write '/dev/full': No space left on device");
 }
 
 TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {

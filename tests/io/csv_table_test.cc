@@ -3,354 +3,178 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "support/prelude.h"
-#include "temporary_directory.h"
+#include <map>
+
+#include "reading.h"
 
 namespace mindahl::io::csv_table_test {
 namespace {
-
-using Strings = std::vector<std::string>;
-using Lines = std::vector<std::size_t>;
-using Numbers = std::vector<double>;
 
 CsvTable Parse(const std::string& text) {
   const TemporaryDirectory directory;
   return ReadCsvTable(directory.Write("loop.csv", text));
 }
 
-/// Returns cells, or none where all are empty.
-Strings CellsOf(const CsvTable& table, std::string TableColumn::*member) {
-  Strings cells;
-  for (const TableColumn& column : table.columns) cells.push_back(column.*member);
-  const bool has_any = std::ranges::any_of(cells, [](auto& cell) { return !cell.empty(); });
-  return has_any ? cells : Strings{};
+/// Returns "x;F"; "" where all cells are empty.
+std::string CellsOf(const CsvTable& table, std::string TableColumn::*member) {
+  std::string cells;
+  bool has_any = false;
+  for (const TableColumn& column : table.columns) {
+    cells += (cells.empty() ? "" : ";") + column.*member;
+    has_any = has_any || !(column.*member).empty();
+  }
+  return has_any ? cells : "";
 }
-Strings NamesOf(const CsvTable& table) { return CellsOf(table, &TableColumn::name); }
-Strings UnitsOf(const CsvTable& table) { return CellsOf(table, &TableColumn::unit); }
 
 Numbers Column(const CsvTable& table, std::size_t column) {
   const auto numbers = table.Numbers(column);
   return {numbers.begin(), numbers.end()};
 }
 
-// --- Formats that all hold the same table: x = 0, 1.5, -2; F = 0.5, 3e-3, 1e5 -------------------
+// Texts that hold the same table: x = 0, 1.5, -2; F = 0.5, 3e-3, 1e5; its names and units.
+const std::string kFormats = R"formats(
+x,F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
+x, F¶0, .5¶ 1.5 ,→3e-3 ¶-2, 1E5¶ | x;F | -
+x;F¶0;.5¶1.5;3e-3¶-2;1E5¶ | x;F | -
+x;F¶0;0,5¶1,5;3e-3¶-2;1E5¶ | x;F | -
+x→F¶0→.5¶1.5→3e-3¶-2→1E5¶ | x;F | -
+x→F¶0→0,5¶1,5→0,003¶-2→1E5¶ | x;F | -
+x F¶0 .5¶1.5 3e-3¶-2 1E5¶ | x;F | -
+¶    x       F¶  0      .5  ¶  1.5  3e-3¶ -2     1E5¶ | x;F | -
+x F¶0 0,5¶1,5 0,003¶-2 1E5¶ | x;F | -
+x,F␍¶0,.5␍¶1.5,3e-3␍¶-2,1E5␍¶ | x;F | -
+x,F␍0,.5␍1.5,3e-3␍-2,1E5␍ | x;F | -
+x,F¶0,.5¶1.5,3e-3¶-2,1E5 | x;F | -
+"x","F"¶"0",".5"¶1.5,"3e-3"¶-2," 1E5 "¶ | x;F | -
+"x, mm",F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x, mm;F | -
+"x¶y",F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x y;F | -
+# rig, 3¶x,F¶#1,2¶0,.5¶  # note¶1.5,3e-3¶-2,1E5¶#end¶ | x;F | -
+¶¶x,F¶¶0,.5¶  →¶1.5,3e-3¶-2,1E5¶¶¶ | x;F | -
+x,F¶,¶0,.5¶1.5,3e-3¶,¶-2,1E5¶,¶ | x;F | -
+sample_rate,200¶rig,A¶x,F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
+range,0,10¶x,F,c¶0,.5,1¶1.5,3e-3,1¶-2,1E5,1¶ | x;F;c | -
+Run 7, with oil, at night¶x,F¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
+x,F¶mm,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | mm;N
+x→F¶[mm]→[N]¶¶0→.5¶1.5→3e-3¶-2→1E5¶ | x;F | [mm];[N]
+x,F¶furlong,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | furlong;N
+mm,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | - | mm;N
+x,N¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;N | -
+x,F¶0,.5,¶1.5,3e-3,¶-2,1E5,¶ | x;F | -
+x,F,¶0,.5¶1.5,3e-3¶-2,1E5¶ | x;F | -
+x;F;¶0;.5;¶1.5;3e-3;¶-2;1E5;¶ | x;F | -
+0,.5¶1.5,3e-3¶-2,1E5¶ | - | -
+x [mm] F (N)¶0 .5¶1.5 3e-3¶-2 1E5¶ | x [mm];F (N) | -
+pad position  normal load¶0 .5¶1.5 3e-3¶-2 1E5¶ | pad position;normal load | -
+x,F,state¶0,.5,ok¶1.5,3e-3,a;b¶-2,1E5,7¶ | x;F;state | -
+x;F;date¶0;0,5;2024-07-12 16:46:43¶1,5;0,003;2024-07-12 16:46:44¶-2;1E5;2024-07-12 16:46:45¶ |
+   x;F;date | -
+x,F¶+0,+.5¶+1.5,+3e-3¶-2,+1E+5¶ | x;F | -
+)formats";
 
-struct Format {
-  std::string name;
-  std::string text;
-  Strings names = {"x", "F"};
-  Strings units = {};
-};
-
-void PrintTo(const Format& format, std::ostream* out) { *out << format.name; }
-
-class CsvTableFormat : public ::testing::TestWithParam<Format> {};
-
-TEST_P(CsvTableFormat, HoldsTheSameTable) {
-  const CsvTable table = Parse(GetParam().text);
-  EXPECT_EQ(NamesOf(table), GetParam().names);
-  EXPECT_EQ(UnitsOf(table), GetParam().units);
-  ASSERT_GE(table.columns.size(), 2u);
-  EXPECT_EQ(Column(table, 0), (Numbers{0, 1.5, -2}));
-  EXPECT_EQ(Column(table, 1), (Numbers{0.5, 3e-3, 1e5}));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    , CsvTableFormat,
-    ::testing::Values(
-        Format{"Comma", "x,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"CommaAndBlanks", "x, F\n0, .5\n 1.5 ,\t3e-3 \n-2, 1E5\n"},
-        Format{"CommaBetweenBlanks", "x , F\n0 , .5\n1.5 , 3e-3\n-2 , 1E5\n"},
-        Format{"Semicolon", "x;F\n0;.5\n1.5;3e-3\n-2;1E5\n"},
-        Format{"SemicolonDecimalComma", "x;F\n0;0,5\n1,5;3e-3\n-2;1E5\n"},
-        Format{"Tab", "x\tF\n0\t.5\n1.5\t3e-3\n-2\t1E5\n"},
-        Format{"TabDecimalComma", "x\tF\n0\t0,5\n1,5\t0,003\n-2\t1E5\n"},
-        Format{"Blanks", "x F\n0 .5\n1.5 3e-3\n-2 1E5\n"},
-        Format{"AlignedBlanks", "    x       F\n  0      .5  \n  1.5  3e-3\n -2     1E5\n"},
-        Format{"BlanksDecimalComma", "x F\n0 0,5\n1,5 0,003\n-2 1E5\n"},
-        Format{"BlanksAndTabs", "x F\n0 \t.5\n1.5\t 3e-3\n-2 1E5\n"},
-        Format{"BlanksOrTabs", "x F\n0 .5\n1.5\t3e-3\n-2 1E5\n"},
-        Format{"CrLf", "x,F\r\n0,.5\r\n1.5,3e-3\r\n-2,1E5\r\n"},
-        Format{"Cr", "x,F\r0,.5\r1.5,3e-3\r-2,1E5\r"},
-        Format{"NoNewlineAtTheEnd", "x,F\n0,.5\n1.5,3e-3\n-2,1E5"},
-        Format{"ByteOrderMark", "\xEF\xBB\xBFx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"QuotedCells", "\"x\",\"F\"\n\"0\",\".5\"\n1.5,\"3e-3\"\n-2,\" 1E5 \"\n"},
-        Format{"QuotedCommaInName", "\"x, mm\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x, mm", "F"}},
-        Format{"QuotedLineBreakInName", "\"x\ny\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x y", "F"}},
-        Format{
-            "QuotedQuoteInName", "\"x \"\"in\"\"\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x \"in\"", "F"}},
-        Format{"Comments", "# rig, 3\nx,F\n#1,2\n0,.5\n  # note\n1.5,3e-3\n-2,1E5\n#end\n"},
-        Format{"BlankLines", "\n\nx,F\n\n0,.5\n  \t\n1.5,3e-3\n-2,1E5\n\n\n"},
-        Format{"RowsOfDelimiters", "x,F\n,\n0,.5\n1.5,3e-3\n,\n-2,1E5\n,\n"},
-        Format{"PreambleKeysAndValues", "sample_rate,200\nrig,A\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"PreambleWithTwoNumbers",
-               "range,0,10\nx,F,c\n0,.5,1\n1.5,3e-3,1\n-2,1E5,1\n",
-               {"x", "F", "c"}},
-        Format{"PreambleOfText", "Run 7, with oil, at night\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"PreambleLongerThanData",
-               "a,1\nb,2\nc,3\nd,4\ne,5\nf,6\ng,7\nh,8\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"UnitsRow", "x,F\nmm,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x", "F"}, {"mm", "N"}},
-        Format{"UnitsRowInBracketsThenBlankLine",
-               "x\tF\n[mm]\t[N]\n\n0\t.5\n1.5\t3e-3\n-2\t1E5\n",
-               {"x", "F"},
-               {"[mm]", "[N]"}},
-        Format{"UnknownUnitInUnitsRow",
-               "x,F\nfurlong,N\n0,.5\n1.5,3e-3\n-2,1E5\n",
-               {"x", "F"},
-               {"furlong", "N"}},
-        Format{"UnitsRowAlone", "mm,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {}, {"mm", "N"}},
-        Format{"UnitSymbolAsName", "x,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x", "N"}},
-        Format{"TrailingDelimiterOnData", "x,F\n0,.5,\n1.5,3e-3,\n-2,1E5,\n"},
-        Format{"TrailingDelimiterOnHeader", "x,F,\n0,.5\n1.5,3e-3\n-2,1E5\n"},
-        Format{"TrailingDelimiterOnAll", "x;F;\n0;.5;\n1.5;3e-3;\n-2;1E5;\n"},
-        Format{"TrailingTab", "x\tF\t\n0\t.5\t\n1.5\t3e-3\t\n-2\t1E5\t\n"},
-        Format{"NoHeader", "0,.5\n1.5,3e-3\n-2,1E5\n", {}},
-        Format{"BracketsInBlankSeparatedHeader",
-               "x [mm] F (N)\n0 .5\n1.5 3e-3\n-2 1E5\n",
-               {"x [mm]", "F (N)"}},
-        Format{"BlanksInNamesTwoBlanksApart",
-               "pad position  normal load\n0 .5\n1.5 3e-3\n-2 1E5\n",
-               {"pad position", "normal load"}},
-        Format{"BracketsInTabSeparatedHeader",
-               "Pad x [mm]\tF (N)\n0\t.5\n1.5\t3e-3\n-2\t1E5\n",
-               {"Pad x [mm]", "F (N)"}},
-        Format{"ColumnOfText", "x,F,state\n0,.5,ok\n1.5,3e-3,a;b\n-2,1E5,7\n", {"x", "F", "state"}},
-        Format{"ColumnOfTextMostlyEmpty",
-               "x,F,remark\n0,.5,\n1.5,3e-3,\n-2,1E5,slip\n",
-               {"x", "F", "remark"}},
-        Format{"ColumnOfDates",
-               "x;F;date\n0;0,5;2024-07-12 16:46:43\n1,5;0,003;2024-07-12 16:46:44\n"
-               "-2;1E5;2024-07-12 16:46:45\n",
-               {"x", "F", "date"}},
-        Format{"PlusSigns", "x,F\n+0,+.5\n+1.5,+3e-3\n-2,+1E+5\n"}),
-    [](const auto& test) { return test.param.name; });
-
-// --- Broken files, and what is said of each ------------------------------------------------------
-
-struct Fault {
-  std::string name;
-  std::string text;
-  std::string message;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-
-class CsvTableFault : public ::testing::TestWithParam<Fault> {};
-
-TEST_P(CsvTableFault, IsReportedInOneLine) {
-  const std::string message = MessageOf<InputError>([&] {
-    const CsvTable table = Parse(GetParam().text);
-    for (std::size_t column = 0; column < table.columns.size(); ++column) {
-      static_cast<void>(table.Numbers(column));
-    }
-  });
-  EXPECT_EQ(message.substr(message.find("loop.csv")), GetParam().message);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    , CsvTableFault,
-    ::testing::Values(
-        Fault{"Empty", "", "loop.csv: the file is empty"},
-        Fault{"OnlyByteOrderMark", "\xEF\xBB\xBF",
-              "loop.csv: holds no data, only blank or '#' lines"},
-        Fault{"OnlyBlankLinesAndComments", "\n  \n# x\n\t\n",
-              "loop.csv: holds no data, only blank or '#' lines"},
-        Fault{"Prose", "Dear Sir,\nyours, truly\n",
-              "loop.csv:2:1: 'yours' is not a number, and none of the first 2 rows has numbers: "
-              "expected columns of numbers under an optional header"},
-        Fault{"Binary", std::string("x,F\n1,2\n\0\1", 10),
-              "loop.csv:3: is not text, it holds a zero byte: export it as CSV"},
-        Fault{"Word", "x,F\n1,2\n3,abc\n",
-              "loop.csv:3:2: 'abc' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"UnitInCell", "x,F\n1,2\n3 mm,4\n",
-              "loop.csv:3:1: '3 mm' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"Nan", "x,F\n1,2\nnan,4\n",
-              "loop.csv:3:1: 'nan' is not a number: fill in the cell or remove the row"},
-        Fault{"NanInFirstRowWithoutHeader", "NaN,2\n1,2\n",
-              "loop.csv:1:1: 'NaN' is not a number: fill in the cell or remove the row"},
-        Fault{"Infinity", "x,F\n1,2\n3,-inf\n",
-              "loop.csv:3:2: '-inf' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"Hexadecimal", "x,F\n1,2\n3,0x1F\n",
-              "loop.csv:3:2: '0x1F' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"Thousands", "x,F\n1,2\n3,\"1,234.5\"\n",
-              "loop.csv:3:2: '1,234.5' is not a number: write it like -1.5e-3, without marks that "
-              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
-              "tabs, or remove the row"},
-        Fault{"QuotedDecimalComma", "x,F\n1,2\n3,\"4,5\"\n",
-              "loop.csv:3:2: '4,5' is not a number: write it like -1.5e-3, without marks that "
-              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
-              "tabs, or remove the row"},
-        Fault{"ThousandsBesideDecimalComma", "x;F\n1;2\n3;1.234,5\n",
-              "loop.csv:3:2: '1.234,5' is not a number: write it like -1.5e-3, without marks that "
-              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
-              "tabs, or remove the row"},
-        Fault{"TwoSigns", "x,F\n1,2\n3,+-4\n",
-              "loop.csv:3:2: '+-4' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"NothingAfterDecimalComma", "x;F\n1;2\n3,;4\n",
-              "loop.csv:3:1: '3,' is not a number: write it like -1.5e-3, without marks that "
-              "separate thousands; where commas are decimal marks, separate the columns by ';' or "
-              "tabs, or remove the row"},
-        Fault{"ShortLastRow", "x,F,t\n1,2,3\n4,5\n",
-              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
-        Fault{"WordInEveryRow", "a,1,2\n1,b,2\n1,2,c\n",
-              "loop.csv:1:1: 'a' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"LongText", "x,F\n1,2\n3," + std::string(59, 'a') + "\u00b5bc\n",
-              "loop.csv:3:2: '" + std::string(59, 'a') +
-                  "\u00b5...' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"LettersAfterExponent", "x,F\n1,2\n3,1e\n",
-              "loop.csv:3:2: '1e' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"TooLarge", "x,F\n1,2\n3,-1e999\n",
-              "loop.csv:3:2: '-1e999' is too large: must be below 1.8e308"},
-        Fault{"EmptyCell", "x,F,t\n1,2,3\n3,,4\n",
-              "loop.csv:3:2: '' is not a number: fill in the cell or remove the row"},
-        Fault{"EmptyFirstRow", "x,F\n,1\n1,2\n2,3\n",
-              "loop.csv:2: ',1' is neither a row of data nor a header for the 2 columns of line 3: "
-              "name every column, or begin the line with '#' if it is a comment"},
-        Fault{"BothDecimalMarks", "x;F\n1,5;2\n3;4.5\n",
-              "loop.csv:3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one "
-              "throughout"},
-        Fault{"ShortRow", "x,F,t\n1,2,3\n4,5\n6,7,8\n",
-              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
-        Fault{"ShortRowOfOne", "x,F\n1,2\n4\n6,7\n",
-              "loop.csv:3:2: the row has 1 cell of 2: complete it or remove it"},
-        Fault{"ShortRowBelowComments", "#\n\nx,F\r\n#\r\n1,2\r\n\r\n4\r\n6,7\r\n",
-              "loop.csv:7:2: the row has 1 cell of 2: complete it or remove it"},
-        Fault{"RowBelowQuotedLineBreak", "x,F\n1,\"2\n\"\n3,4\n5,z\n",
-              "loop.csv:5:2: 'z' is not a number: write it like -1.5e-3, or remove the row"},
-        Fault{"ExtraCell", "x,F\n1,2\n3,4,5\n6,7\n",
-              "loop.csv:3:3: '5' is one cell too many: the table has 2 columns; leave out commas "
-              "that separate thousands, and separate the columns by ';' or tabs where commas are "
-              "decimal marks"},
-        Fault{"ExtraCellBeyondTrailingDelimiter", "x,F,\n1,2,\n3,4,,5\n6,7,\n",
-              "loop.csv:3:4: '5' is one cell too many: the table has 2 columns; leave out commas "
-              "that separate thousands, and separate the columns by ';' or tabs where commas are "
-              "decimal marks"},
-        Fault{"CutShort", "x,F,t\n1,2,3\n4,5",
-              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
-        Fault{"QuoteNeverClosed", "x,F\n.1,.2\n.3,\".4\n.5,.6\n",
-              "loop.csv:3: a quotation mark opened here is never closed"},
-        Fault{"QuoteNeverClosedInHeader", "\n\"x,F\n1,2\n3,4\n",
-              "loop.csv:2: a quotation mark opened here is never closed"},
-        Fault{"HeaderShorterThanData", "x,F\n1,2,3\n4,5,6\n",
-              "loop.csv:1: 'x,F' is neither a row of data nor a header for the 3 columns of line "
-              "2: name every column, or begin the line with '#' if it is a comment; or leave out "
-              "commas that separate thousands or are decimal marks"},
-        Fault{"HeaderWithAnotherDelimiter", "x,F\n1 2\n4 5\n",
-              "loop.csv:1: 'x,F' is neither a row of data nor a header for the 2 columns of line "
-              "2: name every column, or begin the line with '#' if it is a comment"},
-        Fault{
-            "RemarkAboveDataWithoutHeader", "Measured today\n1,2\n4,5\n",
-            "loop.csv:1: 'Measured today' is neither a row of data nor a header for the 2 "
-            "columns of line 2: name every column, or begin the line with '#' if it is a comment"},
-        Fault{"KeyAndValueAboveDataWithoutHeader", "rate,200\n1,2\n4,5\n",
-              "loop.csv:1: 'rate,200' is neither a row of data nor a header for the 2 columns of "
-              "line 2: name every column, or begin the line with '#' if it is a comment"},
-        Fault{"WordInFirstRowBelowHeader", "x,F\nabc,1\n1,2\n2,3\n",
-              "loop.csv:2: 'abc,1' is neither a row of data nor a header for the 2 columns of "
-              "line 3: name every column, or begin the line with '#' if it is a comment"},
-        Fault{"OnlyAHeader", "# rig 3\nx [m],F [N]\n",
-              "loop.csv:2: the file ends after its header, with no row of numbers below it: export "
-              "the data too"},
-        Fault{"OnlyMissingValues", "x,F\nnan,n/a\n#N/A,nan\n",
-              "loop.csv:2:1: 'nan' is not a number, and none of the first 3 rows has numbers: "
-              "expected columns of numbers under an optional header"},
-        Fault{"OnlyErrorValues", "#N/A,#DIV/0!\n#VALUE!,#N/A\n",
-              "loop.csv:1:1: '#N/A' is not a number, and none of the first 2 rows has numbers: "
-              "expected columns of numbers under an optional header"},
-        Fault{"OnlyWords", "x;F\na;b\nc;d\n",
-              "loop.csv:3:1: 'c' is not a number, and none of the first 3 rows has numbers: "
-              "expected columns of numbers under an optional header"},
-        Fault{"ColumnOfText", "x,F\n1,a\n2,b\n", "loop.csv:2:2: column 2 holds no numbers"},
-        Fault{"ErrorValueAtTheBeginningOfARow", "x,F\n1,2\n #n/a,3\n",
-              "loop.csv:3:1: '#n/a' is not a number: fill in the cell or remove the row"}),
-    [](const auto& test) { return test.param.name; });
-
-// --- The rest ------------------------------------------------------------------------------------
-
-TEST(CsvTable, ReadsTextThatResemblesAnErrorValueAsComment) {
-  EXPECT_EQ(Parse("#N/Available,3\n#NA\n1,2\n# N/A\n3,4\n").rows(), 2u);
-}
-
-TEST(CsvTable, TakesCommaBetweenIntegersAsDelimiter) {
-  const CsvTable table = Parse("1,5\n2,7\n");
-  EXPECT_EQ(Column(table, 0), (Numbers{1, 2}));
-  EXPECT_EQ(Column(table, 1), (Numbers{5, 7}));
-}
-
-TEST(CsvTable, TakesCommaAsDecimalMarkWhenSemicolonSeparates) {
-  const CsvTable table = Parse("1,5;2,5;3,5\n");
-  ASSERT_EQ(table.columns.size(), 3u);
-  EXPECT_EQ(Column(table, 2), (Numbers{3.5}));
-}
-
-TEST(CsvTable, TakesCommaAsDecimalMarkWhenBlanksSeparate) {
-  const CsvTable table = Parse("1,5 2,5\n");
-  ASSERT_EQ(table.columns.size(), 2u);
-  EXPECT_EQ(Column(table, 1), (Numbers{2.5}));
-}
-
-TEST(CsvTable, TakesRowWithOneUnitSymbolAmongNamesForNames) {
-  const CsvTable table = Parse("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n");
-  EXPECT_EQ(NamesOf(table), (Strings{"t", "x", "F", "N"}));
-  EXPECT_EQ(UnitsOf(table), Strings{});
-}
-
-TEST(CsvTable, ReadsSingleRowOfData) {
-  const CsvTable table = Parse("x,F\n1,2\n");
-  EXPECT_EQ(NamesOf(table), (Strings{"x", "F"}));
-  EXPECT_EQ(table.rows(), 1u);
-}
-
-TEST(CsvTable, ReadsSingleColumn) {
-  const CsvTable table = Parse("displacement [m]\n0.5\n-1\n");
-  EXPECT_EQ(NamesOf(table), (Strings{"displacement [m]"}));
-  EXPECT_EQ(Column(table, 0), (Numbers{0.5, -1}));
-}
-
-TEST(CsvTable, ReadsSixteenColumns) {
-  std::string header = "c1";
-  std::string row = "1";
-  for (int column = 2; column <= 16; ++column) {
-    header += ";c" + std::to_string(column);
-    row += ";" + std::to_string(column) + ",5";
+TEST(CsvTable, IsTheSameInEveryFormat) {
+  for (const Strings& format : RowsOf(kFormats)) {
+    SCOPED_TRACE(format[0]);
+    const CsvTable table = Parse(format[0]);
+    EXPECT_EQ(CellsOf(table, &TableColumn::name), format[1]);
+    EXPECT_EQ(CellsOf(table, &TableColumn::unit), format[2]);
+    ASSERT_GE(table.columns.size(), 2u);
+    EXPECT_EQ(Column(table, 0), (Numbers{0, 1.5, -2}));
+    EXPECT_EQ(Column(table, 1), (Numbers{0.5, 3e-3, 1e5}));
   }
-  const CsvTable table = Parse(header + "\n" + row + "\n");
-  ASSERT_EQ(table.columns.size(), 16u);
-  EXPECT_EQ(Column(table, 15), (Numbers{16.5}));
 }
 
-TEST(CsvTable, KnowsPhysicalLineOfEachRow) {
-  const CsvTable table = Parse("rate,2\r\n\r\nx,\"F\r\n[N]\"\r\n#\r\n1,2\r\n\r\n3,4\r\n");
-  EXPECT_EQ(table.header_line, 3u);
-  EXPECT_EQ(table.lines, (Lines{6, 8}));
+// Ends of what is said of broken files.
+const std::map<std::string, std::string> kEnds = {
+    {"kWrite", " is not a number: write it like -1.5e-3, or remove the row"},
+    {"kGroups",
+     " is not a number: write it like -1.5e-3, without marks that separate thousands; where commas "
+     "are decimal marks, separate the columns by ';' or tabs, or remove the row"},
+    {"kFill", " is not a number: fill in the cell or remove the row"},
+    {"kExpected", " has numbers: expected columns of numbers under an optional header"},
+    {"kName", ": name every column, or begin the line with '#' if it is a comment"},
+    {"kTooMany",
+     " is one cell too many: the table has 2 columns; leave out commas that separate thousands, "
+     "and separate the columns by ';' or tabs where commas are decimal marks"},
+};
+// Broken files, and what is said of each of them as loop.csv.
+const std::string kFaults = R"faults(
+¶  ¶# x¶→¶ | : holds no data, only blank or '#' lines
+Dear Sir,¶yours, truly¶ | :2:1: 'yours' is not a number, and none of the first 2 rows +kExpected
+x,F¶1,2¶3,abc¶ | :3:2: 'abc' +kWrite
+x,F¶1,2¶3 mm,4¶ | :3:1: '3 mm' +kWrite
+x,F¶1,2¶nan,4¶ | :3:1: 'nan' +kFill
+NaN,2¶1,2¶ | :1:1: 'NaN' +kFill
+x,F¶1,2¶3,-inf¶ | :3:2: '-inf' +kWrite
+x,F¶1,2¶3,0x1F¶ | :3:2: '0x1F' +kWrite
+x,F¶1,2¶3,"1,234.5"¶ | :3:2: '1,234.5' +kGroups
+x;F¶1;2¶3;1.234,5¶ | :3:2: '1.234,5' +kGroups
+x,F¶1,2¶3,+-4¶ | :3:2: '+-4' +kWrite
+a,1,2¶1,b,2¶1,2,c¶ | :1:1: 'a' +kWrite
+x,F¶1,2¶3,-1e999¶ | :3:2: '-1e999' is too large: must be below 1.8e308
+x,F,t¶1,2,3¶3,,4¶ | :3:2: '' +kFill
+x;F¶1,5;2¶3;4.5¶ | :3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one throughout
+x,F,t¶1,2,3¶4,5¶6,7,8¶ | :3:3: the row has 2 cells of 3: complete it or remove it
+#¶¶x,F␍¶#␍¶1,2␍¶␍¶4␍¶6,7␍¶ | :7:2: the row has 1 cell of 2: complete it or remove it
+x,F¶1,"2¶"¶3,4¶5,z¶ | :5:2: 'z' +kWrite
+x,F¶1,2¶3,4,5¶6,7¶ | :3:3: '5' +kTooMany
+x,F,¶1,2,¶3,4,,5¶6,7,¶ | :3:4: '5' +kTooMany
+x,F¶.1,.2¶.3,".4¶.5,.6¶ | :3: a quotation mark opened here is never closed
+¶"x,F¶1,2¶3,4¶ | :2: a quotation mark opened here is never closed
+x,F¶1,2,3¶4,5,6¶ | :1: 'x,F' is neither a row of data nor a header for the 3 columns of line 2:
+   name every column, or begin the line with '#' if it is a comment; or leave out commas that
+   separate thousands or are decimal marks
+Measured today¶1,2¶4,5¶ | :1: 'Measured today' is neither a row of data nor a header for the 2
+   columns of line 2 +kName
+x,F¶abc,1¶1,2¶2,3¶ | :2: 'abc,1' is neither a row of data nor a header for the 2 columns of line
+   3 +kName
+# rig 3¶x [m],F [N]¶ | :2: the file ends after its header, with no row of numbers below it:
+   export the data too
+x,F¶nan,n/a¶#N/A,nan¶ | :2:1: 'nan' is not a number, and none of the first 3 rows +kExpected
+#N/A,#DIV/0!¶#VALUE!,#N/A¶ | :1:1: '#N/A' is not a number, and none of the first 2 rows +kExpected
+x,F¶1,a¶2,b¶ | :2:2: column 2 holds no numbers
+x,F¶1,2¶ #n/a,3¶ | :3:1: '#n/a' +kFill
+)faults";
+
+TEST(CsvTable, IsRefusedInOneLineWhereItIsBroken) {
+  std::vector<Strings> faults = RowsOf(kFaults);
+  faults.push_back({"", ": the file is empty"});
+  faults.push_back({"\xEF\xBB\xBF", ": holds no data, only blank or '#' lines"});
+  faults.push_back({std::string("x,F\n1,2\n\0\1", 10),
+                    ":3: is not text, it holds a zero byte: export it as CSV"});
+  faults.push_back({"x,F\n1,2\n3," + std::string(59, 'a') + "µbc\n",
+                    ":3:2: '" + std::string(59, 'a') + "µ...' +kWrite"});
+  for (const Strings& fault : faults) {
+    SCOPED_TRACE(fault[0]);
+    const std::string message = MessageOf<InputError>([&] {
+      const CsvTable table = Parse(fault[0]);
+      for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        static_cast<void>(table.Numbers(column));
+      }
+    });
+    const std::size_t plus = fault[1].rfind(" +k");
+    const std::string end = plus == std::string::npos ? "" : kEnds.at(fault[1].substr(plus + 2));
+    EXPECT_EQ(message.substr(message.find("loop.csv")),
+              "loop.csv" + fault[1].substr(0, plus) + end);
+  }
 }
 
-TEST(CsvTable, HasNoHeaderLineWithoutHeader) { EXPECT_EQ(Parse("1,2\n").header_line, 0u); }
-
-TEST(CsvTable, AcceptsTextInUnusedColumn) {
-  const CsvTable table = Parse("x,state,F\n1,ok,2\n3,,4\n");
-  EXPECT_EQ(Column(table, 2), (Numbers{2, 4}));
-  EXPECT_TRUE(table.columns[1].values.empty());
-}
-
-TEST(CsvTable, AcceptsMissingCellInUnusedColumn) {
-  const CsvTable table = Parse("x,F,c\n1,2,3\n3,4\n5,6,7\n");
-  EXPECT_EQ(Column(table, 1), (Numbers{2, 4, 6}));
-}
-
-TEST(CsvTable, ReadsEveryDoubleBackAsWritten) {
-  const CsvTable table =
-      Parse("x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n-1E-400\n");
-  EXPECT_EQ(Column(table, 0), (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0, 0.0}));
-}
-
-TEST(CsvTable, ReadsFileOfSeveralBlocks) {
-  std::string text = "x,F\n";
-  for (int row = 0; row < 20000; ++row) text += std::to_string(row) + ",0.25\n";
-  const TemporaryDirectory directory;
-  const CsvTable table = ReadCsvTable(directory.Write("long.csv", text));
-  ASSERT_EQ(table.rows(), 20000u);
-  EXPECT_EQ(table.Numbers(0).back(), 19999.0);
+TEST(CsvTable, FindsColumnsRowsAndLines) {
+  EXPECT_EQ(Parse("#N/Available,3\n#NA\n1,2\n# N/A\n3,4\n").rows(), 2u) << "comments";
+  EXPECT_EQ(Column(Parse("1,5\n2,7\n"), 1), (Numbers{5, 7})) << "no decimal comma";
+  EXPECT_EQ(Column(Parse("1,5;2,5;3,5\n"), 2), (Numbers{3.5}));
+  EXPECT_EQ(Column(Parse("1,5 2,5\n"), 1), (Numbers{2.5}));
+  EXPECT_EQ(Column(Parse("displacement [m]\n0.5\n-1\n"), 0), (Numbers{0.5, -1}));
+  EXPECT_EQ(CellsOf(Parse("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n"), &TableColumn::name), "t;x;F;N");
+  EXPECT_EQ(Parse("1,2\n").header_line, 0u);
+  const CsvTable lines = Parse("rate,2\r\n\r\nx,\"F\r\n[N]\"\r\n#\r\n1,2\r\n\r\n3,4\r\n");
+  EXPECT_EQ(lines.header_line, 3u);
+  EXPECT_EQ(lines.lines, (Lines{6, 8}));
+  const CsvTable text = Parse("x,state,F\n1,ok,2\n3,,4\n");
+  EXPECT_EQ(Column(text, 2), (Numbers{2, 4}));
+  EXPECT_TRUE(text.columns[1].values.empty());
+  EXPECT_EQ(Column(Parse("x,F,c\n1,2,3\n3,4\n5,6,7\n"), 1), (Numbers{2, 4, 6})) << "c is not used";
+  EXPECT_EQ(Column(Parse("x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n"), 0),
+            (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0}));
 }
 
 // A sparse file of 64 GB: what is not text is seen in its first piece.
@@ -383,24 +207,87 @@ TEST(CsvTable, RefusesWhatItsLimitsDoNotHold) {
   EXPECT_THROW(ReadCsvTable(path, {.memory = needed - 1}), InputError);
 }
 
-TEST(CsvTable, NamesMissingFileAndReason) {
-  EXPECT_EQ(MessageOf<InputError>([] { ReadCsvTable("/no/such.csv"); }),
-            "cannot read '/no/such.csv': No such file or directory");
-}
-
-TEST(CsvTable, RefusesDirectory) {
+TEST(CsvTable, SaysWhyAFileCannotBeRead) {
   const TemporaryDirectory directory;
-  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(directory.path()); }),
+  const auto refusal = [](const std::filesystem::path& path) {
+    return MessageOf<InputError>([&] { ReadCsvTable(path); });
+  };
+  EXPECT_EQ(refusal("/no/such.csv"), "cannot read '/no/such.csv': No such file or directory");
+  EXPECT_EQ(refusal(directory.path()),
             "cannot read '" + directory.path().string() + "': Is a directory");
-}
-
-TEST(CsvTable, NamesUnreadableFileAndReason) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may read every file";
-  const TemporaryDirectory directory;
   const std::filesystem::path path = directory.Write("loop.csv", "1,2\n");
   ::chmod(path.c_str(), 0);
-  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(path); }),
-            "cannot read '" + path.string() + "': Permission denied");
+  EXPECT_EQ(refusal(path), "cannot read '" + path.string() + "': Permission denied");
+}
+
+TEST(CsvWriter, WritesHeaderAndRows) {
+  const Numbers time = {0, 1};
+  const Numbers force = {-2.5, 1e300};
+  EXPECT_EQ(CsvText({{"time [s]", time}, {"force [N]", force}}),
+            "time [s],force [N]\n0,-2.5\n1,1.0000000000000001e+300\n");
+  EXPECT_EQ(CsvText({{"x", {}}}), "x\n");
+}
+
+TEST(CsvWriter, WritesEveryDoubleSoThatItReadsBackAsItself) {
+  const Numbers values = {0.1,
+                          1.0 / 3,
+                          -0.0,
+                          5e-324,
+                          std::numeric_limits<double>::max(),
+                          1e23,
+                          std::nextafter(1.0, 2.0)};
+  const CsvTable table = Parse(CsvText({{"x", values}}));
+  const auto read = table.Numbers(0);
+  ASSERT_EQ(read.size(), values.size());
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    EXPECT_EQ(read[row], values[row]);
+    EXPECT_EQ(std::signbit(read[row]), std::signbit(values[row]));
+  }
+}
+
+TEST(CsvWriter, QuotesNamesSoThatTheyReadBackAsThemselves) {
+  const std::vector<std::string> names = {"x, mm", "the \"pad\"", "a\nb", "#1", "x; y", "plain"};
+  const Numbers one = {1};
+  std::vector<CsvColumn> columns;
+  for (const std::string& name : names) columns.push_back({name, one});
+  const std::string text = CsvText(columns);
+  const CsvTable table = Parse(text);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    EXPECT_EQ(table.columns[k].name, k == 2 ? "a b" : names[k]);
+  }
+  EXPECT_EQ(text.substr(0, 24), "\"x, mm\",\"the \"\"pad\"\"\",\"a");
+  EXPECT_NE(text.find(",plain\n"), std::string::npos);
+}
+
+TEST(CsvWriter, QuotesCellsThatAReaderOrASpreadsheetWouldTakeForSomethingElse) {
+  for (const auto& [text, cell] : {std::pair{"=HYPERLINK(1)", "./=HYPERLINK(1)"},
+                                   {"+1.csv", "./+1.csv"},
+                                   {"-1.csv", "./-1.csv"},
+                                   {"@a,b", "\"./@a,b\""},
+                                   {"-", "-"},
+                                   {"a=b", "a=b"},
+                                   {" a", "\" a\""},
+                                   {"a ", "\"a \""},
+                                   {"#", "\"#\""},
+                                   {"", "\"\""}}) {
+    EXPECT_EQ(CsvCell(text), cell);
+  }
+}
+
+TEST(CsvWriter, LeavesCellOfUnknownValueEmptyAndRefusesOthers) {
+  const Numbers first = {1, std::nan("")};
+  const Numbers second = {std::nan(""), 2};
+  EXPECT_EQ(CsvText({{"a", first}, {"b", second}}), "a,b\n1,\n,2\n");
+  const Numbers infinite = {1, -std::numeric_limits<double>::infinity()};
+  const Numbers one = {1};
+  const auto refusal = [](const std::vector<CsvColumn>& columns) {
+    return MessageOf<InvalidArgument>([&] { CsvText(columns); });
+  };
+  EXPECT_EQ(refusal({{"force [N]", infinite}}),
+            "force [N] of row 2 = -inf is invalid: must be finite");
+  EXPECT_EQ(refusal({{"a", first}, {"b", one}}), "a has 2 values and b has 1: must be equal");
+  EXPECT_EQ(refusal({}), "number of columns = 0 is invalid: must be >= 1");
 }
 
 }  // namespace

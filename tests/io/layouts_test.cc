@@ -1,311 +1,150 @@
-#include <filesystem>
+#include <sstream>
 
-#include "mindahl/io/record_reader.h"
-#include "support/prelude.h"
-#include "temporary_directory.h"
+#include "reading.h"
 
 // Files as instruments and programs write them, each with a row or two that were written by hand.
 namespace mindahl::io::layouts_test {
 namespace {
 
-using Numbers = std::vector<double>;
+// A name, the columns of displacement and force, their first values [m], [N] or [rad], [N m], and
+// the last time [s]; then the text.
+const std::string kLayouts = R"layouts(
+LabViewWithUnitsAndACommentThatRowsLack 2 3 1.5e-3 2.5 0.01 | LabVIEW Measurement→¶
+  Decimal_Separator→,¶X_Columns→One¶Time→10:11:12,5¶***End_of_Header***→¶→¶Channels→2→→¶
+  Samples→3→3→¶Y_Unit_Label→Millimeters→Newtons→¶X0→0,0→0,0→¶Delta_X→0,01→0,01→¶
+  ***End_of_Header***→→→¶X_Value→Displacement→Force→Comment¶0,00→1,5→2,5¶0,01→2,5→3,5¶
+LabViewWithoutTimes 2 3 1.5e-3 2.5 0.01 | X_Columns→No¶***End_of_Header***→¶Samples→3→3→¶
+  Delta_X→0,01→0,01→¶***End_of_Header***→→→¶X_Value→Displacement [mm]→Force→Comment¶→1,5→2,5¶
+  →2,5→3,5¶
+BlocksThatRepeatTheirHeader 3 2 2.5e-3 9.80665 8.0 | MTS793|MPT|ENU¶¶
+  Cyclic Acquisition→→→Time:→1,5→Sec¶Time→Axial Fuerza→Axial Desplazamiento¶Sec→kgf→mm¶0,5→1→2,5¶
+  1→2→3¶¶Cyclic Acquisition→→→Time:→9,5→Sec¶Time→Axial Fuerza→Axial Desplazamiento¶Sec→kgf→mm¶
+  7,5→1→2,5¶8→2→3¶
+CatmanWithADescriptionAbove 2 3 1.5e-3 2500 0.1 | catmanEasy 5.3.1¶Datum:→12.03.2024 10:11:12¶¶
+  Zeit  1 - Standardmessrate→MX840A CH 1 Weg→MX840A CH 2 Kraft¶s→mm→kN¶0,0→1,5→2,5¶0,1→2,5→3,5¶
+DewesoftWithPathsOfChannels 2 3 1.5e-3 2.5 0.1 | Time (s),AI 1/Displacement (mm),AI 2/Force (N)¶
+  0,1.5,2.5¶0.1,2.5,3.5¶
+TestXpertWithQuotesAndCompounds 2 3 1.5e-3 2.5 0.1 | "Prüfzeit";"Standardweg";"Standardkraft"¶
+  "s";"mm";"N"¶0,0;1,5;2,5¶0,1;2,5;3,5¶
+BluehillWithResultsAbove 2 3 1.5e-3 2.5 0.1 | "Results Table 1"¶"Maximum Load (N)","10.08"¶¶
+  "Time","Extension","Load"¶"(s)","(mm)","(N)"¶"0","1.5","2.5"¶"0.1","2.5","3.5"¶
+PlotJugglerWithAJointThatRests 2 3 0 2.5 1.5 | 
+  __time,/js/j1/position,/js/j1/effort,/js/j2/position,/js/j2/effort¶1709633472.5,0,2.5,7,0¶
+  1709633473,1,3,7,0¶1709633473.5,-1,-3,7,0¶1709633474,1,3,7,0¶
+RosTextWithStampsInNanosecondsAndNames 5 6 1.5 2.5 1.0 | 
+  %time,field.header.seq,field.header.frame_id,field.name0,field.position0,field.effort0¶
+  1709633472000000000,1,,joint1,1.5,2.5¶1709633473000000000,2,,joint1,2.5,3.5¶
+AbaqusReport 2 3 0 2.5 - | ¶             X                U:U1            RF:RF1     ¶¶
+     0.              0.       2.5¶  10.E-03       2.E-03      3.5¶  20.E-03      -2.E-03     -3.5¶
+    30.E-03       2.E-03      3.5¶
+TestSuiteWithACounter 4 3 1.5e-3 2500 0.1 | "MTS TestSuite","5.9"¶¶
+  "Time","Axial Count","Axial Force","Axial Displacement"¶"sec","cycles","kN","mm"¶0,1,2.5,1.5¶
+  0.1,1,3.5,2.5¶
+Chinese 3 4 1.5e-3 2500 0.1 | 序号,时间（s）,位移（mm）,力（kN）¶1,0,1.5,2.5¶2,0.1,2.5,3.5¶
+Japanese 3 2 1.5e-6 2.5 0.1 | 時間[s],荷重[N],変位[μm]¶0,2.5,1.5¶0.1,3.5,2.5¶
+GermanWithUnitsBehindIn 2 3 1.5e-3 2.5 0.1 | Prüfer: M¶Zeit in s;Weg in mm;Kraft in N¶0,0;1,5;2,5¶
+  0,1;2,5;3,5¶
+French 2 4 1.5e-3 25 0.1 | Temps (s);Déplacement (mm);Effort normal (daN);Effort tangentiel (daN)¶
+  0;1,5;5;2,5¶0,1;2,5;5;3,5¶
+Spanish 2 3 1.5e-3 2.5 1.0 | Tiempo [s],Desplazamiento [mm],Fuerza [N]¶0,1.5,2.5¶1,2,3¶
+Portuguese 2 3 1.5e-3 2.5 1.0 | Tempo;Deslocamento;Força¶s;mm;N¶0;1,5;2,5¶1;2;3¶
+Italian 1 2 1.5e-3 2.5 - | Spostamento [mm];Forza [N]¶1,5;2,5¶2;3¶
+RobotWithAngleAndTorque 2 4 1.5 2.5 1.0 torsional | timestamp,q,dq,tau¶0,1.5,0,2.5¶1,2,0,3¶
+SwitchWithStepsAndGrams 3 5 1.5e-3 9.80665 0.01 | 
+  Millis,Steps,Travel (mm),Scale raw,Scale (grams)¶0,0,1.5,1007,1000¶10,5,2,1008,1001¶
+ForceBeforeDisplacementByUnit 2 1 1.5e-3 2500 - | Fh [kN],u [mm]¶2.5,1.5¶3,2¶
+LabelsOfRows 2 3 1.5e-3 2500 - | step_name,u [mm],Fh [kN]¶LS_0,1.5,2.5¶LS_1,2,3¶
+CounterBeforeLoadAndDisplacement 3 2 1.5 2.5 - | 
+  Machine_N_cycles,Machine_Load,Machine_Displacement¶1,2.5,1.5¶1,3,2¶2,2,1¶
+BracketsWithoutAUnit 2 3 1.5 2.5 1.0 | t,pos (3),Load [23.8 N]¶0,1.5,2.5¶1,2,3¶
+SetpointsNextToValues 2 4 1.5e-3 2.5 - | 
+  Position Setpoint,Position Actual,Force Setpoint,Force Actual¶mm,mm,N,N¶9,1.5,9,2.5¶9,2,9,3¶
+StrengthOfOneForceAmongMany 2 4 1.5 2.5 1.0 | time_s,displacement_m,act1_force_lb,force_N¶
+  0,1.5,7,2.5¶1,2,8,3¶
+DatesOfIso 2 3 1.5e-3 2.5 86401.0 | Date,Displacement [mm],Force [N]¶
+  2024-03-05T23:59:59.5Z,1.5,2.5¶2024-03-06T00:00:01Z,2,3¶
+TimesOfDayPastMidnight 3 4 1.5e-3 2.5 86401.0 | Datum;Uhrzeit;Weg [mm];Kraft [N]¶
+  05.03.2024;23:59:59,5;1,5;2,5¶06.03.2024;00:00:01;2;3¶
+StampsInMilliseconds 2 3 1.5e-6 2.5 1.0 | timestamp_ms,disp_um,load_N¶1709633472000,1.5,2.5¶
+  1709633473000,2,3¶
+HoursMicronsAndDynes 2 3 1.5e-6 2.5e-5 1800.0 | elapsed [h],disp_micron,load [dyn]¶0,1.5,2.5¶
+  0.5,2,3¶
+ExcelThatStatesItsDelimiter 2 3 1.5e-6 2.5e-3 0.01 | sep=;¶Zeit [ms];Verschiebung [µm];Kraft [mN]¶
+  0;1,5;2,5¶10;2;3¶
+HeaderBehindAMarkOfAComment 2 3 1.5e-3 2.5 1.0 | # time [s] displacement [mm] force [N]¶0 1.5 2.5¶
+  1 2 3¶
+TimeWithoutAHeader 2 3 1 5 - | 0,1,5¶1,-1,-5¶2,1,5¶3,-1,-5¶
+Shimadzu 3 2 1.5e-3 2.5 0.1 | "Test Date","2024/03/05"¶"Time","Force","Stroke"¶"sec","N","mm"¶
+  "0","2.5","1.5"¶"0.1","3","2"¶
+Tribometer 4 2 1.5e-3 2.5 0.1 | Time [s]→Fx [N]→Fz [N]→Y [mm]→COF¶0→2.5→-50→1.5→0.05¶
+  0.1→3→-50→2→0.06¶
+Comsol 2 3 1.5e-3 2.5 0.1 | % Model:    a.mph¶% Time (s)    u (mm)    Fx (N)¶0    1.5    2.5¶
+  0.1    2    3¶
+WaveMatrix 3 4 1.5e-3 2500 0.1 | 
+  Total Time (s),Total Cycles,Position(Linear:Digital Position) (mm),Load(Linear:Load) (kN)¶
+  0,0,1.5,2.5¶0.1,0,2,3¶
+Diadem 3 4 1.5e-3 2.5 0.1 | Channel names:→Time→Weg→Kraft¶Units:→s→mm→N¶Data:¶→0,0→1,5→2,5¶
+  →0,1→2→3¶
+Adams 2 3 1.5e-3 2.5 0.1 | Time→MARKER_1.Translational_Displacement.X→JOINT_1.Element_Force.X¶
+  (sec)→(mm)→(newton)¶0→1.5→2.5¶0.1→2→3¶
+PolishByUnitsAlone 2 3 1.5e-3 2.5 0.1 | Czas [s];Przemieszczenie [mm];Siła [N]¶0,0;1,5;2,5¶
+  0,1;2;3¶
+ScaleOfAnHx711 2 3 1.5e-3 9.80665 0.01 | ms,dist_mm,weight_g¶0,1.5,1000¶10,2,1001¶
+TwoForcesAndDepths 4 5 1.5e-6 2.5e-6 0.1 | 
+  Depth (nm)→Load (µN)→Time (s)→Lateral Displacement (µm)→Lateral Force (µN)¶100→500→0→1.5→2.5¶
+  101→500→0.1→2→3¶
+)layouts";
 
-struct Layout {
-  std::string name;
-  std::string text;
-  std::size_t displacement;  // number of the column
-  std::size_t force;
-  Numbers first;                      // row of the record: displacement [m], force [N]
-  std::optional<double> last_time{};  // [s]
-  bool is_torsional = false;
-};
-
-class LayoutTest : public ::testing::TestWithParam<Layout> {};
-
-TEST_P(LayoutTest, IsReadWithoutAnOption) {
-  const Layout& layout = GetParam();
-  const TemporaryDirectory directory;
-  const RecordFile file = ReadRecord(directory.Write("record.txt", layout.text));
-  EXPECT_EQ(file.displacement.index, layout.displacement);
-  EXPECT_EQ(file.force.index, layout.force);
-  EXPECT_DOUBLE_EQ(file.record.displacement.front(), layout.first[0]);
-  EXPECT_DOUBLE_EQ(file.record.force.front(), layout.first[1]);
-  EXPECT_EQ(file.is_torsional, layout.is_torsional);
-  EXPECT_EQ(file.time.has_value() || !file.record.time.empty(), layout.last_time.has_value());
-  if (layout.last_time && !file.record.time.empty()) {
-    EXPECT_NEAR(file.record.time.back(), *layout.last_time, 1e-9);
+TEST(Layouts, AreReadWithoutAnOption) {
+  const std::vector<Strings> layouts = RowsOf(kLayouts);
+  EXPECT_EQ(layouts.size(), 42U);
+  for (const Strings& layout : layouts) {
+    std::istringstream head(layout[0]);
+    std::string name;
+    std::size_t displacement = 0;
+    std::size_t force = 0;
+    double first_displacement = 0.0;
+    double first_force = 0.0;
+    std::string last_time;
+    head >> name >> displacement >> force >> first_displacement >> first_force >> last_time;
+    SCOPED_TRACE(name);
+    const RecordFile file = Read(layout[1]);
+    EXPECT_EQ(file.displacement.index, displacement);
+    EXPECT_EQ(file.force.index, force);
+    EXPECT_DOUBLE_EQ(file.record.displacement.front(), first_displacement);
+    EXPECT_DOUBLE_EQ(file.record.force.front(), first_force);
+    EXPECT_EQ(file.is_torsional, layout[0].ends_with("torsional"));
+    ASSERT_EQ(file.record.time.empty(), last_time == "-");
+    if (last_time != "-") {
+      EXPECT_NEAR(file.record.time.back(), std::stod(last_time), 1e-9);
+    }
   }
 }
 
-const std::string kLabView =
-    "LabVIEW Measurement\t\nDecimal_Separator\t,\nX_Columns\tOne\nTime\t10:11:12,5\n"
-    "***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t3\t3\t\nY_Unit_"
-    "Label\tMillimeters\tNewtons\t\n"
-    "X0\t0,0\t0,0\t\nDelta_X\t0,01\t0,01\t\n***End_of_Header***\t\t\t\n";
-
-INSTANTIATE_TEST_SUITE_P(
-    , LayoutTest,
-    ::testing::Values(
-        Layout{"LabViewWithUnitsAndACommentThatRowsLack",
-               kLabView + "X_Value\tDisplacement\tForce\tComment\n0,00\t1,5\t2,5\n0,01\t2,5\t3,5\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.01},
-        Layout{"LabViewWithoutTimes",
-               kLabView + "X_Value\tDisplacement\tForce\tComment\n\t1,5\t2,5\n\t2,5\t3,5\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.01},
-        Layout{
-            "BlocksThatRepeatTheirHeader",
-            "MTS793|MPT|ENU\n\nCyclic Acquisition\t\t\tTime:\t1,5\tSec\nTime\tAxial Fuerza\tAxial "
-            "Desplazamiento\nSec\tkgf\tmm\n0,5\t1\t2,5\n1\t2\t3\n\nCyclic "
-            "Acquisition\t\t\tTime:\t9,5"
-            "\tSec\nTime\tAxial Fuerza\tAxial Desplazamiento\nSec\tkgf\tmm\n7,5\t1\t2,5\n8\t2\t3\n",
-            3,
-            2,
-            {2.5e-3, 9.80665},
-            8.0},
-        Layout{"CatmanWithADescriptionAbove",
-               "catmanEasy 5.3.1\nDatum:\t12.03.2024 10:11:12\n\nZeit  1 - "
-               "Standardmessrate\tMX840A CH 1 "
-               "Weg\tMX840A CH 2 Kraft\ns\tmm\tkN\n0,0\t1,5\t2,5\n0,1\t2,5\t3,5\n",
-               2,
-               3,
-               {1.5e-3, 2500},
-               0.1},
-        Layout{"DewesoftWithPathsOfChannels",
-               "Time (s),AI 1/Displacement (mm),AI 2/Force (N)\n0,1.5,2.5\n0.1,2.5,3.5\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.1},
-        Layout{"TestXpertWithQuotesAndCompounds",
-               "\"Pr\xC3\xBC"
-               "fzeit\";\"Standardweg\";\"Standardkraft\"\n\"s\";\"mm\";\"N\"\n0,0;1,5;2,5\n"
-               "0,1;2,5;3,5\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.1},
-        Layout{"BluehillWithResultsAbove",
-               "\"Results Table 1\"\n\"Maximum Load "
-               "(N)\",\"10.08\"\n\n\"Time\",\"Extension\",\"Load\"\n"
-               "\"(s)\",\"(mm)\",\"(N)\"\n\"0\",\"1.5\",\"2.5\"\n\"0.1\",\"2.5\",\"3.5\"\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.1},
-        Layout{"PlotJugglerWithAJointThatRests",
-               "__time,/js/j1/position,/js/j1/effort,/js/j2/position,/js/j2/effort\n"
-               "1709633472.5,0,2.5,7,0\n1709633473,1,3,7,0\n1709633473.5,-1,-3,7,0\n"
-               "1709633474,1,3,7,0\n",
-               2,
-               3,
-               {0, 2.5},
-               1.5},
-        Layout{"RosTextWithStampsInNanosecondsAndNames",
-               "%time,field.header.seq,field.header.frame_id,field.name0,field.position0,field."
-               "effort0\n"
-               "1709633472000000000,1,,joint1,1.5,2.5\n1709633473000000000,2,,joint1,2.5,3.5\n",
-               5,
-               6,
-               {1.5, 2.5},
-               1.0},
-        Layout{"AbaqusReport",
-               "\n             X                U:U1            RF:RF1     \n\n   0.              "
-               "0.    "
-               "   2.5\n  10.E-03       2.E-03      3.5\n  20.E-03      -2.E-03     -3.5\n"
-               "  30.E-03       2.E-03      3.5\n",
-               2,
-               3,
-               {0, 2.5}},
-        Layout{"TestSuiteWithACounter",
-               "\"MTS TestSuite\",\"5.9\"\n\n\"Time\",\"Axial Count\",\"Axial Force\",\"Axial "
-               "Displacement\"\n\"sec\",\"cycles\",\"kN\",\"mm\"\n0,1,2.5,1.5\n0.1,1,3.5,2.5\n",
-               4,
-               3,
-               {1.5e-3, 2500},
-               0.1},
-        Layout{"Chinese",
-               "序号,时间（s）,位移（mm）,力（kN）\n1,0,1.5,2.5\n2,0.1,2.5,3.5\n",
-               3,
-               4,
-               {1.5e-3, 2500},
-               0.1},
-        Layout{"Japanese",
-               "時間[s],荷重[N],変位[μm]\n0,2.5,1.5\n0.1,3.5,2.5\n",
-               3,
-               2,
-               {1.5e-6, 2.5},
-               0.1},
-        Layout{"GermanWithUnitsBehindIn",
-               "Pr\xC3\xBC"
-               "fer: M\nZeit in s;Weg in mm;Kraft in N\n0,0;1,5;2,5\n0,1;2,5;3,5\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               0.1},
-        Layout{"French",
-               "Temps (s);Déplacement (mm);Effort normal (daN);Effort tangentiel (daN)\n"
-               "0;1,5;5;2,5\n0,1;2,5;5;3,5\n",
-               2,
-               4,
-               {1.5e-3, 25},
-               0.1},
-        Layout{"Spanish",
-               "Tiempo [s],Desplazamiento [mm],Fuerza [N]\n0,1.5,2.5\n1,2,3\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               1.0},
-        Layout{"Portuguese",
-               "Tempo;Deslocamento;Força\ns;mm;N\n0;1,5;2,5\n1;2;3\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               1.0},
-        Layout{"Italian", "Spostamento [mm];Forza [N]\n1,5;2,5\n2;3\n", 1, 2, {1.5e-3, 2.5}},
-        Layout{"RobotWithAngleAndTorque",
-               "timestamp,q,dq,tau\n0,1.5,0,2.5\n1,2,0,3\n",
-               2,
-               4,
-               {1.5, 2.5},
-               1.0,
-               true},
-        Layout{"SwitchWithStepsAndGrams",
-               "Millis,Steps,Travel (mm),Scale raw,Scale "
-               "(grams)\n0,0,1.5,1007,1000\n10,5,2,1008,1001\n",
-               3,
-               5,
-               {1.5e-3, 9.80665},
-               0.01},
-        Layout{"ForceBeforeDisplacementByUnit",
-               "Fh [kN],u [mm]\n2.5,1.5\n3,2\n",
-               2,
-               1,
-               {1.5e-3, 2500}},
-        Layout{"LabelsOfRows",
-               "step_name,u [mm],Fh [kN]\nLS_0,1.5,2.5\nLS_1,2,3\n",
-               2,
-               3,
-               {1.5e-3, 2500}},
-        Layout{"CounterBeforeLoadAndDisplacement",
-               "Machine_N_cycles,Machine_Load,Machine_Displacement\n1,2.5,1.5\n1,3,2\n2,2,1\n",
-               3,
-               2,
-               {1.5, 2.5}},
-        Layout{"BracketsWithoutAUnit",
-               "t,pos (3),Load [23.8 N]\n0,1.5,2.5\n1,2,3\n",
-               2,
-               3,
-               {1.5, 2.5},
-               1.0},
-        Layout{"SetpointsNextToValues",
-               "Position Setpoint,Position Actual,Force Setpoint,Force "
-               "Actual\nmm,mm,N,N\n9,1.5,9,2.5\n"
-               "9,2,9,3\n",
-               2,
-               4,
-               {1.5e-3, 2.5}},
-        Layout{"StrengthOfOneForceAmongMany",
-               "time_s,displacement_m,act1_force_lb,force_N\n0,1.5,7,2.5\n1,2,8,3\n",
-               2,
-               4,
-               {1.5, 2.5},
-               1.0},
-        Layout{"DatesOfIso",
-               "Date,Displacement [mm],Force "
-               "[N]\n2024-03-05T23:59:59.5Z,1.5,2.5\n2024-03-06T00:00:01Z,2,3\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               86401.0},
-        Layout{"TimesOfDayPastMidnight",
-               "Datum;Uhrzeit;Weg [mm];Kraft "
-               "[N]\n05.03.2024;23:59:59,5;1,5;2,5\n06.03.2024;00:00:01;2;3\n",
-               3,
-               4,
-               {1.5e-3, 2.5},
-               86401.0},
-        Layout{"StampsInMilliseconds",
-               "timestamp_ms,disp_um,load_N\n1709633472000,1.5,2.5\n1709633473000,2,3\n",
-               2,
-               3,
-               {1.5e-6, 2.5},
-               1.0},
-        Layout{"HoursMicronsAndDynes",
-               "elapsed [h],disp_micron,load [dyn]\n0,1.5,2.5\n0.5,2,3\n",
-               2,
-               3,
-               {1.5e-6, 2.5e-5},
-               1800.0},
-        Layout{"ExcelThatStatesItsDelimiter",
-               "sep=;\nZeit [ms];Verschiebung [µm];Kraft [mN]\n0;1,5;2,5\n10;2;3\n",
-               2,
-               3,
-               {1.5e-6, 2.5e-3},
-               0.01},
-        Layout{"HeaderBehindAMarkOfAComment",
-               "# time [s] displacement [mm] force [N]\n0 1.5 2.5\n1 2 3\n",
-               2,
-               3,
-               {1.5e-3, 2.5},
-               1.0},
-        Layout{"TimeWithoutAHeader", "0,1,5\n1,-1,-5\n2,1,5\n3,-1,-5\n", 2, 3, {1, 5}}),
-    [](const auto& test) { return test.param.name; });
-
-std::string Refusal(const std::string& text, const RecordColumns& columns = {}) {
-  const TemporaryDirectory directory;
-  const std::filesystem::path path = directory.Write("record.txt", text);
-  return MessageOf<InputError>([&] { ReadRecord(path, columns); });
-}
-
-TEST(Evidence, OfACounterUnderTheNameOfALoadIsRefusedWithTheColumns) {
+TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
   EXPECT_THAT(
       Refusal("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n"),
-      HasSubstr("record.txt:2:2: 'Load' (column 2) only grows while 'x [mm]' (column 1) goes to "
-                "and fro, as a clock or a counter does: choose the force with --force, by name "
-                "or number: the columns are 'x [mm]' (1), 'Load' (2)"));
-}
-
-TEST(Evidence, OfARegisterWithASignBitIsRefused) {
-  EXPECT_THAT(
-      Refusal("Position [mm],Present Load\n0,3\n1,121\n-1,1025\n1,1100\n2,7\n"),
-      HasSubstr("'Present Load' (column 2) holds no value between 121 and 1023, as a register "
-                "whose bit 1024 is the sign of the force"));
-}
-
-TEST(Evidence, OfTwoColumnsThatMoveIsRefusedWithBoth) {
+      StartsWith("loop.csv:2:2: 'Load' (column 2) only grows while 'x [mm]' (column 1) goes "
+                 "to and fro, as a clock or a counter does: choose the force with --force, "
+                 "by name or number: the columns are 'x [mm]' (1), 'Load' (2)"));
+  EXPECT_THAT(Refusal("Position [mm],Present Load\n0,3\n1,121\n-1,1025\n1,1100\n2,7\n"),
+              HasSubstr("'Present Load' (column 2) holds no value between 121 and 1023, as a "
+                        "register whose bit 1024 is the sign of the force"));
   EXPECT_THAT(
       Refusal("pos1,pos2,F\n0,0,1\n1,2,2\n-1,-2,-1\n1,2,1\n"),
       HasSubstr("'pos1' (column 1) and 'pos2' (column 2) may each be the displacement: give "
                 "--displacement 1 or --displacement 2"));
+  EXPECT_EQ(Read("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n", Choose("", "Load")).force.index, 2U)
+      << "whoever names a column is believed";
 }
 
-TEST(Evidence, DoesNotOverruleWhoNamesAColumn) {
-  const TemporaryDirectory directory;
-  const auto path = directory.Write("record.txt", "x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n");
-  RecordColumns columns;
-  columns.force = "Load";
-  EXPECT_EQ(ReadRecord(path, columns).force.index, 2U);
-}
-
-TEST(Blocks, OfOtherColumnsAreRefusedWithTheirLine) {
+TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
   EXPECT_THAT(Refusal("t,x,F\ns,mm,N\n0,1,2\n1,2,3\nt,F,x\ns,N,mm\n2,3,2\n3,4,5\n"),
-              HasSubstr("record.txt:5:1: 't' is not a number"));
-}
-
-TEST(Thousands, AreNotGuessed) {
+              HasSubstr("loop.csv:5:1: 't' is not a number"));
   EXPECT_THAT(Refusal("x,F\n1,1,234\n2,1,235\n"),
               HasSubstr("leave out commas that separate thousands"));
-  EXPECT_THAT(Refusal("x,F\n1,\"1,234\"\n2,7\n3,8\n"),
-              HasSubstr("record.txt:2:2: '1,234' is not a number"));
-}
-
-TEST(Workbook, IsRefusedWithAWayToExportIt) {
+  EXPECT_THAT(Refusal("x;F\n1;1,234.5\n2;1,300.5\n"),
+              HasSubstr("loop.csv:2:2: '1,234.5' is not a number"));
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 
@@ -315,79 +154,77 @@ TEST(MissingCells, AreLeftOutUpToOneInAHundred) {
     text += row == 7 ? "NaN,1," : std::to_string(row % 10) + "," + std::to_string(row % 7) + ",";
     text += row % 2 == 0 ? "\n" : "5\n";
   }
-  const TemporaryDirectory directory;
-  const RecordFile file = ReadRecord(directory.Write("record.txt", text));
+  const RecordFile file = Read(text);
   EXPECT_EQ(file.left_out.count, 1U);
   EXPECT_EQ(file.left_out.first_line, 9U);
   EXPECT_EQ(file.record.size(), 199U);
-  EXPECT_THAT(Refusal("x,F\n0,1\n,2\n1,3\n"), HasSubstr("record.txt:3:1: '' is not a number"));
-  RecordColumns skipping;
-  skipping.skip_broken_rows = true;
-  const auto path = directory.Write("few.txt", "x,F\n0,1\n,2\n1,3\n");
-  EXPECT_EQ(ReadRecord(path, skipping).record.size(), 2U);
-}
-
-// --- Columns as an expression -------------------------------------------------------------------
-
-RecordFile ReadColumns(const std::string& text, const std::string& displacement,
-                       const std::string& force) {
-  const TemporaryDirectory directory;
-  return ReadRecord(directory.Write("record.txt", text),
-                    {.displacement = displacement, .force = force, .time = "", .normal_load = ""});
+  const std::string few = "x,F\n0,1\n,2\n1,3\n";
+  EXPECT_THAT(Refusal(few), HasSubstr("loop.csv:3:1: '' is not a number"));
+  EXPECT_EQ(Read(few, kSkipping).record.size(), 2U);
 }
 
 TEST(Expression, AddsScalesAndShiftsColumns) {
   const std::string text =
       "lvdt1 [mm],lvdt2 [mm],cell1 [N],cell2 [kN],raw\n1,3,10,2,100\n2,5,20,3,200\n";
-  EXPECT_EQ(ReadColumns(text, "lvdt2-lvdt1", "cell1").record.displacement, (Numbers{2e-3, 3e-3}));
-  EXPECT_EQ(ReadColumns(text, "#2-#1", "3").record.displacement, (Numbers{2e-3, 3e-3}));
-  EXPECT_EQ(ReadColumns(text, "1", "cell1+cell2").record.force, (Numbers{2010, 3020}))
-      << "each in its own unit";
-  EXPECT_EQ(ReadColumns(text, "1", "raw*0.5-10 [mN]").record.force, (Numbers{0.04, 0.09}));
-  EXPECT_EQ(ReadColumns(text, "1", "-2*raw/4").record.force, (Numbers{-50, -100}));
-  EXPECT_EQ(ReadColumns(text, "1", "raw [kN]").record.force, (Numbers{1e5, 2e5}));
-  const RecordFile file = ReadColumns(text, "1 [um]", "cell1 - cell2");
+  const auto displacement = [&](const char* columns) {
+    return Read(text, Choose(columns, "cell1")).record.displacement;
+  };
+  const auto force = [&](const char* columns) {
+    return Read(text, Choose("1", columns)).record.force;
+  };
+  EXPECT_EQ(displacement("lvdt2-lvdt1"), (Numbers{2e-3, 3e-3}));
+  EXPECT_EQ(displacement("#2-#1"), (Numbers{2e-3, 3e-3}));
+  EXPECT_EQ(force("cell1+raw [kN]"), (Numbers{110e3, 220e3}));
+  EXPECT_THAT(Refusal(text, Choose("1", "cell1+cell2")), HasSubstr("are not in one unit"));
+  EXPECT_EQ(force("raw*0.5-10 [mN]"), (Numbers{0.04, 0.09}));
+  EXPECT_EQ(force("-2*raw/4"), (Numbers{-50, -100}));
+  EXPECT_EQ(force("-raw"), (Numbers{-100, -200}));
+  EXPECT_EQ(force("raw [kN]"), (Numbers{1e5, 2e5}));
+  const RecordFile file = Read(text, Choose("1 [um]", "cell1 - raw [N]"));
   EXPECT_EQ(file.record.displacement, (Numbers{1e-6, 2e-6}));
-  EXPECT_EQ(file.force.name, "cell1 - cell2");
+  EXPECT_EQ(file.force.name, "cell1 - raw [N]");
   EXPECT_EQ(file.force.index, 3U);
   EXPECT_EQ(file.force.unit, "N");
 }
 
 TEST(Expression, IsANameFirst) {
-  EXPECT_EQ(ReadColumns("x [m],a-b\n1,2\n2,3\n", "x", "a-b").record.force, (Numbers{2, 3}));
-  EXPECT_EQ(ReadColumns("x [m],a-b,c\n1,2,5\n2,3,5\n", "x", "a-b+c").record.force, (Numbers{7, 8}));
+  EXPECT_EQ(Read("x [m],a-b\n1,2\n2,3\n", Choose("x", "a-b")).record.force, (Numbers{2, 3}));
+  EXPECT_EQ(Read("x [m],a-b,c\n1,2,5\n2,3,5\n", Choose("x", "a-b+c")).record.force,
+            (Numbers{7, 8}));
 }
 
 TEST(Expression, RefusesWhatItCannotBe) {
-  const std::string text = "x,F,G\n1,2,3\n2,3,4\n";
   const auto refusal = [&](const std::string& force) {
-    return Refusal(text, {.displacement = "x", .force = force, .time = "", .normal_load = ""});
+    return Refusal("x [V],F [V],G [V]\n1,2,3\n2,3,4\n", Choose("x [m]", force));
   };
   EXPECT_THAT(refusal("F*"), HasSubstr("--force F*: is incomplete"));
   EXPECT_THAT(refusal("F*G"), HasSubstr("multiplies columns"));
-  EXPECT_THAT(refusal("2-3"), HasSubstr("write #3 for the column, 3.0 for the number"));
+  EXPECT_THAT(refusal("2-3"), HasSubstr("or #3 for the third column"));
+  EXPECT_THAT(refusal("#4-#3"), HasSubstr("has #4: there are 3 columns"));
   EXPECT_THAT(refusal("F+H"), HasSubstr("no column is called 'H'"));
   EXPECT_THAT(refusal("9"), HasSubstr("there is no column 9"));
   EXPECT_THAT(refusal("F*0"), HasSubstr("a factor that is 0"));
+  EXPECT_THAT(refusal("F-G"), HasSubstr("the unit 'V' of 'F [V]' (column 2) is not known"));
 }
 
 TEST(SampleRate, StandsInForATime) {
-  const TemporaryDirectory directory;
   RecordColumns columns;
   columns.sample_rate = 100.0;
-  EXPECT_EQ(ReadRecord(directory.Write("record.txt", "x,F\n1,2\n2,3\n"), columns).record.time,
-            (Numbers{0.0, 0.01}));
+  EXPECT_EQ(Read("x,F\n1,2\n2,3\n", columns).record.time, (Numbers{0.0, 0.01}));
+  columns.time = "x";
+  EXPECT_THAT(Refusal("x,F\n1,2\n", columns), HasSubstr("exclude each other"));
 }
 
 TEST(WithAnotherFile, JoinsColumnsRowByRowOrByTime) {
   const TemporaryDirectory directory;
   RecordColumns columns;
   columns.with = directory.Write("force.txt", "F [N]\n10\n20\n").string();
-  EXPECT_EQ(ReadRecord(directory.Write("a.txt", "x [mm]\n1\n2\n"), columns).record.force,
-            (Numbers{10, 20}));
+  EXPECT_EQ(Read("x [mm]\n1\n2\n", columns).record.force, (Numbers{10, 20}));
+  const auto three = directory.Write("b.txt", "x [mm]\n0\n1\n2\n");
+  EXPECT_THAT(MessageOf<InputError>([&] { ReadRecord(three, columns); }),
+              HasSubstr("b.txt has 3 rows and"));
   columns.with = directory.Write("timed.txt", "t [ms],F [N]\n0,10\n2000,30\n").string();
-  const auto path = directory.Write("b.txt", "t [s],x [mm]\n0,1\n1,2\n2,3\n");
-  EXPECT_EQ(ReadRecord(path, columns).record.force, (Numbers{10, 20, 30}));
+  EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2\n2,3\n", columns).record.force, (Numbers{10, 20, 30}));
 }
 
 }  // namespace

@@ -4,32 +4,28 @@
 #include <set>
 #include <stdexcept>
 
+#include "io/drawing.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::plot_test {
 namespace {
 
-/// Sets an environment variable for one test.
-class ScopedVariable {
- public:
-  ScopedVariable(const char* name, const std::string& value) : name_(name) {
-    if (const char* const old_value = std::getenv(name)) old_value_ = old_value;
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~ScopedVariable() { old_value_ ? ::setenv(name_, old_value_->c_str(), 1) : ::unsetenv(name_); }
-  ScopedVariable(const ScopedVariable&) = delete;
-  ScopedVariable& operator=(const ScopedVariable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> old_value_;
-};
-
 Plot OnePanel(PlotSeries series) {
   Plot plot;
   plot.panels.push_back({"displacement δ [µm]", "force T [N]", {std::move(series)}});
   return plot;
+}
+
+PlotSeries Wave(std::size_t points, PlotStyle style) {
+  PlotSeries series{"", {}, {}, style};
+  for (std::size_t i = 0; i < points; ++i) {
+    series.x.push_back(static_cast<double>(i));
+    series.y.push_back(std::sin(0.01 * static_cast<double>(i)));
+  }
+  series.lower = series.y;
+  series.upper = series.y;
+  return series;
 }
 
 std::string Svg(const Plot& plot) {
@@ -47,21 +43,222 @@ std::size_t Count(const std::string& text, const std::string& part) {
   return count;
 }
 
+/// Returns the path of the first element of a class.
+std::string PathOf(const std::string& svg, const std::string& name) {
+  const std::size_t at = svg.find("class=\"" + name);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = svg.find(" d=\"", at) + 4;
+  return svg.substr(begin, svg.find('"', begin) - begin);
+}
+
 /// Dots that are drawn, each a line of no length.
-std::size_t Dots(const std::string& svg) {
-  const std::size_t at = svg.find("class=\"dots");
-  return at == std::string::npos ? 0 : Count(svg.substr(at, svg.find('>', at) - at), "h0");
+std::size_t Dots(const std::string& svg) { return Count(PathOf(svg, "dots"), "h0"); }
+
+/// Returns the anchor of a text in its drawing, from the left and the top [px].
+std::pair<double, double> PlaceOf(const std::string& svg, const std::string& text) {
+  const std::size_t at = svg.rfind("<text x=\"", svg.find(">" + text + "<"));
+  if (at == std::string::npos) throw std::runtime_error("no " + text);
+  return {std::stod(svg.substr(at + 9)), std::stod(svg.substr(svg.find("y=\"", at) + 3))};
+}
+
+TEST(HtmlText, EscapesMarkup) {
+  EXPECT_EQ(HtmlText("<script>alert('a & \"b\"')</script>"),
+            "&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)&lt;/script&gt;");
+}
+
+TEST(HtmlText, KeepsUtf8AndReplacesInvalidBytes) {
+  EXPECT_EQ(HtmlText("σ = 4·10⁷ 𝛼"), "σ = 4·10⁷ 𝛼");
+  EXPECT_EQ(HtmlText("a\xFF\x62"), "a\uFFFDb");
+  EXPECT_EQ(HtmlText("a\xC3"), "a\uFFFD");
+  EXPECT_EQ(HtmlText("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD");  // half of a surrogate pair
+  EXPECT_EQ(HtmlText(std::string("\x01\n", 2)), "\uFFFD\n");
 }
 
 TEST(Plot, WritesSvgWithLabelsAsTheyAre) {
   Plot plot = OnePanel({"run_7^2 {a} @b 'c' \"d\" \\n % <b>", {0, 1}, {0, 1}});
   plot.title = "σ = 4·10⁷ N/m, it's";
+  plot.panels.front().title = "a < b";
+  plot.panels.push_back({"time [s]", "residual [N]", {{"", {0, 1}, {0, 1}}}, 0.5});
   const std::string svg = Svg(plot);
   EXPECT_EQ(svg.rfind("<?xml", 0), 0u);
-  EXPECT_NE(svg.find("displacement δ [µm]"), std::string::npos);
-  EXPECT_NE(svg.find("σ = 4·10⁷ N/m, it&#39;s"), std::string::npos);
-  EXPECT_NE(svg.find("run_7^2 {a} @b &#39;c&#39; &quot;d&quot; \\n % &lt;b&gt;"),
-            std::string::npos);
+  for (const char* label :
+       {"displacement δ [µm]", "σ = 4·10⁷ N/m, it&#39;s", "a &lt; b", "residual [N]", "force T [N]",
+        "run_7^2 {a} @b &#39;c&#39; &quot;d&quot; \\n % &lt;b&gt;"}) {
+    EXPECT_EQ(Count(svg, std::string(">") + label + "<"), 1u) << label;
+  }
+}
+
+TEST(Plot, DrawsEveryStyle) {
+  const std::vector<std::pair<PlotStyle, std::vector<std::string>>> drawn = {
+      {PlotStyle::kLine, {"line"}},
+      {PlotStyle::kPoints, {"dots"}},
+      {PlotStyle::kMarkers, {"marker"}},
+      {PlotStyle::kLineAndPoints, {"line", "marker"}},
+      {PlotStyle::kIntervals, {"line", "marker"}},
+      {PlotStyle::kBand, {"area", "line"}},
+  };
+  for (const auto& [style, kinds] : drawn) {
+    Plot plot = OnePanel(Wave(20, style));
+    const auto has = [&](const std::string& svg, const char* kind) {
+      return Count(svg, fmt::format("class=\"{} s0\"", kind));
+    };
+    const std::string svg = Svg(plot);
+    plot.panels.front().series.front().label = "wave";
+    const std::string with_symbol = Svg(plot);
+    for (const char* kind : {"line", "dots", "marker", "area"}) {
+      EXPECT_EQ(has(svg, kind), std::ranges::count(kinds, kind)) << kind;
+      EXPECT_EQ(has(with_symbol, kind), 2 * std::ranges::count(kinds, kind)) << kind;
+    }
+  }
+}
+
+TEST(Plot, DrawsAConstantAndAPointAlone) {
+  for (const double value : {0.0, 5.0, -1e-9, 1e12}) {
+    const std::string svg = Svg(OnePanel({"", {value}, {value}, PlotStyle::kLine}));
+    EXPECT_THAT(svg, HasSubstr("h0\"/>"));
+    EXPECT_THAT(svg, Not(HasSubstr("nan")));
+    EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  }
+}
+
+TEST(Plot, PlacesPointsWhereTheirTicsSay) {
+  // Of tics at 0 and 10 the pixel of 5 is the middle: from the drawing alone.
+  const std::string svg = Svg(OnePanel({"", {0, 5, 10}, {-2, 5, 9}, PlotStyle::kPoints}));
+  const std::string dots = PathOf(svg, "dots");
+  std::vector<double> places;
+  for (std::size_t at = dots.find('M'); at != std::string::npos; at = dots.find('M', at + 1)) {
+    places.push_back(std::stod(dots.substr(at + 1)));
+  }
+  ASSERT_EQ(places.size(), 3U);
+  constexpr double kTenthOfPixel = 0.1;
+  EXPECT_NEAR(places[1], (places[0] + places[2]) / 2, kTenthOfPixel);
+  EXPECT_NEAR(PlaceOf(svg, "10").first, places[2], kTenthOfPixel);
+  // No tic is outside the axes, "M<left> <top>V<bottom>H<right>".
+  const std::string axis = PathOf(svg, "axis");
+  const std::string grid = PathOf(svg, "grid");
+  for (std::size_t at = 0; at != std::string::npos; at = grid.find('M', at + 1)) {
+    EXPECT_GE(std::stod(grid.substr(at + 1)), std::stod(axis.substr(1)));
+    EXPECT_LE(std::stod(grid.substr(grid.find(' ', at) + 1)),
+              std::stod(axis.substr(axis.find('V') + 1)));
+  }
+}
+
+TEST(Plot, PutsLabelsOfMarksWhereTheyHaveRoom) {
+  Plot plot = OnePanel({"", {0, 1000}, {1, 2}});
+  plot.panels[0].marks = {
+      {100, "step <100>"}, {110, "step, 110"}, {700, "step, 700"}, {990, "the last"}};
+  const std::string svg = Svg(plot);
+  constexpr double kLine = 13;  // [px], the height of letters
+  EXPECT_GT(PlaceOf(svg, "step, 110").second, PlaceOf(svg, "step &lt;100&gt;").second + kLine);
+  EXPECT_EQ(PlaceOf(svg, "step, 700").second, PlaceOf(svg, "step &lt;100&gt;").second);
+  EXPECT_EQ(Count(svg, "class=\"mark\""), 4u);
+  EXPECT_THAT(svg, HasSubstr("text-anchor=\"end\">the last")) << "on the left of its line";
+}
+
+TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
+  // The axis takes the ends in: 9 is beyond every point.
+  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kIntervals});
+  EXPECT_THROW(Svg(plot), InvalidArgument) << "no ends";
+  plot.panels.front().series.front().lower = {0, 1, 0};
+  plot.panels.front().series.front().upper = {2, 9, 2};
+  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 1u);
+  plot.panels.front().series.front().style = PlotStyle::kMarkers;
+  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 0u);
+}
+
+TEST(Plot, LabelsLogarithmicAxes) {
+  const auto svg = [](std::vector<double> y) {
+    Plot plot = OnePanel({"", std::vector<double>(y.size(), 0.0), std::move(y)});
+    plot.panels.front().log_y = true;
+    plot.panels.push_back({"", "", {{"", {-1, 1}, {-100, 100}}}});
+    return Svg(plot);
+  };
+  const std::vector<std::pair<std::vector<double>, std::vector<std::string>>> labels = {
+      {{1e-6, 1e-3}, {"10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³"}},
+      {{2e-19, 5e-11}, {"10⁻¹⁸", "10⁻¹²"}},
+      {{1.0, 50.0}, {"1", "2", "5", "10", "20", "50"}},
+      {{0.21, 0.59}, {"0.3", "0.5"}},
+      {{7e-9}, {"6·10⁻⁹", "8·10⁻⁹"}},
+      {{1e-305, 1e305}, {"10⁰"}},
+      {{1, 2}, {"−100"}},  // of the linear axis of the next panel
+  };
+  for (const auto& [values, expected] : labels) {
+    const std::string drawn = svg(values);
+    for (const std::string& label : expected) {
+      EXPECT_GE(Count(drawn, ">" + label + "<"), 1u) << label;
+    }
+    EXPECT_LE(Count(drawn, ">10"), 12u);
+  }
+}
+
+TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
+  Plot plot;
+  plot.panels.push_back({"", "", {}});
+  for (int series = 0; series < 12; ++series) {
+    plot.panels.front().series.push_back(
+        {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kMarkers});
+  }
+  const std::string svg = Svg(plot);
+  std::set<std::string> looks;  // colour, filling and shape
+  for (std::size_t at = svg.find("class=\"marker"); at != std::string::npos;
+       at = svg.find("class=\"marker", at + 1)) {
+    looks.insert(svg.substr(at, svg.find('"', at + 7) - at));
+  }
+  EXPECT_EQ(looks.size(), 12u);
+  EXPECT_EQ(Count(svg, "m-3.6 0a"), 4u) << "two of twelve, and in the legend, are circles";
+
+  PlotPanel shades{"", "", {{"line", {0, 1}, {0, 1}}, {"", {0, 1}, {0, 1}}}};
+  for (const double shade : {0.0, 0.5, 1.0}) {
+    shades.series.push_back({"", {0, 1}, {0, 1}});
+    shades.series.back().shade = shade;
+  }
+  const std::string drawn = DrawPanel(shades, "", 560, 280, 100);
+  EXPECT_EQ(Count(drawn, "line s0\""), 2u) << "a line without a label continues the one before";
+  for (const char* colour : {"h0", "h4", "h7"}) {
+    EXPECT_EQ(Count(drawn, fmt::format("line {}\"", colour)), 1u);
+  }
+  EXPECT_EQ(LegendOf(shades).size(), 1u);
+}
+
+TEST(Plot, PutsALongLegendInFurtherRows) {
+  Plot plot = OnePanel({"curve 1", {0, 1}, {0, 1}});
+  const auto rows = [&] {
+    const std::string svg = Svg(plot);
+    std::set<std::string> places;  // of groups from the top, that of the axes among them
+    for (std::size_t at = svg.find("<g transform"); at != std::string::npos;
+         at = svg.find("<g transform", at + 1)) {
+      const std::size_t comma = svg.find(',', at);
+      places.insert(svg.substr(comma, svg.find(')', at) - comma));
+    }
+    return places.size();
+  };
+  const std::size_t with_one = rows();
+  for (int k = 2; k < 20; ++k) {
+    plot.panels.front().series.push_back({fmt::format("curve {}", k), {0, 1}, {0, 1}});
+  }
+  EXPECT_EQ(rows(), with_one + 2);
+}
+
+TEST(Plot, ThinsLongSeriesAndKeepsTheirPeaks) {
+  EXPECT_GT(Dots(Svg(OnePanel(Wave(20'000, PlotStyle::kPoints)))), 19'000u) << "but repeated ones";
+  for (const auto& [style, kind] : {std::pair{PlotStyle::kLine, "line"},
+                                    {PlotStyle::kPoints, "dots"},
+                                    {PlotStyle::kBand, "area"}}) {
+    PlotSeries series = Wave(300'000, style);
+    (style == PlotStyle::kBand ? series.upper : series.y)[31'415] = 50;
+    (style == PlotStyle::kBand ? series.lower : series.y)[27'182] = -70;
+    const std::string drawn = DrawPanel(OnePanel(series).panels.front(), "", 560, 280, 6000);
+    EXPECT_LT(drawn.size(), 250'000u) << "6000 points of some 15 bytes, twice of a band";
+    // Under a margin of 5 % the least and greatest are 280/1.1 px apart.
+    double highest = 1e9;
+    double lowest = 0;
+    const std::string path = PathOf(drawn, kind);
+    for (std::size_t at = path.find(' '); at != std::string::npos; at = path.find(' ', at + 1)) {
+      highest = std::min(highest, std::stod(path.substr(at)));
+      lowest = std::max(lowest, std::stod(path.substr(at)));
+    }
+    EXPECT_NEAR(lowest - highest, 280 / 1.1, 0.2);
+  }
 }
 
 TEST(Plot, WritesPngOfTheSizeAsked) {
@@ -78,270 +275,40 @@ TEST(Plot, WritesPngOfTheSizeAsked) {
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\1\x40\0\0\0\xF0", 8));
 }
 
-TEST(Plot, DrawsEveryPanel) {
-  Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  plot.panels.push_back({"time [s]", "residual [N]", {{"", {0, 1}, {0, 1}}}, 0.5});
-  const std::string svg = Svg(plot);
-  EXPECT_EQ(Count(svg, "residual [N]"), 1u);
-  EXPECT_EQ(Count(svg, "force T [N]"), 1u);
-}
-
-TEST(Plot, DrawsPointsOnlyForThatStyle) {
-  EXPECT_EQ(Dots(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kPoints}))), 3u);
-  EXPECT_EQ(Dots(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine}))), 0u);
-}
-
-/// Returns the anchor of a text in its drawing, from the left and the top [px].
-std::pair<double, double> PlaceOf(const std::string& svg, const std::string& text) {
-  const std::size_t at = svg.rfind("<text x=\"", svg.find(">" + text + "<"));
-  if (at == std::string::npos) throw std::runtime_error("no " + text);
-  return {std::stod(svg.substr(at + 9)), std::stod(svg.substr(svg.find("y=\"", at) + 3))};
-}
-
-TEST(Plot, PutsLabelsOfCloseMarksOneUnderTheOther) {
-  Plot plot = OnePanel({"", {0, 1000}, {1, 2}, PlotStyle::kLine});
-  plot.panels[0].marks = {
-      {100, "a step, 100"}, {110, "a step, 110"}, {120, "a step, 120"}, {700, "a step, 700"}};
-  const std::string svg = Svg(plot);
-  constexpr double kLine = 13;  // [px], the height of letters
-  EXPECT_GT(PlaceOf(svg, "a step, 110").second, PlaceOf(svg, "a step, 100").second + kLine);
-  EXPECT_GT(PlaceOf(svg, "a step, 120").second, PlaceOf(svg, "a step, 110").second + kLine);
-  EXPECT_EQ(PlaceOf(svg, "a step, 700").second, PlaceOf(svg, "a step, 100").second);
-}
-
-TEST(Plot, PutsTheLabelOfALastMarkOnTheLeftOfIt) {
-  Plot plot = OnePanel({"", {0, 1000}, {1, 2}, PlotStyle::kLine});
-  plot.panels[0].marks = {{990, "a step, 990"}};
-  const std::string svg = Svg(plot);
-  const std::size_t at = svg.find("a step, 990");
-  ASSERT_NE(at, std::string::npos);
-  const std::size_t anchor = svg.rfind("text-anchor=", at);
-  EXPECT_EQ(svg.substr(anchor, 17), "text-anchor=\"end\"");
-}
-
-TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
-  // A linear axis takes the ends in: 9 is beyond every point.
-  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kIntervals});
-  EXPECT_THROW(Svg(plot), InvalidArgument) << "no ends";
-  plot.panels.front().series.front().lower = {0, 1, 0};
-  plot.panels.front().series.front().upper = {2, 9, 2};
-  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 1u);
-  plot.panels.front().series.front().style = PlotStyle::kMarkers;
-  EXPECT_EQ(Count(Svg(plot), ">8</text>"), 0u);
-}
-
-/// Returns the path of the first element of a class.
-std::string PathOf(const std::string& svg, const std::string& name) {
-  const std::size_t begin = svg.find(" d=\"", svg.find("class=\"" + name)) + 4;
-  return svg.substr(begin, svg.find('"', begin) - begin);
-}
-
-TEST(Plot, HasNoTicBesideItsAxes) {
-  const std::string svg = Svg(OnePanel({"", {0.37, 1.81}, {-2.3, 4.7}}));
-  const std::string axis = PathOf(svg, "axis");  // "M<left> <top>V<bottom>H<right>"
-  const double left = std::stod(axis.substr(1));
-  const double bottom = std::stod(axis.substr(axis.find('V') + 1));
-  const std::string grid = PathOf(svg, "grid");  // "M<x> <top>V<bottom>" or "M<left> <y>H<right>"
-  for (std::size_t at = 0; at != std::string::npos; at = grid.find('M', at + 1)) {
-    EXPECT_GE(std::stod(grid.substr(at + 1)), left);
-    EXPECT_LE(std::stod(grid.substr(grid.find(' ', at) + 1)), bottom);
+TEST(Plot, SaysWhyThereIsNoPng) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"",
+       "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
+       "librsvg2-bin), or give a name that ends in .svg"},
+      {"echo 'out of ink' >&2\nexit 3\n", "cannot draw '{}': rsvg-convert failed: out of ink"},
+      {"echo PNG > \"${2#--output=}\"\n",
+       "cannot draw '{}': rsvg-convert wrote only a part of it; is the disk full?"}};
+  for (const auto& [program, message] : cases) {
+    const TemporaryDirectory programs;
+    const TemporaryDirectory directory;
+    if (!program.empty()) {
+      std::filesystem::permissions(programs.Write("rsvg-convert", "#!/bin/sh\n" + program),
+                                   std::filesystem::perms::owner_all);
+    }
+    const std::string path = std::getenv("PATH");
+    ::setenv("PATH", programs.path().c_str(), 1);
+    ::setenv("TMPDIR", directory.path().c_str(), 1);
+    const std::string name = (directory.path() / "plot.png").string();
+    EXPECT_EQ(MessageOf<InputError>([&] {
+                WritePlot(OnePanel({"", {0}, {0}}), name);
+              }),
+              fmt::format(fmt::runtime(message), name));
+    ::setenv("PATH", path.c_str(), 1);
+    ::unsetenv("TMPDIR");
+    EXPECT_EQ(directory.FileCount(), 0u) << "scratch files stay";
   }
-}
-
-TEST(Plot, LeavesRoomForBothHalvesOfTheOuterBars) {
-  const std::string svg = Svg(OnePanel({"", {1, 2, 3}, {1, 2, 1}, PlotStyle::kBars}));
-  const std::string axis = PathOf(svg, "axis");
-  const double left = std::stod(axis.substr(1));
-  const double right = std::stod(axis.substr(axis.find('H') + 1));
-  const std::string bars = PathOf(svg, "bars");
-  EXPECT_GT(std::stod(bars.substr(1)), left);
-  EXPECT_LT(std::stod(bars.substr(bars.rfind('H') + 1)), right);
-}
-
-TEST(Plot, LabelsLogarithmicAxesWithPowersOfTen) {
-  Plot plot = OnePanel({"", {1e-6, 1e-3}, {2e-19, 5e-11}});
-  plot.panels.front().log_x = true;
-  plot.panels.front().log_y = true;
-  const std::string svg = Svg(plot);
-  for (const char* label : {">10⁻⁶<", ">10⁻⁵<", ">10⁻⁴<", ">10⁻³<", ">10⁻¹⁸<", ">10⁻¹²<"}) {
-    EXPECT_EQ(Count(svg, label), 1u) << label;
-  }
-}
-
-TEST(Plot, LabelsAtLeastTwoTicsOfAShortLogarithmicAxis) {
-  const auto svg = [](std::vector<double> y) {
-    Plot plot = OnePanel({"", std::vector<double>(y.size(), 0.0), y});
-    plot.panels.front().log_y = true;
-    return Svg(plot);
-  };
-  const std::string within_a_decade = svg({0.21, 0.59});
-  EXPECT_EQ(Count(within_a_decade, ">0.3<"), 1u);
-  EXPECT_EQ(Count(within_a_decade, ">0.5<"), 1u);
-  const std::string single = svg({7e-9});
-  EXPECT_EQ(Count(single, ">0.6·10⁻⁸<"), 1u);
-  EXPECT_EQ(Count(single, ">0.8·10⁻⁸<"), 1u);
-}
-
-TEST(Plot, DrawsLogarithmicAxesOfManyDecades) {
-  Plot plot = OnePanel({"", {1e-305, 1.0, 1e305}, {1, 2, 3}, PlotStyle::kPoints});
-  plot.panels.front().log_x = true;
-  const std::string svg = Svg(plot);
-  EXPECT_EQ(Dots(svg), 3u);
-  EXPECT_EQ(Count(svg, ">10³⁰⁰<"), 1u);
-  EXPECT_LE(Count(svg, ">10"), 8u);
-}
-
-TEST(Plot, GoesBackToLinearAxesInTheNextPanel) {
-  Plot plot = OnePanel({"", {1, 2}, {1e-6, 1}});
-  plot.panels.front().log_y = true;
-  plot.panels.push_back({"", "", {{"", {-1, 1}, {-100, 100}, PlotStyle::kPoints}}});
-  const std::string svg = Svg(plot);
-  EXPECT_EQ(Dots(svg), 2u);
-  EXPECT_EQ(Count(svg, ">−100<"), 1u);
-}
-
-TEST(Plot, DistinguishesTwelveSeries) {
-  Plot plot;
-  plot.panels.push_back({"", "", {}});
-  for (int series = 0; series < 12; ++series) {
-    plot.panels.front().series.push_back(
-        {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kMarkers});
-  }
-  const std::string svg = Svg(plot);
-  std::set<std::string> looks;  // colour, filling and shape; the places differ anyway
-  for (std::size_t at = svg.find("class=\"marker"); at != std::string::npos;
-       at = svg.find("class=\"marker", at + 1)) {
-    looks.insert(svg.substr(at, svg.find('"', at + 7) - at));
-  }
-  EXPECT_EQ(looks.size(), 12u);
-  EXPECT_EQ(Count(svg, "<circle"), 4u) << "shapes too: two of twelve and their legend are circles";
-}
-
-TEST(Plot, PutsPanelsInColumnsRowByRow) {
-  Plot plot;
-  plot.columns = 2;
-  for (const char* title : {"first", "second", "third"}) {
-    plot.panels.push_back({"", "", {{"", {0, 1}, {0, 1}}}});
-    plot.panels.back().title = title;
-  }
-  const std::string svg = Svg(plot);
-  constexpr double kTenthOfPixel = 0.1;
-  const auto [first_x, first_y] = PlaceOf(svg, "first");
-  const auto [second_x, second_y] = PlaceOf(svg, "second");
-  const auto [third_x, third_y] = PlaceOf(svg, "third");
-  EXPECT_NEAR(second_x - first_x, plot.width / 2.0, kTenthOfPixel);
-  EXPECT_EQ(second_y, first_y);
-  EXPECT_EQ(third_x, first_x);
-  EXPECT_GT(third_y, plot.height / 2.0);
-}
-
-TEST(Plot, PutsALongLegendBesideItsPanel) {
-  Plot plot = OnePanel({"curve 1", {0, 1}, {0, 1}});
-  const auto place = [&](const std::string& label) { return PlaceOf(Svg(plot), label); };
-  for (const char* label : {"curve 2", "curve 3", "curve 4"}) {
-    plot.panels.front().series.push_back({label, {0, 1}, {0, 1}});
-  }
-  EXPECT_EQ(place("curve 1").second, place("curve 4").second);
-  plot.panels.front().series.push_back({"curve 5", {0, 1}, {0, 1}});
-  EXPECT_EQ(place("curve 1").first, place("curve 5").first);
-  EXPECT_LT(place("curve 1").second, place("curve 5").second);
-  // Where a panel is missing from the last row, the legend takes its place.
-  plot.columns = 2;
-  EXPECT_GT(place("curve 1").first, plot.width / 2.0);
-}
-
-TEST(Plot, DrawsSinglePoint) {
-  EXPECT_EQ(Dots(Svg(OnePanel({"", {3}, {3}, PlotStyle::kPoints}))), 1u);
-}
-
-TEST(Plot, DrawsEveryPointUpToTheLimit) {
-  PlotSeries series{"", {}, {}, PlotStyle::kPoints};
-  for (int point = 0; point < 20000; ++point) {
-    series.x.push_back(point);
-    series.y.push_back(point % 7);
-  }
-  EXPECT_EQ(Dots(Svg(OnePanel(series))), 20000u);
-}
-
-TEST(Plot, ThinsLongSeriesAndKeepsItsPeak) {
-  PlotSeries series{"", {}, {}, PlotStyle::kPoints};
-  for (int point = 0; point < 100000; ++point) {
-    series.x.push_back(point);
-    series.y.push_back(0.001 * (point % 11));
-  }
-  series.y[54321] = 1000;
-  const std::string svg = Svg(OnePanel(series));
-  const std::size_t drawn = Dots(svg);
-  EXPECT_LE(drawn, 20000u);
-  EXPECT_GE(drawn, 500u) << "as many as there are cells in a row";
-  double highest = 1e9;  // [px] from the top
-  const std::size_t dots = svg.find("class=\"dots");
-  for (std::size_t at = svg.find("h0", dots); at != std::string::npos;
-       at = svg.find("h0", at + 1)) {
-    highest = std::min(highest, std::stod(svg.substr(svg.rfind(' ', at))));
-  }
-  EXPECT_LT(highest, 100) << "the peak is lost";
-}
-
-TEST(Plot, RefusesOtherExtensions) {
-  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, "dir/loop.pdf"); }),
-            "cannot draw 'dir/loop.pdf': its name must end in .svg or .png");
-}
-
-/// Puts a program of that text alone on PATH, by the name of the one that makes PNG.
-class FakeConverter {
- public:
-  explicit FakeConverter(const std::string& text) {
-    std::filesystem::permissions(directory_.Write("rsvg-convert", "#!/bin/sh\n" + text),
-                                 std::filesystem::perms::owner_all);
-  }
-
- private:
-  TemporaryDirectory directory_;
-  ScopedVariable path_{"PATH", directory_.path().string()};
-};
-
-TEST(Plot, SaysWhatToInstallForPng) {
-  const TemporaryDirectory directory;
-  const ScopedVariable path("PATH", directory.path().string());
-  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, directory.path() / "plot.png"); }),
-            "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
-            "librsvg2-bin), or give a name that ends in .svg");
-  EXPECT_EQ(directory.FileCount(), 0u);
-}
-
-TEST(Plot, QuotesTheConverterWhenItFails) {
-  const FakeConverter converter("echo 'out of ink' >&2\nexit 3\n");
-  const TemporaryDirectory directory;
-  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  const std::string name = (directory.path() / "plot.png").string();
-  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, name); }),
-            "cannot draw '" + name + "': rsvg-convert failed: out of ink");
-  EXPECT_EQ(directory.FileCount(), 0u);
-}
-
-TEST(Plot, RefusesAPartOfAPicture) {
-  const FakeConverter converter("echo PNG > \"${2#--output=}\"\n");
-  const TemporaryDirectory directory;
-  const std::string name = (directory.path() / "loop.png").string();
-  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, name); }),
-            "cannot draw '" + name + "': rsvg-convert wrote only a part of it; is the disk full?");
-  EXPECT_FALSE(std::filesystem::exists(name));
-}
-
-TEST(Plot, LeavesNoScratchFilesBehind) {
-  const FakeConverter converter("exit 3\n");
-  const TemporaryDirectory directory;
-  const ScopedVariable scratch("TMPDIR", directory.path().string());
-  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_THROW(WritePlot(plot, directory.path() / "plot.png"), InputError);
-  EXPECT_EQ(directory.FileCount(), 0u);
 }
 
 TEST(Plot, RefusesWhatCannotBeDrawn) {
+  EXPECT_EQ(MessageOf<InputError>([] {
+              WritePlot(OnePanel({"", {0}, {0}}), "dir/loop.pdf");
+            }),
+            "cannot draw 'dir/loop.pdf': its name must end in .svg or .png");
   const auto refusal = [](const Plot& plot) {
     return MessageOf<InvalidArgument>([&] { WritePlot(plot, "/nowhere/plot.svg"); });
   };
@@ -352,16 +319,9 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
   EXPECT_EQ(refusal(OnePanel({"fit", {0}, {std::nan("")}})),
             "y of 'fit' of panel 1 = nan is invalid: must be finite");
   Plot logarithmic = OnePanel({"fit", {0, 1}, {1, 1}});
-  logarithmic.panels.front().log_y = true;
   logarithmic.panels.front().log_x = true;
   EXPECT_EQ(refusal(logarithmic),
             "x of 'fit' of panel 1 = 0 is invalid: must be > 0 on a logarithmic axis");
-  logarithmic.panels.front().series.front() = {"fit", {1, 1}, {1, -2}};
-  EXPECT_EQ(refusal(logarithmic),
-            "y of 'fit' of panel 1 = -2 is invalid: must be > 0 on a logarithmic axis");
-  Plot no_columns = OnePanel({"fit", {0}, {0}});
-  no_columns.columns = 0;
-  EXPECT_EQ(refusal(no_columns), "number of plot columns = 0 is invalid: must be finite and > 0");
   Plot empty = OnePanel({"fit", {0}, {0}});
   empty.panels.front().series.clear();
   EXPECT_EQ(refusal(empty), "panel 1 has no series: must have one");

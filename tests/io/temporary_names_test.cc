@@ -63,10 +63,18 @@ TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
   }
 }
 
-TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
+/// Runs a part of a program and returns how it ended, as waitpid() states it.
+template <typename Part>
+int StatusOf(Part part) {
   const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  if (child == 0) part();
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  return status;
+}
+
+TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
+  const int status = StatusOf([] {
     RestoreDefaultSignals();
     RemoveTemporaryFilesOnSignals();
     RaiseNotedSignal();  // of none
@@ -78,43 +86,33 @@ TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
     }
     RaiseNotedSignal();
     ::_exit(3);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  });
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
 }
 
 TEST(DeferredSignals, InterruptWhatWaitsForInput) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  const int status = StatusOf([&] {
     RestoreDefaultSignals();
     RemoveTemporaryFilesOnSignals();
     const DeferredSignals deferred;
     ::raise(SIGINT);  // before the wait begins
     char byte = 0;
     ::_exit(::read(pipe[0], &byte, 1) == -1 && errno == EINTR ? 7 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  });
   ::close(pipe[0]);
   ::close(pipe[1]);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
 TEST(TemporaryName, LeavesASignalThatIsIgnoredAlone) {
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
+  const int status = StatusOf([] {
     std::signal(SIGHUP, SIG_IGN);
     RemoveTemporaryFilesOnSignals();
     ::raise(SIGHUP);
     ::_exit(7);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  });
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
 }
 

@@ -64,7 +64,6 @@ TEST(DrawLoop, PutsTheResidualOverTheSameAxis) {
   const LoopPanels panels = DrawLoop(MakeReport(MadeInput()));
   ASSERT_EQ(panels.loop.series.size(), 2U);
   EXPECT_EQ(panels.loop.series[0].x, panels.residual.series[0].x);
-  EXPECT_EQ(panels.loop.label_room, panels.residual.label_room);
   EXPECT_NEAR(panels.loop.series[0].x[0], 2.0, 1e-12);  // µm
   EXPECT_NEAR(panels.residual.series[0].y[8], 1.0, 1e-12);
 }

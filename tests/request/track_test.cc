@@ -247,7 +247,7 @@ TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
   EXPECT_THAT(labels(), ElementsAre("slip_force [N]"));
   const io::Plot plot = ToPlot(test, test.courses.Describe(test.is_torsional));
   EXPECT_EQ(plot.title, "a.csv");
-  EXPECT_EQ(plot.subtitle, "Tc 40 N, unchanged");
+  EXPECT_EQ(plot.panels.front().title, "Tc 40 N, unchanged");
   TrackedTest loaded;
   loaded.files = {"a.csv"};
   for (std::size_t k = 1; k <= 30; ++k) {
@@ -260,7 +260,7 @@ TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
   loaded.cycles = 30;
   test = std::move(loaded);
   EXPECT_THAT(labels(), ElementsAre("friction_coefficient"));
-  EXPECT_EQ(ToPlot(test, test.courses.Describe(test.is_torsional)).subtitle,
+  EXPECT_EQ(ToPlot(test, test.courses.Describe(test.is_torsional)).panels.front().title,
             "μ 0.500 → 0.250, settled at cycle 16");
 }
 

@@ -38,6 +38,19 @@ struct ReadLimits {
   }
 };
 
+/// Rows that were left out, and the fault of the first.
+struct LeftOutRows {
+  std::size_t count = 0;
+  std::size_t first_line = 0;  ///< in the file, 1-based
+  std::string fault = {};      ///< "file:line:column: …"
+
+  void Add(std::size_t line, const std::string& of_row) {
+    if (count++ > 0) return;
+    first_line = line;
+    fault = of_row;
+  }
+};
+
 /// A column of a table.
 struct TableColumn {
   std::string name;  ///< header cell as written, "" without one
@@ -69,43 +82,27 @@ struct CsvTable {
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
 };
 
-/// Reads a delimited text as a table.
-///
-/// *Text.* UTF-8 or ASCII; lines end in LF or CRLF, the last one optionally. Blank lines, rows of
-/// delimiters alone and lines that begin with '#' are skipped, but for error values of a
-/// spreadsheet ("#N/A"), which are cells that hold no number. Cells may be quoted (RFC 4180). A
-/// trailing delimiter is no cell.
+/// Reads a delimited text as a table, from a file that is plain or compressed by gzip.
 ///
 /// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one that a first line "sep=;" states,
 /// else under which the first 1000 rows hold the most numbers less broken numbers ("5;2", "12:30"),
-/// in that order on a tie. Hence "1,5;2,5" has two columns and decimal commas, and "1,5" has two
-/// columns of integers.
-///
-/// *Decimal mark.* Point; or comma, when the comma is not the delimiter. Both in one file is an
-/// error: one of the two would separate thousands.
+/// in that order on a tie. The decimal mark is a point, or a comma that is not the delimiter; both
+/// in one file is an error. Cells may be quoted (RFC 4180), a trailing delimiter is no cell.
 ///
 /// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
 /// meant to be numbers, one of them a number: "sample_rate,200" has none. The number of columns is
 /// that of most such rows. The data begin at the first row with so many cells and no text in a
-/// column of numbers; from there on every row is data, and none may be longer than the header.
+/// column of numbers; from there on every row is data but blank lines, rows of delimiters alone and
+/// comments, which begin with '#'. Text among the rows is an error, unless it repeats the header.
 ///
-/// *Header.* The row above the data is the names row; or, when at least half of its cells are
-/// symbols of units, the units row, with the names row above it. Of several rows of text, one with
-/// a name for every column of numbers and the most words that are known has the names. In a
-/// blank-separated file "Time [s]" is one name, and so is whatever stands between two or more
-/// blanks. What is above the header is preamble and skipped, but a row that states units ("Unit;mm;
-/// N") and the interval of a LabVIEW file. A file whose first row is data has the header of a last
-/// comment above it, or none. Anything else above the data is an error.
+/// *Header.* The row above the data has the names; or, when at least half of its cells are symbols
+/// of units, these, with the names above it. Of several rows of text, one with a name for every
+/// column of numbers and the most words that are known has the names. What is above the header is
+/// skipped, but a row that states units ("Unit;mm;N") and the interval of a LabVIEW file. A file
+/// whose first row is data has the header of a last comment above it, or none. Anything else above
+/// the data is an error.
 ///
-/// *Blocks.* Text among the rows is an error, unless it ends with the header once more.
-///
-/// @param text  the file's content
-/// @param file  its name, for messages
-/// @throws InputError naming file, line and, where there is one, column
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
-CsvTable ParseCsvTable(std::string_view text, std::string file);
-
-/// Parses a file as ParseCsvTable() does, plain or compressed by gzip.
 /// @param path         kStandardInput reads that, called "standard input" in messages
 /// @param encoding     as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS, GB18030 or
 ///   Windows-1252 by the first bytes, with a note of the latter three

@@ -7,10 +7,10 @@
 
 namespace mindahl::io {
 
-/// Points are small dots for dense records. Markers are large, and of another shape in each series;
-/// they show few values one by one, alone or joined by a line, or with an interval around each. A
-/// band is a line with the area between its lower and upper ends; bars stand on 0 and touch.
-enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals, kBand, kBars };
+/// Points are small dots for dense records; markers are large, and of another shape in each series.
+/// Intervals are markers with a bar from lower to upper ends, a band is a line with the area
+/// between these.
+enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals, kBand };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
@@ -18,10 +18,10 @@ struct PlotSeries {
   std::vector<double> x = {};  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y = {};  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
-  std::vector<double> lower = {};  ///< ends of intervals of y, as many; for kIntervals and kBand
+  std::vector<double> lower = {};  ///< ends of y, as many; for kIntervals and kBand
   std::vector<double> upper = {};
   /// Place on a scale of colours from 0 to 1, where series follow each other as cycles do; else
-  /// each has a colour of its own.
+  /// each has a colour of its own, and a line without a label that of the series before.
   std::optional<double> shade = {};
 };
 
@@ -31,28 +31,24 @@ struct PlotMark {
   std::string label;  ///< next to it; "" = none
 };
 
-/// One pair of axes. The legend stands above them, on the right of them when it has more than four
-/// entries or is too long.
+/// One pair of axes, with its title and its legend above it.
 struct PlotPanel {
   std::string x_label;  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label;
   std::vector<PlotSeries> series = {};  ///< the first twelve differ in colour and in grey
-  double height = 1.0;                  ///< fraction of the page, relative to the other panels, > 0
+  double height = 1.0;                  ///< relative to the other panels, > 0
   bool log_x = false;
   bool log_y = false;
-  std::string title = {};  ///< above the axes; "" = none
+  std::string title = {};  ///< "" = none
   std::vector<PlotMark> marks = {};
-  double label_room = 0.0;  ///< least room for the numbers of the vertical axis [px]
 };
 
-/// Panels row by row; a row is as high as its highest panel.
+/// Panels, one under the other.
 struct Plot {
   std::string title;  ///< "" = none
   std::vector<PlotPanel> panels = {};
-  int width = 900;            ///< [px]
-  int height = 700;           ///< [px]
-  int columns = 1;            ///< >= 1
-  std::string subtitle = {};  ///< under the title; "" = none
+  int width = 900;   ///< [px]
+  int height = 700;  ///< [px]
 };
 
 /// Refuses a bad name, before the work whose plot it is.
@@ -61,14 +57,13 @@ void RequirePlotName(const std::filesystem::path& path);
 
 /// Draws a plot into an SVG or PNG file, by the extension of its name, atomically.
 ///
-/// Labels are plain UTF-8 text: nothing in them is markup. A series of more than 20 000
-/// points is drawn through fewer: it is cut into 5000 runs of consecutive points, and of each run
-/// the points with the least and greatest x and y are kept, in order; no peak is lost and the curve
-/// moves by less than one run.
+/// Labels are plain UTF-8 text: nothing in them is markup. Of a series of more than 20 000 points,
+/// runs of consecutive points keep those with the least and greatest coordinates, in order: no peak
+/// is lost.
 /// @throws InputError when the extension is another, the file cannot be written, or for PNG the
 ///   program rsvg-convert is not installed or fails
 /// @throws InvalidArgument naming the panel and series when a value is not finite, or not > 0 on a
-///   logarithmic axis, x and y differ in length, or there is nothing to draw
+///   logarithmic axis, numbers of values differ, or there is nothing to draw
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 
 }  // namespace mindahl::io

@@ -38,12 +38,6 @@ struct ChosenColumn {
   bool is_clock = false;  ///< its cells are times of day
 };
 
-/// Rows that were left out, since a cell that is used is empty or holds no number.
-struct LeftOutRows {
-  std::size_t count = 0;
-  std::size_t first_line = 0;  ///< in the file, 1-based
-};
-
 /// Locates a record within a file that holds several constant loads.
 struct LoadPiece {
   double normal_load = 0.0;    ///< [N], the median
@@ -145,8 +139,7 @@ struct SweepFile {
 
 /// Reads a sweep.
 /// @param columns   of displacement or force, of which one has the amplitudes: the one that is
-/// chosen,
-///   or else that is recognised by its name, with or without "amplitude"
+///   chosen, or else that is recognised by its name, with or without "amplitude"
 /// @param response  column by name or number, else recognised: stiffness, k, kt, compliance; its
 ///   unit is one of force over one of length ("N/um") or the other way round
 /// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
@@ -155,36 +148,17 @@ SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& colu
 /// The same of a table.
 SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns, const std::string& response);
 
-/// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
-/// file.
-/// @param displacement  column, by default the first, or, where that is a time, the one of a
-///   recognised name; unit as for ReadRecord()
+/// Names what a path to impose has a column of.
+enum class Imposed { kDisplacement, kForce, kNormalLoad };
+
+/// Returns what is to be imposed, one value a row, in order: displacements [m] or [rad], forces [N]
+/// or normal loads [N]; in SI units the very doubles of the file.
+/// @param column  by default the first, or, where that is a time, the one of a recognised name;
+/// unit
+///   as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()
-std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
-                                         const std::string& displacement = {});
-
-/// A path with the normal load at each of its rows.
-struct LoadedPath {
-  std::vector<double> displacement;  ///< [m]
-  std::vector<double> normal_load;   ///< [N]
-};
-
-/// Reads a path like ReadDisplacementPath(), with a normal load.
-/// @param normal_load  column by name or number; unit as for ReadRecord(), without one N
-/// @throws InputError as ReadRecord()
-LoadedPath ReadLoadedPath(const std::filesystem::path& path, const std::string& displacement,
-                          const std::string& normal_load);
-
-/// Forces to impose, one for each row, in order.
-struct ForcePath {
-  std::vector<double> force;       ///< [N]; with the unit N the very doubles of the file
-  std::vector<std::size_t> lines;  ///< line in the file of each force, 1-based
-};
-
-/// @param force  column, by default the first, or, where that is a time, the one of a recognised
-///   name; unit as for ReadRecord()
-/// @throws InputError as ReadRecord()
-ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force = {});
+std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
+                                  const std::string& column = {});
 
 /// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
 /// note of how many.

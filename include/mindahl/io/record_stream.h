@@ -22,10 +22,6 @@ struct Samples {
   [[nodiscard]] std::size_t size() const { return lines.size(); }
 };
 
-/// Says whether to refuse or to skip a row in which a needed cell is missing or no finite number,
-/// that has a cell too many, or whose time is before that of the row above.
-enum class BrokenRows { kRefuse, kSkip };
-
 /// A record read piece by piece, in memory that does not depend on its length.
 ///
 /// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
@@ -35,7 +31,7 @@ enum class BrokenRows { kRefuse, kSkip };
 class RecordStream {
  public:
   /// @throws InputError as ReadRecord() does of a file that ends with these rows
-  RecordStream(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows broken);
+  explicit RecordStream(const std::filesystem::path& path, const RecordColumns& columns = {});
   ~RecordStream();
   RecordStream(const RecordStream&) = delete;
   RecordStream& operator=(const RecordStream&) = delete;
@@ -50,12 +46,9 @@ class RecordStream {
   ///   read
   bool Next(Samples& samples);
 
-  /// Returns the number of rows skipped so far; below, the fault of the first as an error names it.
-  [[nodiscard]] std::size_t broken_rows() const;
-  [[nodiscard]] const std::string& first_broken_row() const;
-
-  /// Returns the rows left out so far since a cell that is used is empty or holds no number.
-  [[nodiscard]] const LeftOutRows& left_out() const;
+  /// Returns the rows left out so far: those that are skipped, and those whose cell in a column
+  /// that is used is empty or holds no number.
+  [[nodiscard]] LeftOutRows left_out() const;
 
   /// Returns the number of bytes read so far.
   [[nodiscard]] std::uintmax_t bytes() const;

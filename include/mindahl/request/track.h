@@ -58,7 +58,6 @@ struct TrackRequest {
   std::size_t average = 1;  ///< cycles in a row that are fitted together
   std::size_t every = 1;    ///< one fit of so many that there could be
   std::size_t threads = 1;
-  io::BrokenRows broken_rows = io::BrokenRows::kRefuse;
 };
 
 /// @throws InputError or InvalidArgument naming the option

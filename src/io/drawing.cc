@@ -1,0 +1,425 @@
+#include "io/drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/text.h"
+#include "io/source.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::io {
+namespace {
+
+constexpr std::size_t kLeastPoints = 64;  // of each of many series
+constexpr double kRightMargin = 16;       // [px]
+constexpr double kLeftMargin = 76;        // [px], of labels of common length
+constexpr double kTicCharacter = 9.6;     // [px] on a narrow screen, where letters are larger
+
+using Values = std::vector<double>;
+
+bool HasEnds(PlotStyle style) {
+  return style == PlotStyle::kIntervals || style == PlotStyle::kBand;
+}
+
+void RequireNumbers(const std::string& name, const Values& values, bool logarithmic) {
+  for (const double value : values) {
+    RequireFinite(name, value);
+    if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
+  }
+}
+
+void RequireDrawable(const PlotPanel& panel, std::string_view where) {
+  RequirePositive(fmt::format("height of {}", where), panel.height);
+  if (panel.series.empty())
+    throw InvalidArgument(fmt::format("{} has no series: must have one", where));
+  for (const PlotSeries& series : panel.series) {
+    const std::string name = fmt::format("'{}' of {}", series.label, where);
+    if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
+    const auto require = [&](const Values& values, const char* what, bool logarithmic) {
+      RequireSameSize("x of " + name, series.x.size(), what + name, values.size());
+      RequireNumbers(what + name, values, logarithmic);
+    };
+    require(series.x, "x of ", panel.log_x);
+    require(series.y, "y of ", panel.log_y);
+    if (!HasEnds(series.style)) continue;
+    require(series.lower, "lower ends of ", panel.log_y);
+    require(series.upper, "upper ends of ", panel.log_y);
+  }
+  for (const PlotMark& mark : panel.marks) {
+    RequireNumbers(fmt::format("mark '{}' of {}", mark.label, where), {mark.x}, panel.log_x);
+  }
+}
+
+/// Returns a number as factor·10ⁿ in plain text.
+std::string WithPower(double value, bool shows_one) {
+  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
+                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const int power = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));
+  const std::string factor = fmt::format("{:.4g}", std::abs(value) / std::pow(10.0, power));
+  std::string text = factor == "1" && !shows_one ? "10" : factor + "·10";
+  for (const char character : std::to_string(power)) {
+    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
+  }
+  return value < 0 ? "−" + text : text;
+}
+
+/// One axis: data to pixels, and where its tics are.
+class Axis {
+ public:
+  /// @param margin  on either side of the data, a fraction of their span
+  Axis(std::pair<double, double> data, double margin, bool logarithmic)
+      : logarithmic_(logarithmic), from_(At(data.first)), to_(At(data.second)) {
+    double span = to_ - from_;
+    // A constant has an axis too: a fraction of it to either side, far above what rounding leaves.
+    const double size = std::max(std::abs(from_), std::abs(to_));
+    if (!(span > 1e-9 * size)) {
+      span = logarithmic ? 0.3 : size > 0 ? 0.2 * size : 1.0;
+      from_ -= span / 2;
+      to_ += span / 2;
+    }
+    from_ -= margin * span;
+    to_ += margin * span;
+    PlaceTics();
+  }
+
+  void Place(double from_pixel, double to_pixel) {
+    from_pixel_ = from_pixel;
+    to_pixel_ = to_pixel;
+  }
+  [[nodiscard]] double Pixel(double value) const {
+    return from_pixel_ + (At(value) - from_) / (to_ - from_) * (to_pixel_ - from_pixel_);
+  }
+  [[nodiscard]] const Values& tics() const { return tics_; }
+  [[nodiscard]] std::string Label(double tic) const;
+
+ private:
+  [[nodiscard]] double At(double value) const { return logarithmic_ ? std::log10(value) : value; }
+  void PlaceTics();
+
+  bool logarithmic_;
+  double from_;
+  double to_;
+  double from_pixel_ = 0.0;
+  double to_pixel_ = 1.0;
+  double step_ = 0.0;  // between tics; 0 of powers of ten
+  Values tics_;
+};
+
+void Axis::PlaceTics() {
+  constexpr double kTics = 5.5;
+  constexpr double kShortest = 0.75;  // of the distance between that many
+  const double span = to_ - from_;
+  if (logarithmic_ && span > 0.6) {
+    const double step = std::ceil(span / 8);
+    for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
+      for (const double multiple : {1.0, 2.0, 5.0}) {
+        const double at = power + std::log10(multiple);
+        if ((multiple > 1 && span > 2.5) || at < from_ || at > to_) continue;
+        tics_.push_back(multiple * std::pow(10.0, power));
+      }
+    }
+    return;
+  }
+  const double from = logarithmic_ ? std::pow(10.0, from_) : from_;
+  const double to = logarithmic_ ? std::pow(10.0, to_) : to_;
+  const double rough = (to - from) / kTics;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  step_ = 10 * power;
+  for (const double multiple : {5.0, 2.0, 1.0}) {
+    if (multiple * power >= kShortest * rough) step_ = multiple * power;
+  }
+  for (double k = std::ceil(from / step_); k * step_ <= to; ++k) tics_.push_back(k * step_);
+}
+
+std::string Axis::Label(double tic) const {
+  if (tic == 0 || std::abs(tic) < 1e-9 * step_) return "0";
+  double size = std::abs(tic);
+  for (const double other : tics_) size = std::max(size, std::abs(other));
+  const bool is_far = size >= 1e5 || (step_ > 0 ? size : std::abs(tics_.front())) < 1e-3;
+  if (is_far) return WithPower(tic, step_ > 0);
+  if (step_ == 0) return fmt::format("{:.6g}", tic);
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step_) - 1e-9)));
+  return fmt::format("{}{:.{}f}", tic < 0 ? "−" : "", std::abs(tic), decimals);
+}
+
+std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  const auto include = [&](double value) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  };
+  for (const PlotSeries& series : panel.series) {
+    std::ranges::for_each(horizontal ? series.x : series.y, include);
+    if (horizontal || !HasEnds(series.style)) continue;
+    std::ranges::for_each(series.lower, include);
+    std::ranges::for_each(series.upper, include);
+  }
+  for (const PlotMark& mark : panel.marks) {
+    if (horizontal) include(mark.x);
+  }
+  return {least, greatest};
+}
+
+/// Returns the points to draw, in order: of runs of consecutive points those with the least and
+/// greatest coordinates; all, where there are at most `most`.
+std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
+  const std::size_t size = series.x.size();
+  std::vector<const Values*> coordinates = {&series.x, &series.y};
+  if (HasEnds(series.style)) coordinates.insert(coordinates.end(), {&series.lower, &series.upper});
+  const std::size_t runs = size <= most ? size : most / (2 * coordinates.size());
+  std::vector<std::size_t> kept;
+  kept.reserve(most);
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (const Values* values : coordinates) {
+      const auto at = [&](std::size_t k) {
+        return values->begin() + static_cast<std::ptrdiff_t>(k * size / runs);
+      };
+      const auto [least, greatest] = std::minmax_element(at(run), at(run + 1));
+      kept.push_back(static_cast<std::size_t>(least - values->begin()));
+      kept.push_back(static_cast<std::size_t>(greatest - values->begin()));
+    }
+  }
+  std::ranges::sort(kept);
+  const auto repeated = std::ranges::unique(kept);
+  kept.erase(repeated.begin(), repeated.end());
+  return kept;
+}
+
+/// How a series differs from others: in colour, in the shape of its markers, and beyond the first
+/// six in dashes or filled markers.
+struct Look {
+  std::string classes;
+  std::size_t shape = 0;
+};
+
+std::vector<Look> LooksOf(const PlotPanel& panel) {
+  constexpr std::size_t kColours = 6;  // classes s0 … s5
+  constexpr double kLastShade = 7;     // classes h0 … h7
+  std::vector<Look> looks;
+  looks.reserve(panel.series.size());
+  std::size_t count = 0;
+  for (const PlotSeries& series : panel.series) {
+    if (series.shade) {
+      const double shade = std::clamp(*series.shade, 0.0, 1.0);
+      looks.push_back({.classes = fmt::format("h{}", std::lround(shade * kLastShade))});
+      continue;
+    }
+    const bool continues = series.label.empty() && series.style == PlotStyle::kLine;
+    if (!continues || count == 0) ++count;
+    const std::size_t place = count - 1;
+    looks.push_back({.classes = fmt::format("s{}{}", place % kColours,
+                                            place / kColours % 2 == 1 ? " more" : ""),
+                     .shape = place % kColours});
+  }
+  return looks;
+}
+
+/// A coordinate, to a tenth of a pixel.
+std::string Coordinate(double pixel) {
+  std::string text = fmt::format("{:.1f}", pixel);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text == "-0" ? "0" : text;
+}
+
+std::string Path(std::string_view kind, const std::string& classes, const std::string& data) {
+  return fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, classes, data);
+}
+
+/// Points as "M1 2L3 4…", those left out that fall on the one before.
+std::string Line(const Values& x, const Values& y, char first, bool forward) {
+  std::string path;
+  std::string last;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::size_t point = forward ? k : x.size() - 1 - k;
+    const std::string at = fmt::format("{} {}", Coordinate(x[point]), Coordinate(y[point]));
+    if (at == last) continue;
+    path += (path.empty() ? first : 'L') + at;
+    last = at;
+  }
+  // A path of one point draws nothing.
+  if (first == 'M' && path.find('L') == std::string::npos) path += "h0";
+  return path;
+}
+
+/// Draws points whose coordinates are in pixels.
+std::string DrawPoints(const PlotSeries& series, const Look& look) {
+  // A circle, square, diamond, triangle up or down, and pentagon of about the same area.
+  constexpr std::array<std::string_view, 6> kShapes = {
+      "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z",
+      "m-3.3-3.3h6.6v6.6h-6.6z",
+      "m0-4.6l4.6 4.6l-4.6 4.6l-4.6-4.6z",
+      "m0-4.8l4.6 7.8h-9.2z",
+      "m0 4.8l4.6-7.8h-9.2z",
+      "m0-4.2l4 2.9l-1.5 4.7h-5l-1.5-4.7z",
+  };
+  const PlotStyle style = series.style;
+  const auto at_each = [&](const auto& text_of) {
+    std::string path;
+    std::string last;
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      const std::string at = text_of(k, Coordinate(series.x[k]), Coordinate(series.y[k]));
+      if (at != last) path += at;
+      last = at;
+    }
+    return path;
+  };
+  std::string drawn;
+  if (style == PlotStyle::kBand) {
+    drawn += Path(
+        "area", look.classes,
+        Line(series.x, series.upper, 'M', true) + Line(series.x, series.lower, 'L', false) + "Z");
+  }
+  if (style == PlotStyle::kPoints) {
+    return Path("dots", look.classes, at_each([](std::size_t, const auto& x, const auto& y) {
+                  return fmt::format("M{} {}h0", x, y);
+                }));
+  }
+  if (style == PlotStyle::kIntervals) {
+    drawn += Path("line", look.classes, at_each([&](std::size_t k, const auto& x, const auto&) {
+                    return fmt::format("M{} {}V{}", x, Coordinate(series.lower[k]),
+                                       Coordinate(series.upper[k]));
+                  }));
+  } else if (style != PlotStyle::kMarkers) {
+    drawn += Path("line", look.classes, Line(series.x, series.y, 'M', true));
+  }
+  if (style != PlotStyle::kLine && style != PlotStyle::kBand) {
+    drawn += Path("marker", look.classes, at_each([&](std::size_t, const auto& x, const auto& y) {
+                    return fmt::format("M{} {}{}", x, y, kShapes[look.shape]);
+                  }));
+  }
+  return drawn;
+}
+
+std::string LegendSymbol(PlotStyle style, const Look& look) {
+  PlotSeries symbol{.label = "", .x = {1, 25}, .y = {6, 6}, .style = style};
+  if (style == PlotStyle::kPoints) symbol.x = {5, 13, 21};
+  if (style == PlotStyle::kMarkers || style == PlotStyle::kIntervals) symbol.x = {13};
+  symbol.y.assign(symbol.x.size(), 6);
+  symbol.lower.assign(symbol.x.size(), 12);
+  symbol.upper.assign(symbol.x.size(), 0);
+  return DrawPoints(symbol, look);
+}
+
+double WidthOf(std::string_view label) {
+  return kTicCharacter * static_cast<double>(CharactersIn(label));
+}
+
+std::string Text(double x, double y, std::string_view anchor, std::string_view text) {
+  return fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>", Coordinate(x),
+                     Coordinate(y), anchor, HtmlText(text));
+}
+
+}  // namespace
+
+std::vector<LegendEntry> LegendOf(const PlotPanel& panel) {
+  std::vector<LegendEntry> legend;
+  const std::vector<Look> looks = LooksOf(panel);
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    const PlotSeries& series = panel.series[k];
+    if (!series.label.empty()) {
+      legend.push_back({LegendSymbol(series.style, looks[k]), series.label});
+    }
+  }
+  return legend;
+}
+
+std::string DrawPanel(const PlotPanel& panel, std::string_view where, double width,
+                      double axes_height, std::size_t most_points) {
+  RequireDrawable(panel, where);
+  constexpr double kMarginX = 0.02;
+  constexpr double kMarginY = 0.05;
+  Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
+  Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
+  const double top = kAboveAxes;
+  const double bottom = kAboveAxes + axes_height;
+  const double right = width - kRightMargin;
+  double left = kLeftMargin;
+  for (const double tic : y_axis.tics()) left = std::max(left, 14 + WidthOf(y_axis.Label(tic)));
+  x_axis.Place(left, right);
+  y_axis.Place(bottom, top);
+
+  std::string grid;
+  std::string labels;
+  double last_end = -width;
+  for (const double tic : x_axis.tics()) {
+    const std::string label = x_axis.Label(tic);
+    const double half = WidthOf(label) / 2;
+    const double at = x_axis.Pixel(tic);
+    grid += fmt::format("M{} {}V{}", Coordinate(at), Coordinate(top), Coordinate(bottom));
+    if (at - half < last_end || at + half > width) continue;
+    last_end = at + half;
+    labels += Text(at, bottom + 19, "middle", label);
+  }
+  for (const double tic : y_axis.tics()) {
+    const double at = y_axis.Pixel(tic);
+    grid += fmt::format("M{} {}H{}", Coordinate(left), Coordinate(at), Coordinate(right));
+    labels += Text(left - 7, at + 5, "end", y_axis.Label(tic));
+  }
+  std::string elements = fmt::format(
+      "<path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"M{} {}V{}H{}\"/>{}", grid,
+      Coordinate(left), Coordinate(top), Coordinate(bottom), Coordinate(right), labels);
+  elements += Text(2, 17, "start", panel.y_label);
+  elements += Text(right, bottom + 44, "end", panel.x_label);
+
+  const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
+  const std::vector<Look> looks = LooksOf(panel);
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    const PlotSeries& series = panel.series[k];
+    PlotSeries pixels{.label = "", .style = series.style};
+    for (const std::size_t point : Thinned(series, most)) {
+      pixels.x.push_back(x_axis.Pixel(series.x[point]));
+      pixels.y.push_back(y_axis.Pixel(series.y[point]));
+      if (!HasEnds(series.style)) continue;
+      pixels.lower.push_back(y_axis.Pixel(series.lower[point]));
+      pixels.upper.push_back(y_axis.Pixel(series.upper[point]));
+    }
+    elements += DrawPoints(pixels, looks[k]);
+  }
+
+  // Labels of marks that are close to each other stand one under the other.
+  last_end = -width;
+  double line = 0;
+  for (const PlotMark& mark : panel.marks) {
+    const double at = x_axis.Pixel(mark.x);
+    elements += fmt::format("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at),
+                            Coordinate(top), Coordinate(bottom));
+    if (mark.label.empty()) continue;
+    constexpr double kLine = 18;
+    line = at < last_end ? line + kLine : 0;
+    const bool is_left = at + WidthOf(mark.label) > width;
+    last_end = at + (is_left ? 0 : WidthOf(mark.label));
+    elements +=
+        Text(at + (is_left ? -5 : 5), top + 14 + line, is_left ? "end" : "start", mark.label);
+  }
+  return elements;
+}
+
+std::string HtmlText(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    constexpr std::array<std::pair<char, std::string_view>, 5> kEscapes = {
+        {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
+    const std::size_t length = Utf8LengthAt(text, at);
+    const auto first = static_cast<unsigned char>(text[at]);
+    const auto* const escape =
+        std::ranges::find(kEscapes, text[at], &std::pair<char, std::string_view>::first);
+    if (length == 0 || (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F) {
+      escaped += "\xEF\xBF\xBD";
+    } else if (escape != kEscapes.end()) {
+      escaped += escape->second;
+    } else {
+      escaped += text.substr(at, length);
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
+  return escaped;
+}
+
+}  // namespace mindahl::io
