@@ -13,7 +13,6 @@
 
 #include "cli/contact_options.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
@@ -412,16 +411,8 @@ report::Report FitRecords(const FitRequest& request, const Messages& messages) {
   request::Validate(request);
   std::vector<io::RecordFile> inputs =
       request::ReadRecords(request, [&](std::string_view note) { messages.Note(note); });
-  std::size_t samples = 0;
-  for (const io::RecordFile& input : inputs) samples += input.record.size();
-  std::vector<std::string> notes;  // not into the line of progress
-  std::optional<Progress> progress(std::in_place, messages.stream,
-                                   fmt::format("fitting {} samples", samples));
-  report::Report report = request::FitRecords(
-      request, std::move(inputs), [&](std::string_view note) { notes.emplace_back(note); });
-  progress.reset();
-  for (const std::string& note : notes) messages.Note(note);
-  return report;
+  return request::FitRecords(request, std::move(inputs),
+                             [&](std::string_view note) { messages.Note(note); });
 }
 
 }  // namespace mindahl::cli

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -21,15 +19,9 @@ struct ValidateOptions {
 
 void RunValidate(const ValidateOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
-  request::Validation validation{.options = options.validation, .report = {}};
+  const request::Validation validation{
+      .options = options.validation, .report = identification::ValidateMapping(options.validation)};
   const identification::ValidationReport& report = validation.report;
-  {
-    Progress progress(console.err,
-                      fmt::format("fitting the first of {} contacts", validation.options.cases));
-    validation.report = identification::ValidateMapping(validation.options, [&](std::size_t done) {
-      progress.Say(fmt::format("{} of {} contacts", done, validation.options.cases));
-    });
-  }
   WriteAnswer(options.json_path, console, validation);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';

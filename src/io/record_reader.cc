@@ -138,16 +138,14 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
   table.header_line = std::max<std::size_t>(table.header_line, 1);
 }
 
-/// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
-/// recognised. Taking SI for granted is the documented default here.
+/// One column of a path: that chosen, the one that is recognised, or the first. Taking SI for
+/// granted is the documented default here.
 std::vector<double> ReadPathColumn(const CsvTable& table, Role role, const std::string& text) {
   const ColumnNames names(table);
   const std::vector<bool> taken(table.columns.size());
   Expression columns = names.Read(text, RulesOf(role));
   if (columns.terms.empty()) {
-    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
-    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
-    columns.terms = {{found.value_or(0), 1.0}};
+    columns.terms = {{FindColumnOf(names, role, taken).value_or(0), 1.0}};
   }
   const Dimension dimension = columns.unit.empty() ? names.DimensionOf(columns.terms.front().column)
                                                    : DimensionOfUnit(columns.unit);

@@ -55,26 +55,26 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
   return Shown::kValue;
 }
 
-std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
+std::string ValueText(const ParameterEstimate& estimate) {
   constexpr int kDigits = 4;
-  const auto limit = [&](char sign, double end) {
-    return fmt::format("{} {} {}", symbol, sign, Quantity(end, estimate.unit, kDigits));
-  };
   switch (WhatIsShown(estimate)) {
     case Shown::kValue:
-      return fmt::format(
-          "{} {}", symbol,
-          QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95, estimate.unit));
+      return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
+                                  estimate.unit);
     case Shown::kHeld:
-      return fmt::format("{} {} (held)", symbol, Quantity(estimate.value, estimate.unit));
+      return Quantity(estimate.value, estimate.unit) + " (held)";
     case Shown::kLowerLimit:
-      return limit('>', *estimate.lower95);
+      return "> " + Quantity(*estimate.lower95, estimate.unit, kDigits);
     case Shown::kUpperLimit:
-      return limit('<', *estimate.upper95);
+      return "< " + Quantity(*estimate.upper95, estimate.unit, kDigits);
     case Shown::kNothing:
       break;
   }
-  return fmt::format("{} not determined", symbol);
+  return "not determined";
+}
+
+std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
+  return fmt::format("{} {}", symbol, ValueText(estimate));
 }
 
 std::string Words(Identifiability identifiability) {

@@ -36,7 +36,10 @@ enum class Shown {
 };
 Shown WhatIsShown(const identification::ParameterEstimate& estimate);
 
-/// Returns "σ 48.14 N/µm (48.07 … 48.22)", "α 0.333 (held)", "Tc > 12 N" or "σ not determined".
+/// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
+std::string ValueText(const identification::ParameterEstimate& estimate);
+
+/// Returns the same behind a symbol: "σ 48.14 N/µm (48.07 … 48.22)".
 std::string ParameterText(std::string_view symbol,
                           const identification::ParameterEstimate& estimate);
 

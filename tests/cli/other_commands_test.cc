@@ -55,46 +55,6 @@ TEST(Simulate, WritesTimeDisplacementAndForceWithUnits) {
   EXPECT_DOUBLE_EQ(columns.force[2], 3.0);
 }
 
-TEST(Simulate, HasAnOptionForEachForceInAdditionToTheContacts) {
-  using request::AddedForces;
-  constexpr std::array kOptions = {
-      std::pair{"--viscous", &AddedForces::viscous},
-      std::pair{"--speed-exponent", &AddedForces::speed_exponent},
-      std::pair{"--inertia", &AddedForces::inertia},
-      std::pair{"--slip-slope", &AddedForces::slip_slope},
-      std::pair{"--slip-curvature", &AddedForces::slip_curvature},
-      std::pair{"--slip-trend", &AddedForces::slip_trend},
-      std::pair{"--plateau-slope", &AddedForces::plateau_slope},
-      std::pair{"--plateau-curvature", &AddedForces::plateau_curvature},
-      std::pair{"--ripple-amplitude", &AddedForces::ripple_amplitude},
-      std::pair{"--ripple-phase-up", &AddedForces::ripple_phase_up},
-      std::pair{"--ripple-phase-down", &AddedForces::ripple_phase_down}};
-  // The exponent needs a viscous force and the phases a ripple to have an effect.
-  request::SimulationRequest base;
-  base.law.sigma = 2;
-  base.law.slip_force = 3;
-  base.drive.lambda = 1;
-  base.drive.excitation.samples_per_cycle = 12;
-  base.forces.viscous = 0.5;
-  base.forces.ripple = 1.5;
-  base.forces.ripple_amplitude = 0.25;
-  Words words = {"simulate", "--sigma",  "2",  "--slip-force",
-                 "3",        "--lambda", "1",  "--samples-per-cycle",
-                 "12",       "--ripple", "1.5"};
-  for (const auto& [option, member] : kOptions) {
-    request::SimulationRequest request = base;
-    request.forces.*member = 0.125;
-    Words asked = words;
-    for (const auto& [other, value] :
-         {std::pair{"--viscous", "0.5"}, {"--ripple-amplitude", "0.25"}, {option, "0.125"}}) {
-      if (std::string_view(other) == option && std::string_view(value) != "0.125") continue;
-      asked.insert(asked.end(), {other, value});
-    }
-    EXPECT_EQ(RunCommand(asked).out, request::ToCsv(request::Simulate(request))) << option;
-    EXPECT_NE(request::Simulate(request).force, request::Simulate(base).force) << option;
-  }
-}
-
 TEST(Simulate, PathGivesOneRowAnInputRowInOrderWithEveryDigit) {
   const TemporaryDirectory directory;
   const Words inputs = {"0.30000000000000004", "-1.1234567890123457e-05", "0.7", "0.7", "-0.1",
@@ -131,9 +91,10 @@ TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
   EXPECT_THAT(Simulate({"--sigma", "1", "--slip-force", "1", "--path", path}).displacement,
               ElementsAre(0.4, -0.1));
   const std::string bare = directory.Write("bare.csv", "4\n-1\n").string();
-  EXPECT_THAT(Simulate({"--sigma", "1", "--slip-force", "1", "--path", bare, "--path-unit", "mm"})
-                  .displacement,
-              ElementsAre(0.004, -0.001));
+  EXPECT_THAT(
+      Simulate({"--sigma", "1", "--slip-force", "1", "--path", bare, "--displacement", "[mm]"})
+          .displacement,
+      ElementsAre(0.004, -0.001));
 }
 
 TEST(Simulate, OfAJointIsItsStateTimesTheTorqueOfEitherSign) {

@@ -157,8 +157,8 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns, const std
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.
-/// @param displacement  column, by default the first, or, where that is a time, the one of a
-///   recognised name; unit as for ReadRecord()
+/// @param displacement  column, by default the one of a recognised name, else the first; unit as
+///   for ReadRecord()
 /// @throws InputError as ReadRecord()
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
                                          const std::string& displacement = {});
@@ -181,8 +181,8 @@ struct ForcePath {
   std::vector<std::size_t> lines;  ///< line in the file of each force, 1-based
 };
 
-/// @param force  column, by default the first, or, where that is a time, the one of a recognised
-///   name; unit as for ReadRecord()
+/// @param force  column, by default the one of a recognised name, else the first; unit as for
+///   ReadRecord()
 /// @throws InputError as ReadRecord()
 ForcePath ReadForcePath(const std::filesystem::path& path, const std::string& force = {});
 
