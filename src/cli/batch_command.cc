@@ -141,11 +141,11 @@ void AddBatchCommand(CLI::App& app, Console& console) {
        "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
   OptionGroup(command, kPlainGroup)
       .Add("files", options->request.files, "CSV records, each a test of its own", "FILE")
-      .Required();
+      ->required();
   AddFitOptions(command, options->request, NormalLoads::kOne);
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
-      .Required();
+      ->required();
   group.Add("--json", options->json_path,
             "the answer of fit for each file as JSON; - for standard output alone", "PATH");
   group.Add(
@@ -155,12 +155,12 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   group
       .Add("--threads", options->threads,
            "number of worker threads (default: one per core); they do not change\nthe results")
-      .WholeNumber(1, 1024);
+      ->check(WholeNumber(1, 1024));
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
-  WhenCalled(command, [options, &command, &console] { RunBatch(*options, command, console); });
+  command.callback([options, &command, &console] { RunBatch(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

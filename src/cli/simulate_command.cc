@@ -28,42 +28,43 @@ struct SimulateOptions {
 void AddDriveOptions(CLI::App& command, request::DriveRequest& request) {
   const OptionGroup group(command, "Excitation");
   group.AddShown("--waveform", request.waveform, "imposed displacement")
-      .OneOf(models::WaveformNames());
+      ->check(OneOf(models::WaveformNames()));
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
   group.Add("--amplitude", request.amplitude, "amplitude [m]", "M");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
   group
       .AddShown("--samples-per-cycle", request.excitation.samples_per_cycle,
                 "samples in a cycle; multiples of 4 put samples on the extremes")
-      .WholeNumber(4, 1'000'000'000);
+      ->check(WholeNumber(4, 1'000'000'000));
   group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
   group.AddShown("--growth", request.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
-  const Option path = group.Add("--path", request.path,
-                                "CSV file with a displacement, any sequence; one output row for\n"
-                                "each, time counting rows",
-                                "FILE");
+  CLI::Option* const path =
+      group.Add("--path", request.path,
+                "CSV file with a displacement, any sequence; one output row for\n"
+                "each, time counting rows",
+                "FILE");
   group
       .Add("--displacement", request.displacement,
            "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
            "none; default by its name, else the first",
            "COL")
-      .Needs(path);
+      ->needs(path);
   group
       .Add("--normal-load-column", request.load_column,
            "column of the file with the normal load N [N], which then varies: Tc = mu N", "COL")
-      .Needs(path);
-  const Option force_path =
+      ->needs(path);
+  CLI::Option* const force_path =
       group.Add("--force-path", request.force_path,
                 "CSV file with a force, any sequence within the slip force: the\n"
                 "displacement follows from it",
                 "FILE");
-  group.Add("--force", request.force, "its column, likewise", "COL").Needs(force_path);
-  force_path.Excludes(path);
+  group.Add("--force", request.force, "its column, likewise", "COL")->needs(force_path);
+  force_path->excludes(path);
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
-    path.Excludes(FindOption(command, name));
-    force_path.Excludes(FindOption(command, name));
+    path->excludes(command.get_option(name));
+    force_path->excludes(command.get_option(name));
   }
 }
 
@@ -101,7 +102,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
        "path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--model", options->simulation.model, "friction model")
-      .OneOf(request::SimulatedModels());
+      ->check(OneOf(request::SimulatedModels()));
   AddLawOptions(command, options->simulation.law);
   plain.AddShown(
       "--asymmetry", options->simulation.asymmetry,
@@ -115,19 +116,19 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   noise
       .AddShown("--seed", options->simulation.drive.seed,
                 "seed of the noise and of the random waveform")
-      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
   const OptionGroup method(command, "Method");
   method.AddShown("--method", options->simulation.method, MethodHelp())
-      .OneOf(NamesOf(methods::Methods(), &Method::name));
+      ->check(OneOf(NamesOf(methods::Methods(), &Method::name)));
   method
       .Add("--steps", options->simulation.steps,
            "substeps a sample, elements of iwan, intervals of table", "N")
-      .WholeNumber(1, 1'000'000'000);
+      ->check(WholeNumber(1, 1'000'000'000));
   method.Add("--tolerance", options->simulation.tolerance,
              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
   plain.Add("-o,--output", options->output, "CSV file; default standard output", "FILE");
-  WhenCalled(command, [options, &console] { RunSimulate(*options, console); });
+  command.callback([options, &console] { RunSimulate(*options, console); });
 }
 
 }  // namespace mindahl::cli

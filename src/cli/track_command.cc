@@ -76,11 +76,11 @@ std::uint64_t SeedOf(const CLI::App& command) {
       seed = (seed ^ static_cast<unsigned char>(character)) * 0x100000001b3U;
     }
   };
-  for (const OptionState& option : OptionsOf(command)) {  // not the files, whose content counts
-    if (std::ranges::find(kOfNoRow, option.name) != kOfNoRow.end()) continue;
-    add(option.name);
-    for (const std::string& value : option.values) add("=" + value);
-    if (!option.is_given) add("=" + option.default_text);
+  for (const CLI::Option* option : OptionsOf(command)) {  // not the files, whose content counts
+    if (std::ranges::find(kOfNoRow, NameOf(*option)) != kOfNoRow.end()) continue;
+    add(NameOf(*option));
+    for (const std::string& value : option->results()) add("=" + value);
+    if (option->count() == 0) add("=" + option->get_default_str());
   }
   return seed;
 }
@@ -297,7 +297,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   OptionGroup(command, kPlainGroup)
       .Add("files", options->track.fit.files,
            "CSV records of one test, in order; no cycle extends over two files", "FILE")
-      .Required();
+      ->required();
   AddJoin(command, options->track.fit);
   AddColumnOptions(command, options->track.fit.columns);
   AddModelOptions(command, options->track.fit);
@@ -306,21 +306,21 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   cycles
       .AddShown("--average", options->track.average,
                 "number of consecutive cycles that are fitted together")
-      .WholeNumber(1, 1'000'000);
+      ->check(WholeNumber(1, 1'000'000));
   cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
-      .WholeNumber(1, 1'000'000'000);
+      ->check(WholeNumber(1, 1'000'000'000));
   cycles
       .AddShown("--broken-rows", options->broken_rows,
                 "refuse: a row without a number in a needed column ends the run; skip:\nit is "
                 "skipped and counted")
-      .OneOf({"refuse", "skip"});
+      ->check(OneOf({"refuse", "skip"}));
   cycles
       .Add("--threads", options->track.threads,
            "number of worker threads (default: one per core); they do not change\nthe table")
-      .WholeNumber(1, 1024);
+      ->check(WholeNumber(1, 1024));
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
-      .Required();
+      ->required();
   group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
   group.Add("--plot", options->plot_path,
             "evolution over the cycles with its changes, as svg or png", "PATH");
@@ -329,7 +329,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.AddFlag("--resume", options->resume,
                 "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
-  WhenCalled(command, [options, &command, &console] {
+  command.callback([options, &command, &console] {
     if (options->broken_rows == "skip") options->track.broken_rows = io::BrokenRows::kSkip;
     RunTrack(*options, command, console);
   });

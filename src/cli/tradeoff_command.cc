@@ -62,21 +62,21 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                   "mindahl tradeoff --excitation micro --csv points.csv"});
   AddLawOptions(command, options->study.law);
   const OptionGroup group(command, "Excitation");
-  const Option scenes =
+  CLI::Option* const scenes =
       group
           .Add("--excitation", options->study.excitations,
                "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                "default all")
-          .OneOf(request::ExcitationNames());
-  const Option path =
+          ->check(OneOf(request::ExcitationNames()));
+  CLI::Option* const path =
       group.Add("--path", options->path, "CSV file with a displacement, any sequence", "FILE")
-          .Excludes(scenes);
+          ->excludes(scenes);
   group
       .Add("--displacement", options->displacement,
            "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
            "none; default by its name, else the first",
            "COL")
-      .Needs(path);
+      ->needs(path);
   OptionGroup(command, kPlainGroup)
       .AddShown("--tolerance", options->tolerance,
                 "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E");
@@ -84,7 +84,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunTradeoff(*options, console); });
+  command.callback([options, &console] { RunTradeoff(*options, console); });
 }
 
 }  // namespace mindahl::cli

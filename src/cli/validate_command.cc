@@ -43,11 +43,11 @@ void AddValidateCommand(CLI::App& app, Console& console) {
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--cases", options->validation.cases, "contacts to draw")
-      .WholeNumber(1, kMostCases);
+      ->check(WholeNumber(1, kMostCases));
   plain.AddShown("--seed", options->validation.seed, "seed of the random numbers")
-      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
   plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunValidate(*options, console); });
+  command.callback([options, &console] { RunValidate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -293,6 +293,7 @@ class Writer {
 
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
+    for (const std::string& note : report_.notes) Add("note", note);
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();

@@ -416,22 +416,6 @@ bool DeniesHertz(const FitResult& fit) {
   return sphere.p_value && *sphere.p_value < kSignificance;
 }
 
-std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
-                                     const std::optional<identification::Interval>& window) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const loop::Record& record : records) {
-    if (record.normal_load.empty()) return std::nullopt;
-    for (const double load : record.normal_load) {
-      if (window && (load < window->lower || load > window->upper)) continue;
-      sum += load;
-      ++count;
-    }
-  }
-  if (count == 0) return std::nullopt;
-  return sum / count;
-}
-
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
                   double contact_amplitude) {
   constexpr double kAsGoodAsSlip = 0.99;

@@ -226,12 +226,12 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
   entry.file = name;
   FitRequest own = request;
   own.files = {name};
-  const Tell note = [&](std::string_view text) { entry.notes.emplace_back(text); };
   std::string& fault = entry.fault;
   try {
     if (std::filesystem::is_regular_file(name)) entry.sha256 = io::Sha256OfFile(name).value_or("");
     Validate(own);
-    const report::Report report = FitRecords(own, read(own, note), note);
+    const report::Report report = FitRecords(own, read(own));
+    entry.notes = report.notes;
     entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);

@@ -19,7 +19,6 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/test_part.h"
-#include "mindahl/report/contact.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
@@ -222,18 +221,13 @@ void RequireLoadsOfRecords(const FitRequest& request) {
 
 /// Uses the measured normal load where it was not given: its mean.
 void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::FitResult& fit,
-                           std::span<const Record> records, const std::optional<Interval>& window,
-                           const Tell& note) {
+                           const Record& first, std::vector<std::string>& notes) {
   if (known.normal_load) return;
   if (fit.normal_load) {
     known.normal_load = *fit.normal_load;
-    note(fmt::format("normal load: the mean of its column, {:.6g} N", *fit.normal_load));
-    return;
+  } else if (!first.normal_load.empty()) {
+    notes.emplace_back("the normal load is not positive in every file: it is not used");
   }
-  const std::optional<double> mean = report::MeanNormalLoad(records, window);
-  if (!mean) return;
-  note(fmt::format("the mean normal load is {:.4g} N, not positive in every file: it is not used",
-                   *mean));
 }
 
 /// A fit with the options that it has in the end.
@@ -404,7 +398,7 @@ bool Established(const FitResult& fit, Strictness strictness) {
   return false;
 }
 
-std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note) {
+std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
   columns.covariates = CovariateColumns(request);
   std::vector<RecordFile> inputs;
@@ -414,13 +408,11 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
     const std::size_t rows = input.record.size();
     left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
     KeepTimeWindow(request, file, input);
-    for (const std::string& text : input.notes) note(text);
   }
   return inputs;
 }
 
-report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,
-                          const Tell& note) {
+report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
   if (inputs.empty()) throw InputError("a fit needs a record: give one");
   RequireSameSize("names", request.files.size(), "records", inputs.size());
   if (request.join && inputs.size() > 1) {
@@ -429,7 +421,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     joined.files = {fmt::format("{} … {}", request.files.front(), request.files.back())};
     std::vector<RecordFile> one;
     one.push_back(io::Joined(std::move(inputs), request.files));
-    return FitRecords(joined, std::move(one), note);
+    return FitRecords(joined, std::move(one));
   }
   RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
@@ -442,6 +434,10 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);
   RequireLoads(request, options.preparation.load_window, inputs);
+  std::vector<std::string> notes;
+  for (const RecordFile& input : inputs) {
+    notes.insert(notes.end(), input.notes.begin(), input.notes.end());
+  }
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
   std::vector<report::LeftOut> left_out = KeepTests(request, names, inputs, options);
@@ -460,7 +456,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::optional<report::NextStep> next;
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
-  UseMeasuredNormalLoad(known, asked.fit, records, options.preparation.load_window, note);
+  UseMeasuredNormalLoad(known, asked.fit, records.front(), notes);
   return report::MakeReport({.files = std::move(names),
                              .records = std::move(inputs),
                              .fit = std::move(asked.fit),
@@ -468,6 +464,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .known = known,
                              .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
+                             .notes = std::move(notes),
                              .selection = std::move(selection),
                              .terms = std::move(asked.terms),
                              .next = std::move(next)});

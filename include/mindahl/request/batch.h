@@ -32,8 +32,8 @@ struct BatchEntry {
   std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
 };
 
-/// Reads the records of one source, with notes on what was assumed.
-using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&, const Tell& note)>;
+/// Reads the records of one source.
+using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&)>;
 
 /// Writes the page of a report and returns its name; an empty function writes no pages.
 using WritePage = std::function<std::string(const report::Report&)>;
