@@ -94,13 +94,14 @@ struct KeptCycles {
 
 /// @param visit  is given every row that is kept
 /// @throws InputError where the file is no such table
-KeptCycles ReadKeptCycles(const std::string& path, const std::string& header,
+KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
                           const std::function<void(const campaign::CycleFit&)>& visit) {
   constexpr std::string_view kRemedy = "give another --output, or --overwrite";
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
   std::string line;
   std::getline(file, line);
+  const std::string header = campaign::CycleTableHeader(is_torsional);
   if (line + '\n' != header) {
     throw InputError(fmt::format(
         "--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy));
@@ -116,7 +117,7 @@ KeptCycles ReadKeptCycles(const std::string& path, const std::string& header,
     for (const std::string& row : batch) {
       ++kept.fits;
       try {
-        visit(campaign::ReadCycleTableRow(row).fit);
+        visit(campaign::ReadCycleTableRow(row, is_torsional).fit);
       } catch (const InputError& error) {
         throw InputError(
             fmt::format("--resume: {}:{}: {}: {}", path, kept.fits + 1, error.what(), kRemedy));
@@ -175,13 +176,11 @@ void TrackRun::Begin(campaign::TrackOptions& made) {
   std::error_code error;
   if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
     campaign::DissipatedEnergy energy = test.energy;
-    kept_ = ReadKeptCycles(options_.output, campaign::CycleTableHeader(test.is_torsional),
-                           [&](const CycleFit& fit) {
-                             if (test.fits % campaign::kBatch == 0)
-                               test.energy = energy;  // before the last batch
-                             energy.Add(fit);
-                             test.Add(fit);
-                           });
+    kept_ = ReadKeptCycles(options_.output, test.is_torsional, [&](const CycleFit& fit) {
+      if (test.fits % campaign::kBatch == 0) test.energy = energy;  // before the last batch
+      energy.Add(fit);
+      test.Add(fit);
+    });
     test.resumed = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
@@ -195,7 +194,7 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   std::string rows;
   for (const CycleFit& fit : fits) {
     test.energy.Add(fit);
-    rows += campaign::CycleTableRow(fit, test.energy.total());
+    rows += campaign::CycleTableRow(fit, test.energy.total(), test.is_torsional);
   }
   if (kept_ && rows != kept_->last_batch) ThrowOther();
   has_write_failed_ = true;

@@ -42,6 +42,12 @@ bool IsInadequate(const Report& report) {
   return IsJudged(report) && report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
 }
 
+/// True if what the law misses is the same at one place of every stroke.
+bool IsAlikeInStrokes(const FitResult& fit) {
+  constexpr double kMostOfIt = 0.5;
+  return fit.WidestRecord().structure.repeatable_share > kMostOfIt;
+}
+
 bool IsOfLaw(std::string_view parameter) {
   return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
 }
@@ -297,8 +303,10 @@ class Writer {
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
-      const bool is_moot = IsInadequate(report_) &&
-                           (!finding.parameters.empty() || finding.code == "slow_residuals");
+      // What is alike in every stroke does not drift.
+      const bool is_moot =
+          (IsInadequate(report_) && !finding.parameters.empty()) ||
+          (finding.code == "slow_residuals" && (IsInadequate(report_) || IsAlikeInStrokes(fit_)));
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
       std::string text = Sentence(finding, fit_, report_.units);
       if (!finding.parameters.empty()) {
@@ -359,8 +367,7 @@ std::string MisfitStatement(const Report& report) {
     text += percent < kWhole ? fmt::format(", {:.2g} % of the half gap", percent)
                              : ", more than the half gap";
   }
-  constexpr double kMostOfIt = 0.5;
-  if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
+  if (IsAlikeInStrokes(fit)) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
     const bool is_included =
         std::ranges::any_of(fit.parameters, &ParameterEstimate::includes_discrepancy);

@@ -45,14 +45,12 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
      "only a combination of {parameters} is determined; fix one, or sample more densely after the "
      "reversals"},
     {"sigma_not_identifiable",
-     "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide; more samples or "
-     "less "
-     "noise"},
+     "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide{remedy}"},
     {"alpha_not_identifiable.wide",
-     "{confidence} interval {lower:-} … {upper:-} is too wide; more samples or less noise"},
+     "{confidence} interval {lower:-} … {upper:-} is too wide{remedy}"},
     {"alpha_not_identifiable", "only its ratio to the slip force is determined; fix one of them"},
     {"slip_force_not_identifiable",
-     "{confidence} interval {lower:force} … {upper:force} is too wide; more samples or less noise"},
+     "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
     {"asymmetry_not_identifiable", "the loop stays below slip"},
     {"sigma_bounded_below", "a rigid contact fits as well: sample more densely after reversals"},
     {"slip_force_bounded_below",
@@ -114,6 +112,10 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
   if (place == "parameter") return finding.parameters.empty() ? "NAME" : finding.parameters.front();
   if (place == "confidence") return fmt::format("{:.0f} %", 100 * fit.confidence);
   if (place == "message") return fit.solver.message;
+  if (place == "remedy") {  // none of what the model misses
+    const bool is_noise = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
+    return is_noise ? "; more samples or less noise" : "";
+  }
   const std::size_t colon = place.find(':');
   const bool is_percent = place.ends_with('%');
   const std::string_view name = place.substr(0, is_percent ? place.size() - 1 : colon);

@@ -238,11 +238,12 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
   if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
   reading_ = campaign::ChooseReading(head, fit_);
   chosen_terms_ = ChooseTermsOfCycles(request_.fit, head, fit_);
-  campaign::TrackOptions options{.fit = fit_,
-                                 .compliance = ComplianceOf(known),
-                                 .together = request_.average,
-                                 .every = request_.every,
-                                 .threads = request_.threads};
+  campaign::TrackOptions options{
+      .fit = fit_,
+      .compliance = test_.is_torsional ? std::nullopt : ComplianceOf(known),
+      .together = request_.average,
+      .every = request_.every,
+      .threads = request_.threads};
   if (events_.begins) events_.begins(options);
   const auto doubt = campaign::DoubtAbout(reading_, source);
   if (doubt && events_.warn) events_.warn(*doubt);

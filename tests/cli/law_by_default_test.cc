@@ -71,12 +71,12 @@ TEST(FitByDefault, TakesMasingsLawForAnUndecidedLoop) {
 
 TEST(NextStep, IsAStepThatWasTriedAndHelps) {
   const TemporaryDirectory directory;
-  const std::string clean = RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40",
+  const Words clean = Lines(RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40",
                                         "--noise-force", "0.1", "--lambda", "2", "--cycles", "4"})
-                                .out;
+                                .out);
   // A force in proportion to the speed of the sine, 2 N at the most.
-  std::string text = Lines(clean)[0] + "\n";
-  for (const std::string& line : Words(Lines(clean).begin() + 1, Lines(clean).end())) {
+  std::string text = clean[0] + "\n";
+  for (const std::string& line : Words(clean.begin() + 1, clean.end())) {
     const Words cells = Cells(line);
     const double viscous = 2 * std::cos(2 * M_PI * std::stod(cells[0]));
     text += fmt::format("{},{},{}\n", cells[0], cells[1], std::stod(cells[2]) + viscous);
