@@ -341,6 +341,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       if (KnowsSlipForce(fit) && !KnowsSlipForce(found)) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
+      for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
     }

@@ -99,7 +99,7 @@ class MisleadingAnswer : public ::testing::TestWithParam<Answer> {
                           "--cycles", "3", "--noise-force", "0.05"})
                   .out);
     std::string peak = loop[0] + "\n";
-    for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";
+    for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";  // from a peak to the next
     directory_.Write("peak.csv", peak);
     std::string shrunk = "time [s],displacement [mm],force [N]\n";
     const Words sphere =
