@@ -123,7 +123,7 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
   if (colon != std::string_view::npos) {
     return Quantity(number, UnitOf(place.substr(colon + 1), units), 3);
   }
-  if (is_percent) return Quantity(100 * std::max(number, 0.0), "-", 2) + " %";
+  if (is_percent) return fmt::format("{} %", Quantity(100 * std::max(number, 0.0), "-", 2));
   return number == std::round(number) ? fmt::format("{:.0f}", number)
                                       : fmt::format("{:.2g}", number);
 }

@@ -62,11 +62,11 @@ std::string ValueText(const ParameterEstimate& estimate) {
       return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
                                   estimate.unit);
     case Shown::kHeld:
-      return Quantity(estimate.value, estimate.unit) + " (held)";
+      return fmt::format("{} (held)", Quantity(estimate.value, estimate.unit));
     case Shown::kLowerLimit:
-      return "> " + Quantity(*estimate.lower95, estimate.unit, kDigits);
+      return fmt::format("> {}", Quantity(*estimate.lower95, estimate.unit, kDigits));
     case Shown::kUpperLimit:
-      return "< " + Quantity(*estimate.upper95, estimate.unit, kDigits);
+      return fmt::format("< {}", Quantity(*estimate.upper95, estimate.unit, kDigits));
     case Shown::kNothing:
       break;
   }
@@ -75,12 +75,6 @@ std::string ValueText(const ParameterEstimate& estimate) {
 
 std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
   return fmt::format("{} {}", symbol, ValueText(estimate));
-}
-
-std::string Words(Identifiability identifiability) {
-  std::string words(Name(identifiability));
-  std::ranges::replace(words, '_', ' ');
-  return words;
 }
 
 std::string ChanceText(double p_value, int digits) {

@@ -43,9 +43,6 @@ std::string ValueText(const identification::ParameterEstimate& estimate);
 std::string ParameterText(std::string_view symbol,
                           const identification::ParameterEstimate& estimate);
 
-/// Returns the name with blanks, for people.
-std::string Words(identification::Identifiability identifiability);
-
 /// Returns "p = 0.012" of two digits; no p-value is 0.
 std::string ChanceText(double p_value, int digits = 3);
 

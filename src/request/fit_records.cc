@@ -309,13 +309,25 @@ bool KnowsSlipForce(const FitResult& fit) {
   return slip_force != nullptr && slip_force->is_known();
 }
 
+/// True if a term takes the slip force's place: it is known no more, or no longer the half gap of a
+/// loop that slides.
+bool LosesSlipForce(const FitResult& before, const FitResult& after) {
+  if (!KnowsSlipForce(before)) return false;
+  if (!KnowsSlipForce(after)) return true;
+  constexpr double kMost = 1.25;
+  const loop::LoopFacts& facts = after.WidestRecord().facts;
+  if (!loop::Slides(facts) || !facts.half_gap) return false;
+  const double share = after.law.slip_force / std::abs(*facts.half_gap);
+  return share > kMost || share < 1 / kMost;
+}
+
 /// Fits the record again with each of the few most likely terms, where the law alone is not
 /// adequate, and returns the one that misses least, if by a tenth less than the law. A term with
 /// which the slip force is lost is none.
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records,
                                              const FitResult& fit) {
-  constexpr std::size_t kMostTried = 2;
+  constexpr std::size_t kMostTried = 3;
   constexpr double kLeastGain = 0.1;
   constexpr double kGoodEnough = 0.5;  // of the misfit: no other term is tried
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
@@ -339,7 +351,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       tried.model = options.model;
       const FitResult found = FitLaw(with, tried, records, /*chooses_terms=*/false).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
-      if (KnowsSlipForce(fit) && !KnowsSlipForce(found)) continue;
+      if (LosesSlipForce(fit, found)) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
