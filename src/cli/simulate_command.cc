@@ -52,7 +52,7 @@ void AddDriveOptions(CLI::App& command, request::DriveRequest& request) {
       ->needs(path);
   group
       .Add("--normal-load-column", request.load_column,
-           "column of the file with the normal load N [N], which then varies: Tc = mu N", "COL")
+           "column of the file with the normal load N [N], which then varies:\nTc = mu N", "COL")
       ->needs(path);
   CLI::Option* const force_path =
       group.Add("--force-path", request.force_path,
@@ -98,8 +98,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       "that is not zero is the first loading step. Writes time [s],\n"
       "displacement [m], force [N].",
       {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
-       "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
-       "path.csv --displacement \"[um]\""});
+       "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
+       "    --path path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--model", options->simulation.model, "friction model")
       ->check(OneOf(request::SimulatedModels()));

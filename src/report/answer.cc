@@ -68,6 +68,7 @@ class Writer {
   std::vector<Line> Answer() {
     if (!report_.check.empty()) Add("check", report_.check, Judgement::kBad);
     AddColumns();
+    AddReading();
     AddFriction();
     AddStiffness();
     AddShape();
@@ -140,6 +141,18 @@ class Writer {
     Add(columns.empty() ? "record" : "columns",
         columns.empty() ? NameOf(report_.files)
                         : fmt::format("{}: {}", NameOf(report_.files), fmt::join(columns, ", ")));
+  }
+
+  /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
+  /// their units stand in the line above.
+  void AddReading() {
+    const std::vector<std::string>& notes = report_.notes;
+    if (notes.size() == 1) return Add("read as", notes.front());
+    const bool has_units = std::ranges::any_of(
+        notes, [](const std::string& note) { return note.find("no unit") != std::string::npos; });
+    if (notes.empty()) return;
+    Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
+                               has_units ? ", units among them" : ""));
   }
 
   void AddFriction() {
@@ -299,7 +312,6 @@ class Writer {
 
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
-    for (const std::string& note : report_.notes) Add("note", note);
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
@@ -378,8 +390,7 @@ std::string MisfitStatement(const Report& report) {
     return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue;
   });
   return text + ": the law does not describe the record" +
-         (is_any_known ? "; no more is known of it than the lines above"
-                       : "; use what is measured");
+         (is_any_known ? "; what stands above is known all the same" : "; use what is measured");
 }
 
 std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
@@ -387,6 +398,9 @@ std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answ
 std::vector<Line> DetailLines(const Report& report) {
   std::vector<Line> lines;
   const FitResult& fit = report.fit;
+  if (report.notes.size() > 1) {
+    for (const std::string& note : report.notes) lines.push_back({"read as", note});
+  }
   lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
                                         fit.has_mixed_states()
                                             ? std::string("initial states differ")

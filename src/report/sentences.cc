@@ -28,8 +28,8 @@ struct SentenceRow {
 constexpr auto kSentences = std::to_array<SentenceRow>({
     // about the record
     {"reversals_uncertain",
-     "{count} reversals or {other_count}, if excursions up to {other_gate:excitation} are noise: "
-     "look at the plot, and give --reversal-gate"},
+     "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
+     "--reversal-gate"},
     {"glitches_left_out", "measurement faults are left out"},
     {"path_too_long",
      "the path is far longer than the strokes: noise is taken for motion; give --reversal-gate"},

@@ -169,11 +169,6 @@ Words NamesAfter(const std::string& command,
   return words;
 }
 
-std::string WithoutHeader(const std::string& table) {
-  const std::size_t end = table.find('\n');
-  return end == std::string::npos ? "" : table.substr(end + 1);
-}
-
 std::vector<std::string> LinesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
