@@ -390,7 +390,7 @@ std::string MisfitStatement(const Report& report) {
     return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue;
   });
   return text + ": the law does not describe the record" +
-         (is_any_known ? "; what stands above is known all the same" : "; use what is measured");
+         (is_any_known ? "; what stands above is known" : "; use what is measured");
 }
 
 std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
