@@ -412,8 +412,10 @@ TEST(DisplacementPath, ReadsFileWithoutHeader) {
   EXPECT_EQ(ReadPath("1e-6\n-1e-6"), (Numbers{1e-6, -1e-6}));
 }
 
-TEST(DisplacementPath, TakesFirstColumnWhateverItsName) {
-  EXPECT_EQ(ReadPath("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{0.5, 0.25}));
+TEST(DisplacementPath, TakesTheColumnOfARecognisedNameElseTheFirst) {
+  EXPECT_EQ(ReadPath("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{1, 2}));
+  EXPECT_EQ(ReadPath("force [N],x [m]\n1,2\n"), (Numbers{2}));
+  EXPECT_EQ(ReadPath("command,remark\n0.5,go\n0.25,\n"), (Numbers{0.5, 0.25}));
 }
 
 TEST(DisplacementPath, ConvertsUnitOfHeader) {
@@ -425,7 +427,7 @@ TEST(DisplacementPath, ConvertsChosenColumnAndUnit) {
 }
 
 TEST(DisplacementPath, RefusesFirstColumnThatIsNoLength) {
-  EXPECT_THROW(ReadPath("force [N],x [m]\n1,2\n"), InputError);
+  EXPECT_THROW(ReadPath("force [N],remark\n1,2\n"), InputError);
 }
 
 TEST(DisplacementPath, PassesOverATimeToADisplacementOfARecognisedName) {
