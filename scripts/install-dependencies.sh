@@ -7,7 +7,6 @@
 #   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
 #   install-dependencies.sh --clang     also the other compiler
-#   install-dependencies.sh --workflow  also the engine that workflow/ is for
 #   install-dependencies.sh --readers   also what reads other files and runs the notebooks, in Python
 #   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
 set -euo pipefail
@@ -38,7 +37,6 @@ for group in "$@"; do
     --coverage) packages+=(gcovr) ;;
     --clang) packages+=(clang-19) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
-    --workflow) packages+=(snakemake) ;;
     --readers)
       packages+=(
         python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
@@ -48,7 +46,7 @@ for group in "$@"; do
     --site) packages+=(mkdocs reuse) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--coverage, --fuzz, --clang, --workflow, --readers or --site" >&2
+        "--coverage, --fuzz, --clang, --readers or --site" >&2
       exit 2
       ;;
   esac

@@ -13,7 +13,7 @@ part() {
   "$@" || failed+=("$*")
 }
 
-./scripts/install-dependencies.sh --checks --packages --peers --workflow --readers --clang || exit
+./scripts/install-dependencies.sh --checks --packages --peers --readers --clang || exit
 part ./scripts/test.sh ci
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough

@@ -149,13 +149,11 @@ BatchEntry FitOne(const NamedRecord& record, const request::FitRequest& request,
   const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
                                 : strict == "doubtful" ? Strictness::kDoubtful
                                                        : Strictness::kNone;
-  return request::FitSource(request, record.name, strictness,
-                            [&](const request::FitRequest& own, const request::Tell& note) {
-                              std::vector<io::RecordFile> files = {record.file};
-                              request::KeepTimeWindow(own, record.name, files.front());
-                              for (const std::string& text : files.front().notes) note(text);
-                              return files;
-                            });
+  return request::FitSource(request, record.name, strictness, [&](const request::FitRequest& own) {
+    std::vector<io::RecordFile> files = {record.file};
+    request::KeepTimeWindow(own, record.name, files.front());
+    return files;
+  });
 }
 
 BatchEntry FaultyEntry(const std::string& name, const std::string& fault) {

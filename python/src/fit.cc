@@ -23,27 +23,21 @@ using request::FitRequest;
 
 namespace {
 
-/// A report and what was assumed on the way to it.
+/// A report, held where Python finds its arrays.
 struct Fitted {
   Report report;
-  std::vector<std::string> notes;
 };
 
 std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
   const py::gil_scoped_release others_may_run;
   request.files.clear();
   std::vector<io::RecordFile> files;
-  std::vector<std::string> notes;
   for (const NamedRecord& record : records) request.files.push_back(record.name);
   request::Validate(request);
   for (const NamedRecord& record : records) {
-    io::RecordFile& file = files.emplace_back(record.file);
-    request::KeepTimeWindow(request, record.name, file);
-    notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+    request::KeepTimeWindow(request, record.name, files.emplace_back(record.file));
   }
-  Report report = request::FitRecords(request, std::move(files),
-                                      [&](std::string_view note) { notes.emplace_back(note); });
-  return std::make_shared<Fitted>(Fitted{std::move(report), std::move(notes)});
+  return std::make_shared<Fitted>(Fitted{request::FitRecords(request, std::move(files))});
 }
 
 std::string TextOf(const Fitted& fitted) {
@@ -180,7 +174,7 @@ void AddFit(py::module_& module) {
                                return std::pair(std::string(fitted.report.units.displacement),
                                                 std::string(fitted.report.units.force));
                              })
-      .def_readonly("notes", &Fitted::notes);
+      .def_property_readonly("notes", [](const Fitted& fitted) { return fitted.report.notes; });
   py::class_<Likelihood>(module, "Likelihood")
       .def(py::init([](const std::shared_ptr<Fitted>& fitted) { return Likelihood(fitted); }),
            py::arg("fitted"))

@@ -97,7 +97,7 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, DescribedTest> TrackedC
   number("cycle", &CycleFit::number);
   number("first_line", &CycleFit::first_line);
   number("samples", &CycleFit::samples);
-  for (const campaign::CycleNumber& column : campaign::CycleNumbers()) {
+  for (const campaign::CycleNumber& column : campaign::CycleNumbers(tracked.test.is_torsional)) {
     py::array_t<double> values(static_cast<py::ssize_t>(tracked.fits.size()));
     double* const written = values.mutable_data();
     for (std::size_t k = 0; k < tracked.fits.size(); ++k) {

@@ -194,11 +194,11 @@ constexpr std::array kNumbers = {
     CycleNumber{"contact_radius", "m", Of<&CycleFit::contact_radius>},
 };
 
+// A torque about the contact has no contact radius, the last of them.
+static_assert(kNumbers.back().name == "contact_radius");
+
 constexpr std::string_view kPartial = "partial";
 constexpr std::string_view kGross = "gross";
-
-// cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
-constexpr std::size_t kColumns = 3 + kNumbers.size() + 4;
 
 template <typename Value>
 Value CellValue(std::string_view cell) {
@@ -208,24 +208,26 @@ Value CellValue(std::string_view cell) {
 
 }  // namespace
 
-std::span<const CycleNumber> CycleNumbers() { return kNumbers; }
+std::span<const CycleNumber> CycleNumbers(bool is_torsional) {
+  return std::span(kNumbers).first(kNumbers.size() - (is_torsional ? 1 : 0));
+}
 
 std::string CycleTableHeader(bool is_torsional) {
   const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
   std::string header = "cycle,first_line,samples";
-  for (const CycleNumber& column : kNumbers) {
+  for (const CycleNumber& column : CycleNumbers(is_torsional)) {
     header += fmt::format(",{}", column.name);
     if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
   }
   return header + ",slip_regime,accumulated_energy [J],flags,checksum\n";
 }
 
-std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
   CycleFit values = fit;
   fmt::memory_buffer row;
   const auto end = std::back_inserter(row);
   fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
-  for (const CycleNumber& column : kNumbers) {
+  for (const CycleNumber& column : CycleNumbers(is_torsional)) {
     row.push_back(',');
     if (const OptionalNumber& number = column.of(values))
       fmt::format_to(end, FMT_COMPILE("{}"), *number);
@@ -236,25 +238,28 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   return fmt::to_string(row);
 }
 
-CycleTableEntry ReadCycleTableRow(std::string_view line) {
+CycleTableEntry ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
-  if (cells.size() != kColumns) {
-    throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
+  const std::span<const CycleNumber> numbers = CycleNumbers(is_torsional);
+  // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
+  const std::size_t columns = 3 + numbers.size() + 4;
+  if (cells.size() != columns) {
+    throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
   CycleTableEntry entry;
   entry.fit.number = CellValue<std::size_t>(cells[0]);
   entry.fit.first_line = CellValue<std::size_t>(cells[1]);
   entry.fit.samples = CellValue<std::size_t>(cells[2]);
-  for (std::size_t k = 0; k < kNumbers.size(); ++k) {
-    if (!cells[3 + k].empty()) kNumbers[k].of(entry.fit) = CellValue<double>(cells[3 + k]);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (!cells[3 + k].empty()) numbers[k].of(entry.fit) = CellValue<double>(cells[3 + k]);
   }
-  const std::string_view regime = cells[kColumns - 4];
+  const std::string_view regime = cells[columns - 4];
   if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
-  entry.accumulated_energy = CellValue<double>(cells[kColumns - 3]);
-  if (const std::string_view flags = cells[kColumns - 2]; !flags.empty()) {
+  entry.accumulated_energy = CellValue<double>(cells[columns - 3]);
+  if (const std::string_view flags = cells[columns - 2]; !flags.empty()) {
     for (const std::string_view flag : PartsOf(flags, ' ')) entry.fit.flags.emplace_back(flag);
   }
-  const std::string_view checksum = cells[kColumns - 1];
+  const std::string_view checksum = cells[columns - 1];
   const auto [end, error] =
       std::from_chars(checksum.data(), checksum.data() + checksum.size(), entry.fit.checksum, 16);
   if (error != std::errc() || end != checksum.data() + checksum.size()) {

@@ -4,10 +4,8 @@
 #include <string>
 #include <vector>
 
-// Only app.cc and options.cc include CLI11, which takes longer to compile than a command.
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 namespace mindahl::cli {

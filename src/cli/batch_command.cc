@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/file_list.h"
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
@@ -32,7 +31,6 @@ namespace {
 
 struct BatchCommandOptions {
   FitRequest request;
-  FileList list;
   Strictness strict = Strictness::kNone;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
@@ -100,11 +98,7 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
       return pages[k];
     };
   };
-  Progress progress(console.err, "fitting files");
-  return request::FitFiles(options.request, options.strict, options.threads, page_of,
-                           [&](std::size_t done) {
-                             progress.Say(fmt::format("fitted {} of {} files", done, files.size()));
-                           });
+  return request::FitFiles(options.request, options.strict, options.threads, page_of);
 }
 
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
@@ -146,13 +140,12 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       {"mindahl batch run1.csv run2.csv run3.csv --output table.csv --normal-load 50",
        "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
   OptionGroup(command, kPlainGroup)
-      .Add("files", options->request.files, "CSV records, each a test of its own", "FILE");
-  AddFilesFrom(command, options->list);
-  AddShard(command, options->list);
+      .Add("files", options->request.files, "CSV records, each a test of its own", "FILE")
+      ->required();
   AddFitOptions(command, options->request, NormalLoads::kOne);
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table as CSV, one row a file, in SI units", "PATH")
-      .Required();
+      ->required();
   group.Add("--json", options->json_path,
             "the answer of fit for each file as JSON; - for standard output alone", "PATH");
   group.Add(
@@ -162,15 +155,12 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   group
       .Add("--threads", options->threads,
            "number of worker threads (default: one per core); they do not change\nthe results")
-      .WholeNumber(1, 1024);
+      ->check(WholeNumber(1, 1024));
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
-                      "--terms", "--files-from", "--output", "--report", "--json", "--help-all"});
-  WhenCalled(command, [options, &command, &console] {
-    options->request.files = FilesOf(options->request.files, options->list);
-    RunBatch(*options, command, console);
-  });
+                      "--terms", "--output", "--report", "--json", "--help-all"});
+  command.callback([options, &command, &console] { RunBatch(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

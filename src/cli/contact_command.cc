@@ -41,7 +41,7 @@ void AddContactCommand(CLI::App& app, Console& console) {
   AddFrictionOption(command, options->contact);
   OptionGroup(command, kPlainGroup)
       .Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunContact(*options, console); });
+  command.callback([options, &console] { RunContact(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -9,6 +9,7 @@
 
 #include "cli/options.h"
 #include "core/text.h"
+#include "io/cells.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 
@@ -73,11 +74,11 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
   std::optional<double> standard_error = 0.0;
   bool is_percentage = false;
   if (uncertainty) {
-    std::string_view magnitude = Trimmed(*uncertainty);
+    std::string_view magnitude = io::Trimmed(*uncertainty);
     is_percentage = magnitude.ends_with('%');
     if (is_percentage) magnitude.remove_suffix(1);
     // A unit at the end is that of the value too.
-    if (Trimmed(number.substr(BeginOfUnit(number))).empty()) {
+    if (io::Trimmed(number.substr(BeginOfUnit(number))).empty()) {
       stated += magnitude.substr(BeginOfUnit(magnitude));
     }
     standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
@@ -134,10 +135,12 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
 
 void AddLawOptions(CLI::App& command, LawOptions& request) {
   const OptionGroup parameters(command, "Parameters");
-  parameters.Add("--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M").InUnit("N/m");
+  parameters.Add("--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M")
+      ->transform(InUnit("N/m"));
   parameters.Add("--alpha", request.alpha,
                  "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA");
-  parameters.Add("--slip-force", request.slip_force, "slip force Tc [N]", "N").InUnit("N");
+  parameters.Add("--slip-force", request.slip_force, "slip force Tc [N]", "N")
+      ->transform(InUnit("N"));
   AddContactOptions(command, request.contact);
   AddFrictionOption(command, request.contact);
 }

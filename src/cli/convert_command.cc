@@ -67,18 +67,18 @@ void AddConvertCommand(CLI::App& app, Console& console) {
            "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
            "fit's, "
            "else masing")
-      .OneOf({"masing", "dahl"});
+      ->check(OneOf({"masing", "dahl"}));
   contact.Add("--amplitude", options->asked.amplitude,
               "amplitude X of the contact's steady loop [m], without the rig's travel", "M");
   const OptionGroup result(command, "What it becomes");
   result.Add("--to", options->asked.to, "law or program")
-      .Required()
-      .OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name));
+      ->required()
+      ->check(OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name)));
   result.AddShown("--tolerance", options->tolerance,
                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
                   "E");
   result.AddShown("--elements", options->asked.options.elements, "number of elements of --to iwan")
-      .WholeNumber(1, kMostElements);
+      ->check(WholeNumber(1, kMostElements));
   result.AddShown("--beta", options->asked.options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.Add("--normal-load", options->asked.normal.normal_load,
@@ -91,7 +91,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
   outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunConvert(*options, console); });
+  command.callback([options, &console] { RunConvert(*options, console); });
 }
 
 }  // namespace mindahl::cli

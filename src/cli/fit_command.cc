@@ -61,6 +61,9 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   if (options.json_path != "-") {
     console.out << report::ToText(
         report, {.has_colours = console.has_colours, .has_details = options.has_details});
+  } else {
+    const Messages messages{console.err, "fit"};
+    for (const std::string& note : report.notes) messages.Note(note);
   }
 }
 
@@ -68,10 +71,11 @@ void RequireSweepOptions(const CLI::App& command) {
   constexpr auto kOfSweeps = std::to_array<std::string_view>(
       {"strict", "help", "sweep", "json", "response", "displacement", "force", "encoding", "fix",
        "model", "confidence"});
-  for (const OptionState& option : OptionsOf(command)) {
-    const bool is_of_sweeps = std::ranges::find(kOfSweeps, option.name) != kOfSweeps.end();
-    if (!option.is_given || is_of_sweeps) continue;
-    throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", option.name));
+  for (const CLI::Option* option : OptionsOf(command)) {
+    const bool is_of_sweeps = std::ranges::find(kOfSweeps, NameOf(*option)) != kOfSweeps.end();
+    if (option->count() == 0 || is_of_sweeps) continue;
+    throw InputError(
+        fmt::format("--{}: has no meaning with --sweep: leave it out", NameOf(*option)));
   }
 }
 
@@ -100,8 +104,8 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
                       {"--plot", options.plot_path},
                       {"--report", options.report_path}},
                      console, request.files);
-  const Messages messages{console.err, "fit"};
-  const report::Report report = FitRecords(request, messages);
+  request::Validate(request);
+  const report::Report report = request::FitRecords(request, request::ReadRecords(request));
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
   WriteFitOutputs(options, report, provenance, console);
@@ -123,7 +127,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
                   "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"});
   OptionGroup(command, kPlainGroup)
       .Add("files", options->request.files, "CSV records of one contact", "FILE")
-      .Required();
+      ->required();
   AddJoin(command, options->request);
   AddFitOptions(command, options->request, NormalLoads::kOneAFile);
   const OptionGroup sweeps(command, "Amplitude sweeps");
@@ -132,7 +136,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
            "the file has stiffness or compliance against the amplitude of force or\ndisplacement, "
            "as lock-in rigs report: secant, of the loop from end to\nend, or tangent, of a small "
            "oscillation about a force that was reached")
-      .OneOf({"secant", "tangent"});
+      ->check(OneOf({"secant", "tangent"}));
   sweeps.Add(
       "--response", options->response,
       "column of the stiffness or compliance, with its unit if the header has\nnone, "
@@ -150,7 +154,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
-  WhenCalled(command, [options, &command, &console] { RunFit(*options, command, console); });
+  command.callback([options, &command, &console] { RunFit(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

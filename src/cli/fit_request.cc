@@ -13,7 +13,6 @@
 
 #include "cli/contact_options.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
@@ -150,7 +149,7 @@ void AddSelections(CLI::App& command, FitRequest& request) {
           "fit only cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s]\nor load=LO:HI "
           "[N]; repeatable; what is not of the time window still\ncounts as loading history",
           "WHAT=LO:HI")
-      .OneAtATime();
+      ->allow_extra_args(false);
   const OptionGroup hidden(command, "");
   for (const auto& [name, window] : {std::pair("--cycles", "cycles"),
                                      {"--samples", "samples"},
@@ -165,7 +164,7 @@ void AddSelections(CLI::App& command, FitRequest& request) {
   group
       .AddShown("--trim", request.trim,
                 "leave out what at the ends of a record is not the test, and say which\nrows")
-      .OneOf(request::kOnOff);
+      ->check(OneOf(request::kOnOff));
 }
 
 /// Breaks a list of words into lines of a help text, the first of which has `used` characters.
@@ -262,26 +261,26 @@ void RequireNoColumns(const io::RecordColumns& columns) {
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
-  group.AddShown("--model", options.model, DescribeModels()).OneOf(request::ModelNames());
+  group.AddShown("--model", options.model, DescribeModels())->check(OneOf(request::ModelNames()));
   group.AddFlag("--compare", options.compare,
                 "list all models, with and without a rig, by AICc and held-out cycles");
   group
       .AddShown("--initial-state", options.initial_state,
                 "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
                 "auto fits both and keeps the smaller AICc")
-      .OneOf(request::kInitialStates);
+      ->check(OneOf(request::kInitialStates));
   group
       .AddShown("--force-sign", options.force_sign,
                 "sign of the force in the file relative to the displacement; auto\ndecides by the "
                 "sign of the loop's energy")
-      .OneOf(request::kForceSigns);
+      ->check(OneOf(request::kForceSigns));
   group
       .AddShown("--noise-in", options.noise_in,
                 "channel that has the noise and is fitted; the other one is taken as\nexact: give "
                 "displacement where the machine imposes the force")
-      .OneOf(request::kNoiseIn);
+      ->check(OneOf(request::kNoiseIn));
   group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
-      .OneOf(request::kOnOff);
+      ->check(OneOf(request::kOnOff));
   group.AddRead(
       "--rig-stiffness",
       [&options](const std::string& text) { options.rig_stiffness = ParseRig(text); },
@@ -300,10 +299,10 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           "additional force C·column, C [N/unit]; default fit; columns by header\nname or 1-based "
           "number; repeatable",
           "COL[=C|fit]")
-      .OneAtATime();
+      ->allow_extra_args(false);
   group.Add("--terms", options.terms, DescribeTerms(), "none|auto|NAME,...")
-      .SplitAtCommas()
-      .OneAtATime();
+      ->delimiter(',')
+      ->allow_extra_args(false);
   const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
     group.AddReadAll(
@@ -333,22 +332,22 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   group
       .Add("--force-noise", options.force_noise,
            "known standard deviation of the force [N]; default from the residuals", "N")
-      .InUnit("N");
+      ->transform(InUnit("N"));
   group
       .Add("--displacement-noise", options.displacement_noise,
            "known standard deviation of the displacement [m]; default from the\ndata where they "
            "show any",
            "M")
-      .InUnit("m");
+      ->transform(InUnit("m"));
   group
       .AddShown("--loss", options.loss,
                 "weight of residuals that are large against their scatter: huber and\ncauchy "
                 "reduce it, tukey reduces it to zero")
-      .OneOf(request::kLosses);
+      ->check(OneOf(request::kLosses));
   group
       .Add("--reversal-gate", options.reversal_gate,
            "excursions up to this [m] are noise, not reversals; default from the\ndata", "M")
-      .InUnit("m");
+      ->transform(InUnit("m"));
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
@@ -358,8 +357,8 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
            "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
            "memory, or the limit of the process",
            "SIZE")
-      .WholeNumber(1, 1'000'000'000'000'000'000)
-      .WithUnitOfSize();
+      ->check(WholeNumber(1, 1'000'000'000'000'000'000))
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
   AddSelections(command, request);
   const OptionGroup group(command, std::string(kColumnGroup));
   io::RecordColumns& columns = request.columns;
@@ -374,7 +373,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
           "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
           "empty cells, which are left out; skip: all are left out",
           "TEXT")
-      .OneOf({"refuse", "skip"});
+      ->check(OneOf({"refuse", "skip"}));
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }
@@ -406,22 +405,6 @@ void Messages::Note(std::string_view text) const {
 
 void Messages::Warn(std::string_view text) const {
   stream << fmt::format("mindahl {}: warning: {}\n", command, text);
-}
-
-report::Report FitRecords(const FitRequest& request, const Messages& messages) {
-  request::Validate(request);
-  std::vector<io::RecordFile> inputs =
-      request::ReadRecords(request, [&](std::string_view note) { messages.Note(note); });
-  std::size_t samples = 0;
-  for (const io::RecordFile& input : inputs) samples += input.record.size();
-  std::vector<std::string> notes;  // not into the line of progress
-  std::optional<Progress> progress(std::in_place, messages.stream,
-                                   fmt::format("fitting {} samples", samples));
-  report::Report report = request::FitRecords(
-      request, std::move(inputs), [&](std::string_view note) { notes.emplace_back(note); });
-  progress.reset();
-  for (const std::string& note : notes) messages.Note(note);
-  return report;
 }
 
 }  // namespace mindahl::cli

@@ -44,8 +44,4 @@ struct Messages {
   void Warn(std::string_view text) const;
 };
 
-/// Reads the files and fits them together as one contact.
-/// @throws InputError naming file, line and column, or the option
-report::Report FitRecords(const FitRequest& request, const Messages& messages);
-
 }  // namespace mindahl::cli

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
+#include "io/cells.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 
@@ -64,138 +64,73 @@ void ShowFirst(CLI::App& command, std::vector<std::string> names) {
   command.get_formatter()->column_width(30);
 }
 
-void WhenCalled(CLI::App& command, std::function<void()> run) { command.callback(std::move(run)); }
-
-const Option& Option::OneOf(std::vector<std::string> words) const {
+CLI::Validator OneOf(std::vector<std::string> words) {
   const std::string listed = fmt::format("{{{}}}", fmt::join(words, ","));
   const auto check = [words = std::move(words)](const std::string& text) {
     const bool is_one = std::ranges::find(words, text) != words.end();
     return is_one ? std::string() : UnknownAmong(text, words);
   };
-  option_->check(CLI::Validator(check, listed));
-  return *this;
+  return {check, listed};
 }
 
-const Option& Option::OneOf(std::span<const std::string_view> words) const {
+CLI::Validator OneOf(std::span<const std::string_view> words) {
   return OneOf(std::vector<std::string>(words.begin(), words.end()));
 }
 
-const Option& Option::WholeNumber(std::uint64_t least, std::uint64_t most) const {
+CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most) {
   const auto check = [least, most](const std::string& text) -> std::string {
     const auto number = NumberIn<std::uint64_t>(text);
     if (number && *number >= least && *number <= most) return {};
     return fmt::format("'{}' is invalid: must be a whole number from {} to {}", text, least, most);
   };
-  option_->check(CLI::Validator(check, ""));
-  return *this;
+  return {check, /*description=*/""};
 }
 
-const Option& Option::Required() const {
-  option_->required();
-  return *this;
-}
-
-const Option& Option::Needs(const Option& other) const {
-  option_->needs(other.option_);
-  return *this;
-}
-
-const Option& Option::Excludes(const Option& other) const {
-  option_->excludes(other.option_);
-  return *this;
-}
-
-const Option& Option::SplitAtCommas() const {
-  option_->delimiter(',');
-  return *this;
-}
-
-const Option& Option::OneAtATime() const {
-  option_->allow_extra_args(false);
-  return *this;
-}
-
-const Option& Option::InUnit(const std::string& unit) const {
+CLI::Validator InUnit(const std::string& unit) {
   const auto convert = [unit](std::string& text) -> std::string {
     // A text without a unit is read, and refused, as a number.
-    if (Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
+    if (io::Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
     const std::optional<double> value = ParseQuantity(text, unit);
-    if (!value)
+    if (!value) {
       return fmt::format("'{}' is no quantity in {}: write a number or its unit", text, unit);
+    }
     text = fmt::format("{}", *value);
     return {};
   };
-  option_->transform(CLI::Validator(convert, ""));
-  return *this;
+  return {convert, /*description=*/""};
 }
 
-const Option& Option::WithUnitOfSize() const {
-  option_->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
-  return *this;
-}
-
-Option OptionGroup::Grouped(CLI::Option* added, const std::string& type) const {
+CLI::Option* OptionGroup::Grouped(CLI::Option* added, const std::string& type) const {
   added->group(name_);
   if (!type.empty()) added->type_name(type);
-  return Option(added);
+  return added;
 }
 
-template <typename Value>
-Option OptionGroup::Add(const std::string& option, Value& value, const std::string& help,
-                        const std::string& type) const {
-  return Grouped(command_.add_option(option, value, help), type);
-}
-
-template <typename Value>
-Option OptionGroup::AddShown(const std::string& option, Value& value, const std::string& help,
-                             const std::string& type) const {
-  return Grouped(command_.add_option(option, value, help)->capture_default_str(), type);
-}
-
-using Text = const std::string&;
-template Option OptionGroup::Add(Text, std::uint64_t&, Text, Text) const;
-template Option OptionGroup::Add(Text, double&, Text, Text) const;
-template Option OptionGroup::Add(Text, std::string&, Text, Text) const;
-template Option OptionGroup::Add(Text, std::optional<std::uint64_t>&, Text, Text) const;
-template Option OptionGroup::Add(Text, std::optional<double>&, Text, Text) const;
-template Option OptionGroup::Add(Text, std::vector<double>&, Text, Text) const;
-template Option OptionGroup::Add(Text, std::vector<std::string>&, Text, Text) const;
-template Option OptionGroup::AddShown(Text, std::uint64_t&, Text, Text) const;
-template Option OptionGroup::AddShown(Text, double&, Text, Text) const;
-template Option OptionGroup::AddShown(Text, std::string&, Text, Text) const;
-
-Option OptionGroup::AddRead(const std::string& option,
-                            const std::function<void(const std::string&)>& read,
-                            const std::string& help, const std::string& type) const {
+CLI::Option* OptionGroup::AddRead(const std::string& option,
+                                  const std::function<void(const std::string&)>& read,
+                                  const std::string& help, const std::string& type) const {
   return Grouped(command_.add_option_function<std::string>(option, read, help), type);
 }
 
-Option OptionGroup::AddReadAll(const std::string& option,
-                               const std::function<void(const std::vector<std::string>&)>& read,
-                               const std::string& help, const std::string& type) const {
+CLI::Option* OptionGroup::AddReadAll(
+    const std::string& option, const std::function<void(const std::vector<std::string>&)>& read,
+    const std::string& help, const std::string& type) const {
   return Grouped(command_.add_option_function<std::vector<std::string>>(option, read, help), type);
 }
 
-namespace {
-
-/// Checks what a flag is given: CLI11 itself reads --flag=5 as five times --flag.
-CLI::Validator TrueOrFalse() {
+CLI::Option* OptionGroup::AddFlag(const std::string& option, bool& value,
+                                  const std::string& help) const {
+  // CLI11 itself reads --flag=5 as five times --flag.
   const auto check = [](const std::string& text) -> std::string {
     if (text == "true" || text == "false") return {};
     return fmt::format("'{}' is no value: a flag takes none, or true or false", text);
   };
-  return {check, /*description=*/""};
+  return Grouped(command_.add_flag(option, value, help)->check(check), "");
 }
 
-}  // namespace
-
-Option OptionGroup::AddFlag(const std::string& option, bool& value, const std::string& help) const {
-  return Grouped(command_.add_flag(option, value, help)->check(TrueOrFalse()), "");
-}
-
-Option OptionGroup::AddFlagWithWord(const std::string& option,
-                                    std::function<void(const std::string&)> read,
-                                    const std::string& help) const {
+CLI::Option* OptionGroup::AddFlagWithWord(const std::string& option,
+                                          std::function<void(const std::string&)> read,
+                                          const std::string& help) const {
   const auto text = std::make_shared<std::string>();
   return Grouped(
       command_.add_flag(option, *text, help)->each([text, read](const std::string& word) {
@@ -204,34 +139,9 @@ Option OptionGroup::AddFlagWithWord(const std::string& option,
       "");
 }
 
-Option OptionGroup::AddAction(const std::string& option, std::function<void()> act,
-                              const std::string& help) const {
-  return Grouped(command_.add_flag_callback(option, std::move(act), help)->check(TrueOrFalse()),
-                 "");
-}
-
-Option FindOption(CLI::App& command, const std::string& option) {
-  return Option(command.get_option(option));
-}
-
-std::vector<OptionState> OptionsOf(const CLI::App& command) {
-  std::vector<OptionState> options;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option->get_lnames().empty()) continue;
-    options.push_back({.name = option->get_lnames().front(),
-                       .group = option->get_group(),
-                       .default_text = option->get_default_str(),
-                       .values = option->results(),
-                       .is_given = option->count() > 0,
-                       .is_flag = option->get_items_expected_max() == 0});
-  }
-  return options;
-}
-
-std::optional<double> NumberOf(std::string_view text) {
-  double number = 0.0;
-  if (!CLI::detail::lexical_cast(std::string(Trimmed(text)), number)) return std::nullopt;
-  return number;
+std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
+  return command.get_options(
+      [](const CLI::Option* option) { return !option->get_lnames().empty(); });
 }
 
 double ParseTolerance(const std::string& text) {

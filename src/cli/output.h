@@ -1,15 +1,10 @@
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
 #include <initializer_list>
 #include <iosfwd>
-#include <mutex>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "cli/app.h"
@@ -58,30 +53,5 @@ void RequireDistinctFiles(std::span<const std::string> files);
 /// @param remedy  what to add, for the message
 /// @throws InputError where a file is there
 void RequireNotThere(const OutputPath& output, std::string_view remedy);
-
-/// A line on standard error that says what the program is about, from two seconds on and every
-/// second anew: "fitting 10001 samples, 3 s". Only where standard error is a terminal, and the
-/// stream that messages go to; it is erased when this ends.
-class Progress {
- public:
-  /// @param messages  the console's; nothing is shown unless it is std::cerr
-  /// @param patience  before it is first shown
-  Progress(const std::ostream& messages, std::string what,
-           std::chrono::milliseconds patience = std::chrono::seconds(2));
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void Say(std::string what);
-
- private:
-  void Run(const std::stop_token& stop, std::chrono::milliseconds patience);
-
-  std::mutex mutex_;  // of what_
-  std::string what_;
-  std::condition_variable_any ends_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::jthread thread_;  // the last: it uses the others
-};
 
 }  // namespace mindahl::cli

@@ -119,15 +119,15 @@ void AddPlanCommand(CLI::App& app, Console& console) {
            "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
            "unless --with fits it",
            "K")
-      .InUnit("N/m");
+      ->transform(InUnit("N/m"));
   expected
       .Add("--force-noise", options->plan.force_noise, "standard deviation of the force noise [N]",
            "S")
-      .InUnit("N");
+      ->transform(InUnit("N"));
   expected
       .Add("--displacement-noise", options->plan.displacement_noise,
            "standard deviation of the displacement noise [m], white; default 0", "S")
-      .InUnit("m");
+      ->transform(InUnit("m"));
   expected.Add("--autocorrelation", options->plan.autocorrelation,
                "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0",
                "RHO");
@@ -136,26 +136,26 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const OptionGroup loop(command, "The loop");
   loop.Add("--amplitude", options->plan.amplitudes,
            "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
-      .InUnit("m");
+      ->transform(InUnit("m"));
   loop.Add("--load-ratio", options->plan.load_ratios,
            "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
-      .SplitAtCommas();
+      ->delimiter(',');
   loop.AddShown("--cycles", options->plan.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
-      .WholeNumber(4, 1'000'000);
+      ->check(WholeNumber(4, 1'000'000));
   loop.AddShown("--initial-state", options->initial_state,
                 "virgin: the loop includes the first loading; steady: it does not")
-      .OneOf({"virgin", "steady", "both"});
+      ->check(OneOf({"virgin", "steady", "both"}));
   const OptionGroup fit(command, "The fit");
   fit.Add("--with", options->plan.with,
           "further terms that are fitted: rig_stiffness, plateau_slope …", "TERM")
-      .SplitAtCommas();
+      ->delimiter(',');
   fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
-      .SplitAtCommas();
+      ->delimiter(',');
   const OptionGroup output(command, "Output");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
-  WhenCalled(command, [options, &console] { RunPlan(*options, console); });
+  command.callback([options, &console] { RunPlan(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -13,6 +13,8 @@
 namespace mindahl::cli {
 namespace {
 
+bool IsFlag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
 report::InputFile DigestOf(const std::string& file) {
   return {.name = file, .sha256 = io::Sha256OfFile(file)};
 }
@@ -26,11 +28,11 @@ report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
   for (const std::string& file : console.inputs) {
     if (!file.empty()) provenance.inputs.push_back(DigestOf(file));
   }
-  for (const OptionState& option : OptionsOf(command)) {
-    if (!option.is_given) continue;
+  for (const CLI::Option* option : OptionsOf(command)) {
+    if (option->count() == 0) continue;
     provenance.options.emplace_back(
-        "--" + option.name,
-        option.is_flag ? "on" : fmt::format("{}", fmt::join(option.values, ", ")));
+        "--" + NameOf(*option),
+        IsFlag(*option) ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
   }
   return provenance;
 }
@@ -68,14 +70,14 @@ report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& cons
     return std::ranges::find(kOfBatch, option.first) != kOfBatch.end();
   });
   provenance.command = "mindahl fit " + ShellWord(file);
-  for (const OptionState& option : OptionsOf(batch)) {
-    const std::string name = "--" + option.name;
-    if (!option.is_given || std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
-    if (option.is_flag) {
+  for (const CLI::Option* option : OptionsOf(batch)) {
+    const std::string name = "--" + NameOf(*option);
+    if (option->count() == 0 || std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
+    if (IsFlag(*option)) {
       provenance.command += " " + name;
       continue;
     }
-    for (const std::string& value : option.values) {
+    for (const std::string& value : option->results()) {
       provenance.command += " " + name + " " + ShellWord(value);
     }
   }

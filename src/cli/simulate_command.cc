@@ -8,7 +8,6 @@
 
 #include "cli/app.h"
 #include "cli/contact_options.h"
-#include "cli/drive_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "core/text.h"
@@ -20,38 +19,53 @@ namespace mindahl::cli {
 namespace {
 
 using methods::Method;
-using request::AddedForces;
 
 struct SimulateOptions {
   request::SimulationRequest simulation;
   std::string output;
 };
 
-void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
-  const OptionGroup group(command, "Forces in addition to the contact's");
-  const auto add = [&](const char* name, auto& value, const char* help, const char* unit) {
-    group.Add(name, value, help, unit);
-  };
-  add("--viscous", forces.viscous, "C of a viscous force C·dδ/dt [N s/m]", "C");
-  add("--speed-exponent", forces.speed_exponent, "exponent of C·sgn(v)|v|^M instead, v in m/s [-]",
-      "M");
-  add("--inertia", forces.inertia, "mass of a force M·d²δ/dt² [kg]", "M");
-  add("--slip-slope", forces.slip_slope,
-      "m1 of forces times 1 + m1·x + m2·x², x the position from −1\nto 1 [-]", "M1");
-  add("--slip-curvature", forces.slip_curvature, "m2, likewise [-]", "M2");
-  add("--slip-trend", forces.slip_trend,
-      "K of forces times 1 + K·τ, τ the time from −1 at the record's\nbeginning to 1 at its end "
-      "[-]",
-      "K");
-  add("--plateau-slope", forces.plateau_slope, "slope of a force slope·δ [N/m]", "K");
-  add("--plateau-curvature", forces.plateau_curvature, "curvature of a force curvature·δ² [N/m²]",
-      "K");
-  add("--ripple", forces.ripple, "period of a force over the position [m]", "PERIOD");
-  add("--ripple-amplitude", forces.ripple_amplitude, "amplitude of that force [N]", "A");
-  add("--ripple-phase-up", forces.ripple_phase_up, "phase where the displacement grows [rad]",
-      "PHI");
-  add("--ripple-phase-down", forces.ripple_phase_down, "phase where the displacement falls [rad]",
-      "PHI");
+void AddDriveOptions(CLI::App& command, request::DriveRequest& request) {
+  const OptionGroup group(command, "Excitation");
+  group.AddShown("--waveform", request.waveform, "imposed displacement")
+      ->check(OneOf(models::WaveformNames()));
+  group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
+  group.Add("--amplitude", request.amplitude, "amplitude [m]", "M");
+  group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
+  group
+      .AddShown("--samples-per-cycle", request.excitation.samples_per_cycle,
+                "samples in a cycle; multiples of 4 put samples on the extremes")
+      ->check(WholeNumber(4, 1'000'000'000));
+  group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
+  group.AddShown("--growth", request.excitation.growth,
+                 "growing sine: last amplitude over the first [-]");
+  CLI::Option* const path =
+      group.Add("--path", request.path,
+                "CSV file with a displacement, any sequence; one output row for\n"
+                "each, time counting rows",
+                "FILE");
+  group
+      .Add("--displacement", request.displacement,
+           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
+           "none; default by its name, else the first",
+           "COL")
+      ->needs(path);
+  group
+      .Add("--normal-load-column", request.load_column,
+           "column of the file with the normal load N [N], which then varies:\nTc = mu N", "COL")
+      ->needs(path);
+  CLI::Option* const force_path =
+      group.Add("--force-path", request.force_path,
+                "CSV file with a force, any sequence within the slip force: the\n"
+                "displacement follows from it",
+                "FILE");
+  group.Add("--force", request.force, "its column, likewise", "COL")->needs(force_path);
+  force_path->excludes(path);
+  for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
+                           "--samples-per-cycle", "--frequency", "--growth"}) {
+    path->excludes(command.get_option(name));
+    force_path->excludes(command.get_option(name));
+  }
 }
 
 std::string MethodHelp() {
@@ -84,21 +98,16 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       "that is not zero is the first loading step. Writes time [s],\n"
       "displacement [m], force [N].",
       {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
-       "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
-       "path.csv --path-unit um"});
+       "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
+       "    --path path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--model", options->simulation.model, "friction model")
-      .OneOf(request::SimulatedModels());
+      ->check(OneOf(request::SimulatedModels()));
   AddLawOptions(command, options->simulation.law);
   plain.AddShown(
       "--asymmetry", options->simulation.asymmetry,
       "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]", "A");
-  plain.AddShown("--backlash", options->simulation.backlash,
-                 "width of a gap before the contact that is crossed at zero force [m]", "G");
-  AddAddedForceOptions(command, options->simulation.forces);
   AddDriveOptions(command, options->simulation.drive);
-  AddLoadColumnOptions(command, options->simulation.drive);
-  AddForcePathOptions(command, options->simulation.drive);
 
   const OptionGroup noise(command, "Noise");
   noise.Add("--noise-force", options->simulation.force_noise, "standard deviation [N]", "N");
@@ -107,19 +116,19 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   noise
       .AddShown("--seed", options->simulation.drive.seed,
                 "seed of the noise and of the random waveform")
-      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
   const OptionGroup method(command, "Method");
   method.AddShown("--method", options->simulation.method, MethodHelp())
-      .OneOf(NamesOf(methods::Methods(), &Method::name));
+      ->check(OneOf(NamesOf(methods::Methods(), &Method::name)));
   method
       .Add("--steps", options->simulation.steps,
            "substeps a sample, elements of iwan, intervals of table", "N")
-      .WholeNumber(1, 1'000'000'000);
+      ->check(WholeNumber(1, 1'000'000'000));
   method.Add("--tolerance", options->simulation.tolerance,
              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
   plain.Add("-o,--output", options->output, "CSV file; default standard output", "FILE");
-  WhenCalled(command, [options, &console] { RunSimulate(*options, console); });
+  command.callback([options, &console] { RunSimulate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <string>
 #include <string_view>
@@ -21,7 +19,7 @@ namespace {
 struct TradeoffOptions {
   request::TradeoffRequest study;
   std::string path;
-  std::string path_unit;
+  std::string displacement;
   std::string csv;
   std::string plot;
   std::string json;
@@ -36,16 +34,13 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   request::TradeoffRequest asked = options.study;
   if (!options.path.empty()) {
     asked.path_name = options.path;
-    asked.displacement =
-        io::ImposedColumn(io::ReadCsvTable(options.path), io::Imposed::kDisplacement,
-                          options.path_unit.empty() ? "" : fmt::format("[{}]", options.path_unit));
+    asked.displacement = io::ImposedColumn(io::ReadCsvTable(options.path),
+                                           io::Imposed::kDisplacement, options.displacement);
   }
   asked.tolerance = ParseTolerance(options.tolerance);
   const Messages messages{console.err, "tradeoff"};
-  const request::Tradeoff study = [&] {
-    const Progress progress(console.err, "timing every method");
-    return request::MakeTradeoff(asked, [&](std::string_view warning) { messages.Warn(warning); });
-  }();
+  const request::Tradeoff study =
+      request::MakeTradeoff(asked, [&](std::string_view warning) { messages.Warn(warning); });
 
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(study), options.plot);
@@ -57,28 +52,32 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
 
 void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
-  CLI::App& command = AddCommand(
-      app, "tradeoff",
-      "Compares error and cost of every model and method along an excitation,\n"
-      "and names the cheapest whose force is within a tolerance of the exact\n"
-      "one, and whose dissipated energy is too. The default contact is\n"
-      "that of Peyret et al. (2017).",
-      {"mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --tolerance 1%",
-       "mindahl tradeoff --excitation micro --csv points.csv"});
+  CLI::App& command =
+      AddCommand(app, "tradeoff",
+                 "Compares error and cost of every model and method along an excitation,\n"
+                 "and names the cheapest whose force is within a tolerance of the exact\n"
+                 "one, and whose dissipated energy is too. The default contact is\n"
+                 "that of Peyret et al. (2017).",
+                 {"mindahl tradeoff --path path.csv --displacement \"[um]\" --sigma 4e7 "
+                  "--slip-force 40 --tolerance 1%",
+                  "mindahl tradeoff --excitation micro --csv points.csv"});
   AddLawOptions(command, options->study.law);
   const OptionGroup group(command, "Excitation");
-  const Option scenes =
+  CLI::Option* const scenes =
       group
           .Add("--excitation", options->study.excitations,
                "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                "default all")
-          .OneOf(request::ExcitationNames());
-  const Option path = group
-                          .Add("--path", options->path,
-                               "CSV file whose first column is the displacement [m]", "FILE")
-                          .Excludes(scenes);
-  group.Add("--path-unit", options->path_unit, "unit of that column, default the header's", "UNIT")
-      .Needs(path);
+          ->check(OneOf(request::ExcitationNames()));
+  CLI::Option* const path =
+      group.Add("--path", options->path, "CSV file with a displacement, any sequence", "FILE")
+          ->excludes(scenes);
+  group
+      .Add("--displacement", options->displacement,
+           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
+           "none; default by its name, else the first",
+           "COL")
+      ->needs(path);
   OptionGroup(command, kPlainGroup)
       .AddShown("--tolerance", options->tolerance,
                 "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E");
@@ -86,7 +85,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunTradeoff(*options, console); });
+  command.callback([options, &console] { RunTradeoff(*options, console); });
 }
 
 }  // namespace mindahl::cli

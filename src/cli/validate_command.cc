@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -21,15 +19,9 @@ struct ValidateOptions {
 
 void RunValidate(const ValidateOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
-  request::Validation validation{.options = options.validation, .report = {}};
+  const request::Validation validation{
+      .options = options.validation, .report = identification::ValidateMapping(options.validation)};
   const identification::ValidationReport& report = validation.report;
-  {
-    Progress progress(console.err,
-                      fmt::format("fitting the first of {} contacts", validation.options.cases));
-    validation.report = identification::ValidateMapping(validation.options, [&](std::size_t done) {
-      progress.Say(fmt::format("{} of {} contacts", done, validation.options.cases));
-    });
-  }
   WriteAnswer(options.json_path, console, validation);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';
@@ -51,11 +43,11 @@ void AddValidateCommand(CLI::App& app, Console& console) {
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--cases", options->validation.cases, "contacts to draw")
-      .WholeNumber(1, kMostCases);
+      ->check(WholeNumber(1, kMostCases));
   plain.AddShown("--seed", options->validation.seed, "seed of the random numbers")
-      .WholeNumber(0, std::numeric_limits<std::uint64_t>::max());
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
   plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
-  WhenCalled(command, [options, &console] { RunValidate(*options, console); });
+  command.callback([options, &console] { RunValidate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -324,8 +324,7 @@ double NoiseFreeTolerance(double lambda) {
   return lambda >= 0.5 ? 1e-8 : 1e-6;
 }
 
-ValidationReport ValidateMapping(const ValidationOptions& options,
-                                 const std::function<void(std::size_t)>& progress) {
+ValidationReport ValidateMapping(const ValidationOptions& options) {
   RequireValidation(options);
   std::vector<RowBuilder> rows;
   std::vector<RowBuilder> dahl_rows;
@@ -362,7 +361,6 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
         }
       }
     }
-    if (progress) progress(index + 1);
   }
   for (RowBuilder& row : rows) report.rows.push_back(row.Finish());
   for (RowBuilder& row : dahl_rows) report.dahl_rows.push_back(row.Finish());

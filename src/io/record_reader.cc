@@ -269,8 +269,12 @@ std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
   const std::vector<bool> taken(names.size());
   Expression columns = names.Read(column, RulesOf(role));
   if (columns.terms.empty()) {
-    const bool first_is_time = FindColumnOf(names, Role::kTime, taken) == std::size_t{0};
-    const auto found = first_is_time ? FindColumnOf(names, role, taken) : std::nullopt;
+    const auto is_first = [&](Role other) {
+      return other != role && FindColumnOf(names, other, taken) == std::size_t{0};
+    };
+    const bool first_is_another =
+        is_first(Role::kTime) || is_first(Role::kForce) || is_first(Role::kDisplacement);
+    const auto found = first_is_another ? FindColumnOf(names, role, taken) : std::nullopt;
     columns.terms = {{found.value_or(0), 1.0}};
   }
   const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension

@@ -42,6 +42,12 @@ bool IsInadequate(const Report& report) {
   return IsJudged(report) && report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
 }
 
+/// True if what the law misses is the same at one place of every stroke.
+bool IsAlikeInStrokes(const FitResult& fit) {
+  constexpr double kMostOfIt = 0.5;
+  return fit.WidestRecord().structure.repeatable_share > kMostOfIt;
+}
+
 bool IsOfLaw(std::string_view parameter) {
   return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
 }
@@ -62,6 +68,7 @@ class Writer {
   std::vector<Line> Answer() {
     if (!report_.check.empty()) Add("check", report_.check, Judgement::kBad);
     AddColumns();
+    AddReading();
     AddFriction();
     AddStiffness();
     AddShape();
@@ -134,6 +141,18 @@ class Writer {
     Add(columns.empty() ? "record" : "columns",
         columns.empty() ? NameOf(report_.files)
                         : fmt::format("{}: {}", NameOf(report_.files), fmt::join(columns, ", ")));
+  }
+
+  /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
+  /// their units stand in the line above.
+  void AddReading() {
+    const std::vector<std::string>& notes = report_.notes;
+    if (notes.size() == 1) return Add("read as", notes.front());
+    const bool has_units = std::ranges::any_of(
+        notes, [](const std::string& note) { return note.find("no unit") != std::string::npos; });
+    if (notes.empty()) return;
+    Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
+                               has_units ? ", units among them" : ""));
   }
 
   void AddFriction() {
@@ -296,8 +315,10 @@ class Writer {
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
-      const bool is_moot = IsInadequate(report_) &&
-                           (!finding.parameters.empty() || finding.code == "slow_residuals");
+      // What is alike in every stroke does not drift.
+      const bool is_moot =
+          (IsInadequate(report_) && !finding.parameters.empty()) ||
+          (finding.code == "slow_residuals" && (IsInadequate(report_) || IsAlikeInStrokes(fit_)));
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
       std::string text = Sentence(finding, fit_, report_.units);
       if (!finding.parameters.empty()) {
@@ -358,8 +379,7 @@ std::string MisfitStatement(const Report& report) {
     text += percent < kWhole ? fmt::format(", {:.2g} % of the half gap", percent)
                              : ", more than the half gap";
   }
-  constexpr double kMostOfIt = 0.5;
-  if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
+  if (IsAlikeInStrokes(fit)) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
     const bool is_included =
         std::ranges::any_of(fit.parameters, &ParameterEstimate::includes_discrepancy);
@@ -370,8 +390,7 @@ std::string MisfitStatement(const Report& report) {
     return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue;
   });
   return text + ": the law does not describe the record" +
-         (is_any_known ? "; no more is known of it than the lines above"
-                       : "; use what is measured");
+         (is_any_known ? "; what stands above is known" : "; use what is measured");
 }
 
 std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
@@ -379,6 +398,9 @@ std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answ
 std::vector<Line> DetailLines(const Report& report) {
   std::vector<Line> lines;
   const FitResult& fit = report.fit;
+  if (report.notes.size() > 1) {
+    for (const std::string& note : report.notes) lines.push_back({"read as", note});
+  }
   lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
                                         fit.has_mixed_states()
                                             ? std::string("initial states differ")

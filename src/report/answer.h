@@ -15,11 +15,11 @@ struct Line {
   Judgement judgement = Judgement::kNone;  ///< kGood of what may be quoted
 };
 
-/// Returns the lines in their order: what to check, columns, friction, stiffness, shape, load,
-/// terms, law, misfit, measured, left out, next, and what else a person should act on. A number
-/// stands in one line only, with its interval and no other uncertainty; a parameter that is not
-/// determined has a reason in place of a number; of an inadequate model only what is still known
-/// has a line.
+/// Returns the lines in their order: what to check, columns, assumptions of the reader, friction,
+/// stiffness, shape, load, terms, law, misfit, measured, left out, next, and what else a person
+/// should act on. A number stands in one line only, with its interval and no other uncertainty; a
+/// parameter that is not determined has a reason in place of a number; of an inadequate model only
+/// what is still known has a line.
 /// @param report  of a fit that did not fail
 std::vector<Line> AnswerLines(const Report& report);
 

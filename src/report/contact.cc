@@ -171,68 +171,45 @@ ContactQuantity Made(std::string_view name, std::string_view symbol, std::string
           .why = {}};
 }
 
+using Kind = contact::ContactQuantity;
+using contact::IdentifiedContact;
+using contact::ShapeUnderLoad;
+
 struct QuantityRow {
   std::string_view name;
   std::string_view symbol;
   std::string_view unit;
   std::string_view parameter;
   Make make;
-  std::optional<contact::ContactQuantity> inputs;  ///< which it needs; empty: those of `why`
+  std::optional<Kind> inputs = {};  ///< which it needs; empty: those of `why`
+  bool is_of_sphere = true;         ///< follows only where Hertz's law of the load is not denied
   const char* why = "";
-  bool is_of_sphere = false;  ///< follows only where Hertz's law of the load is not denied
 };
-
-using Kind = contact::ContactQuantity;
-using contact::IdentifiedContact;
-using contact::ShapeUnderLoad;
 
 constexpr std::array kQuantities = {
     QuantityRow{"friction_coefficient", "μ", "-", "slip_force",
-                OfContact<&IdentifiedContact::friction_coefficient>, Kind::kFrictionCoefficient},
+                OfContact<&IdentifiedContact::friction_coefficient>, Kind::kFrictionCoefficient,
+                false},
     QuantityRow{"contact_radius", "a", "m", "sigma", OfContact<&IdentifiedContact::contact_radius>,
-                Kind::kContactRadius},
+                Kind::kContactRadius, false},
     QuantityRow{"compliance", "G*", "1/Pa", "sigma",
-                OfContact<&IdentifiedContact::tangential_compliance>, Kind::kTangentialCompliance},
-    QuantityRow{"sigma_over_hertz_mindlin",
-                "σ/(8a/G*)",
-                "-",
-                "sigma",
-                OverMindlin,
-                {},
-                "needs materials, radii and load, or contact radius and compliance"},
+                OfContact<&IdentifiedContact::tangential_compliance>, Kind::kTangentialCompliance,
+                false},
+    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", OverMindlin, std::nullopt,
+                false, "needs materials, radii and load, or contact radius and compliance"},
     QuantityRow{"equivalent_radius", "ρ", "m", "sigma",
-                OfContact<&IdentifiedContact::equivalent_radius>, Kind::kEquivalentRadius, "",
-                true},
+                OfContact<&IdentifiedContact::equivalent_radius>, Kind::kEquivalentRadius},
     QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma",
-                OfContact<&IdentifiedContact::maximum_pressure>, Kind::kMaximumPressure, "", true},
+                OfContact<&IdentifiedContact::maximum_pressure>, Kind::kMaximumPressure},
 };
 
 /// Lists what several loads make known of the materials of a smooth sphere of known radii.
 constexpr std::array kOfSeries = {
-    QuantityRow{"compliance",
-                "G*",
-                "1/Pa",
-                "sigma",
-                OfSphere<&ShapeUnderLoad::tangential_compliance>,
-                {},
-                "",
-                true},
-    QuantityRow{"effective_modulus",
-                "E*",
-                "Pa",
-                "sigma",
-                OfSphere<&ShapeUnderLoad::effective_modulus>,
-                {},
-                "",
-                true},
-    QuantityRow{"youngs_modulus",
-                "E",
-                "Pa",
-                "sigma",
-                OfSphere<&ShapeUnderLoad::youngs_modulus>,
-                {},
-                "",
-                true},
+    QuantityRow{"compliance", "G*", "1/Pa", "sigma",
+                OfSphere<&ShapeUnderLoad::tangential_compliance>},
+    QuantityRow{"effective_modulus", "E*", "Pa", "sigma",
+                OfSphere<&ShapeUnderLoad::effective_modulus>},
+    QuantityRow{"youngs_modulus", "E", "Pa", "sigma", OfSphere<&ShapeUnderLoad::youngs_modulus>},
 };
 
 constexpr std::string_view kWhyNoSphere =
@@ -414,22 +391,6 @@ bool DeniesHertz(const FitResult& fit) {
   }
   const LoadHypothesis sphere = Test("", contact::kMindlinShapeExponent, fit);
   return sphere.p_value && *sphere.p_value < kSignificance;
-}
-
-std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
-                                     const std::optional<identification::Interval>& window) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const loop::Record& record : records) {
-    if (record.normal_load.empty()) return std::nullopt;
-    for (const double load : record.normal_load) {
-      if (window && (load < window->lower || load > window->upper)) continue;
-      sum += load;
-      ++count;
-    }
-  }
-  if (count == 0) return std::nullopt;
-  return sum / count;
 }
 
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,

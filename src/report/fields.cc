@@ -23,10 +23,6 @@ using identification::RecordFit;
 
 namespace {
 
-Json NumberOrNull(const std::optional<double>& number) {
-  return number && std::isfinite(*number) ? Json(*number) : Json();
-}
-
 template <typename Value>
 Json JsonOf(const Value& value) {
   if constexpr (std::is_enum_v<Value>) {
@@ -459,9 +455,7 @@ Json JsonDocument(const Report& report) {
   return document;
 }
 
-std::string ToJson(const Report& report) {
-  return JsonDocument(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string ToJson(const Report& report) { return Dump(JsonDocument(report)); }
 
 std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
                                                              std::string_view prefix) {

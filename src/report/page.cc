@@ -68,7 +68,6 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                     {"next", NextData(report, provenance)},
                     {"loop", FigureData(panels.loop, "loop")},
                     {"residual", FigureData(panels.residual, "residual")},
-                    {"likelihood", FigureData(DrawLikelihood(report), "likelihood")},
                     {"details", Rows(DetailLines(report))},
                     {"measured", MeasuredRows(report)}};
   return RenderPage("fit", data);

@@ -141,38 +141,6 @@ LoopPanels DrawLoop(const Report& report) {
   return panels;
 }
 
-std::optional<PlotPanel> DrawLikelihood(const Report& report) {
-  const auto& profile = report.fit.slip_force_profile;
-  if (!profile || profile->points.size() < 2 || !IsJudged(report) ||
-      report.fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
-    return std::nullopt;
-  }
-  constexpr double kHighest = 4.0;  // of what is drawn, over the critical value
-  const double ceiling = kHighest * profile->critical;
-  const ScaledUnit unit = UnitFor(report.units.force, report.fit.law.slip_force);
-  PlotSeries curve{.label = "refitted with Tc fixed at each point",
-                   .style = PlotStyle::kLineAndPoints,
-                   .shade = kMeasuredShade};
-  const auto& points = profile->points;
-  const auto is_low = [&](std::size_t k) { return points[k].statistic <= ceiling; };
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (!is_low(k) && !(k > 0 && is_low(k - 1)) && !(k + 1 < points.size() && is_low(k + 1))) {
-      continue;
-    }
-    curve.x.push_back(points[k].law.slip_force / unit.factor);
-    curve.y.push_back(std::min(points[k].statistic, ceiling));
-  }
-  if (curve.x.size() < 2) return std::nullopt;
-  PlotSeries critical{"outside the interval above this line",
-                      {curve.x.front(), curve.x.back()},
-                      {profile->critical, profile->critical},
-                      PlotStyle::kLine};
-  return PlotPanel{.x_label = fmt::format("slip force Tc [{}]", unit.name),
-                   .y_label = "F against the best fit",
-                   .series = {std::move(curve), std::move(critical)},
-                   .log_x = true};
-}
-
 namespace {
 
 struct Bar {

@@ -18,10 +18,6 @@ struct LoopPanels {
 
 LoopPanels DrawLoop(const Report& report);
 
-/// Returns the likelihood along the slip force. Empty where the fit had no need to look at it, and
-/// under a model that is inadequate.
-std::optional<io::PlotPanel> DrawLikelihood(const Report& report);
-
 /// Returns friction (the slip force without a load), σ and α with their intervals as bars, as
 /// elements of an inline SVG of 560 px; α's with 1/3 marked. A bar is green only of what may be
 /// quoted. "" where none has a value.

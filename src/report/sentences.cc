@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "mindahl/report/units.h"
 #include "report/statements.h"
@@ -18,191 +17,140 @@ using identification::FitResult;
 
 namespace {
 
-/// Returns a number of the finding, NaN without it.
-double NumberOf(const Finding& finding, std::string_view name) {
-  return finding.Number(name).value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
-/// True if the record itself shows a loop that slides: then no larger amplitude is asked for.
-bool SeesSlip(const FitResult& fit) {
-  return !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
-}
-
-std::string TooWide(const Finding& finding, const FitResult& fit, std::string_view unit) {
-  return fmt::format("{:.0f} % interval {} … {} is too wide; more samples or less noise",
-                     100 * fit.confidence, Quantity(NumberOf(finding, "lower"), unit, 3),
-                     Quantity(NumberOf(finding, "upper"), unit, 3));
-}
-
-constexpr const char* kRaiseTheAmplitude =
-    "raise the amplitude until the force levels off (mindahl plan says how far)";
-
-std::string ReversalsUncertain(const Finding& finding, const FitResult&, const Units& units) {
-  return fmt::format(
-      "{:.0f} reversals or {:.0f}, if excursions up to {} are noise: look at the "
-      "plot, and give --reversal-gate",
-      NumberOf(finding, "count"), NumberOf(finding, "other_count"),
-      Quantity(NumberOf(finding, "other_gate"), units.excitation, 3));
-}
-
-std::string SlipForceBoundedBelow(const Finding&, const FitResult& fit, const Units&) {
-  return SeesSlip(fit) ? "the force keeps changing while the contact slides"
-                       : fmt::format("the loop does not come near slip: {}", kRaiseTheAmplitude);
-}
-
-std::string SlipForceExtrapolated(const Finding& finding, const FitResult& fit, const Units&) {
-  return fmt::format("an asymptote, of which the force reaches {:.0f} %{}",
-                     100 * NumberOf(finding, "share"),
-                     SeesSlip(fit) ? "" : fmt::format(": {}", kRaiseTheAmplitude));
-}
-
-std::string AlphaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units&) {
-  if (finding.kind == "wide") return TooWide(finding, fit, "-");
-  return "only its ratio to the slip force is determined; fix one of them";
-}
-
-std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult& fit,
-                                     const Units& units) {
-  return TooWide(finding, fit, units.force);
-}
-
-std::string SigmaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units& units) {
-  return TooWide(finding, fit, units.stiffness);
-}
-
-std::string UndeterminedCombination(const Finding& finding, const FitResult& fit, const Units&) {
-  return fmt::format(
-      "only a combination of {} is determined; fix one, or {}", fmt::join(finding.parameters, ", "),
-      SeesSlip(fit) ? "sample more densely after the reversals" : "record a larger amplitude");
-}
-
-std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& units) {
-  return fmt::format(
-      "a rig of {} with Mindlin's 1/3 fits as well as a rigid one: measure the rig, "
-      "and give --rig-stiffness",
-      Quantity(NumberOf(finding, "rig_stiffness"), units.stiffness, 3));
-}
-
-std::string SearchLimit(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format("the search stopped at its limit; give --bound {}=LO:HI",
-                     finding.parameters.empty() ? "NAME" : finding.parameters.front());
-}
-
-std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format(
-      "all samples lie in {:.0f} places of the loop: sample out of step with the "
-      "motion, or more often",
-      NumberOf(finding, "places"));
-}
-
-std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format(
-      "no loop is seen: the fit explains {:.2g} % of the force's variance; are these "
-      "the right columns?",
-      std::max(0.0, 100 * NumberOf(finding, "r_squared")));
-}
-
-std::string UnknownPast(const Finding&, const FitResult&, const Units&) {
-  return "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
-         "--initial-state virgin";
-}
-
-std::string OtherLawFitsBetter(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format("{} fits better: --model {}",
-                     finding.kind == "dahl" ? "Dahl's own law" : "Masing's law", finding.kind);
-}
-
-std::string EnergyContradiction(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format("the cycles dissipate {} each, the fitted law {}: look at the plot",
-                     Quantity(NumberOf(finding, "measured"), "J", 3),
-                     Quantity(NumberOf(finding, "model"), "J", 3));
-}
-
-std::string LoadNotFollowed(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format(
-      "the normal load varies by ±{:.2g} %, which this fit takes as constant: choose "
-      "samples of one load",
-      100 * NumberOf(finding, "variation"));
-}
-
-std::string LoadFollowed(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format("the normal load varies by ±{:.2g} %, which the law follows",
-                     100 * NumberOf(finding, "variation"));
-}
-
-std::string PriorContradicted(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format("the prior lies {:.2g} standard deviations from what the record says",
-                     NumberOf(finding, "distance"));
-}
-
-std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
-  return fit.solver.message;
-}
-
+/// Says a finding. Of a finding that has a kind the row "code.kind" goes before that of its code.
+/// Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
 struct SentenceRow {
   std::string_view code;
-  const char* text;  ///< null where it has numbers
-  std::string (*sentence)(const Finding&, const FitResult&, const Units&) = nullptr;
+  std::string_view text;
+  std::string_view if_it_slides = {};  ///< instead, where the record shows a loop that slides
 };
 
 constexpr auto kSentences = std::to_array<SentenceRow>({
     // about the record
-    {"reversals_uncertain", nullptr, ReversalsUncertain},
+    {"reversals_uncertain",
+     "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
+     "--reversal-gate"},
     {"glitches_left_out", "measurement faults are left out"},
     {"path_too_long",
      "the path is far longer than the strokes: noise is taken for motion; give --reversal-gate"},
     {"no_closed_cycle", "no cycle is closed: record one and a half cycles or more"},
-    {"load_followed", nullptr, LoadFollowed},
-    {"load_not_followed", nullptr, LoadNotFollowed},
+    {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},
+    {"load_not_followed",
+     "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
+     "one load"},
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
-    {"undetermined_combination", nullptr, UndeterminedCombination},
-    {"sigma_not_identifiable", nullptr, SigmaNotIdentifiable},
-    {"alpha_not_identifiable", nullptr, AlphaNotIdentifiable},
-    {"slip_force_not_identifiable", nullptr, SlipForceNotIdentifiable},
+    {"undetermined_combination",
+     "only a combination of {parameters} is determined; fix one, or record a larger amplitude",
+     "only a combination of {parameters} is determined; fix one, or sample more densely after the "
+     "reversals"},
+    {"sigma_not_identifiable",
+     "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide{remedy}"},
+    {"alpha_not_identifiable.wide",
+     "{confidence} interval {lower:-} … {upper:-} is too wide{remedy}"},
+    {"alpha_not_identifiable", "only its ratio to the slip force is determined; fix one of them"},
+    {"slip_force_not_identifiable",
+     "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
     {"asymmetry_not_identifiable", "the loop stays below slip"},
     {"sigma_bounded_below", "a rigid contact fits as well: sample more densely after reversals"},
-    {"slip_force_bounded_below", nullptr, SlipForceBoundedBelow},
-    {"slip_force_extrapolated", nullptr, SlipForceExtrapolated},
+    {"slip_force_bounded_below",
+     "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
+     "plan says how far)",
+     "the force keeps changing while the contact slides"},
+    {"slip_force_extrapolated",
+     "an asymptote, of which the force reaches {share%}: raise the amplitude until the force "
+     "levels "
+     "off (mindahl plan says how far)",
+     "an asymptote, of which the force reaches {share%}"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
-    {"search_limit", nullptr, SearchLimit},
-    {"few_places", nullptr, FewPlaces},
-    {"unknown_past", nullptr, UnknownPast},
-    {"shape_or_rig", nullptr, ShapeOrRig},
+    {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
+    {"few_places",
+     "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
+     "often"},
+    {"unknown_past",
+     "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
+     "--initial-state virgin"},
+    {"shape_or_rig",
+     "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
+     "the rig, and give --rig-stiffness"},
     {"rig_not_tried", "a compliant rig, which cannot be fitted here, would look the same"},
-    {"prior_contradicted", nullptr, PriorContradicted},
+    {"prior_contradicted",
+     "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses
     {"law_undecided", "the other law fits as well"},
-    {"other_law_fits_better", nullptr, OtherLawFitsBetter},
+    {"other_law_fits_better.dahl", "Dahl's own law fits better: --model dahl"},
+    {"other_law_fits_better", "Masing's law fits better: --model mindlin-dahl"},
     {"systematic_residual", "the misfit is alike in every stroke"},
     {"slow_residuals", "the misfit drifts slowly: fit parts of it, --select cycles=LO:HI"},
-    {"energy_contradiction", nullptr, EnergyContradiction},
-    {"loop_not_seen", nullptr, LoopNotSeen},
+    {"energy_contradiction",
+     "the cycles dissipate {measured:J} each, the fitted law {model:J}: look at the plot"},
+    {"loop_not_seen",
+     "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
+     "columns?"},
     {"no_model_fits", "the law does not have the shape of the record"},
     {"model_inadequate", "the law does not describe the record"},
     // about the search
     {"weights_not_settled", "the weights of the samples did not settle; try another --loss"},
-    {"fit_failed", nullptr, FitFailed},
+    {"fit_failed", "{message}"},
 });
+
+const SentenceRow* FindRow(std::string_view code) {
+  const auto row = std::ranges::find(kSentences, code, &SentenceRow::code);
+  return row == kSentences.end() ? nullptr : &*row;
+}
+
+/// Returns the unit of a placeholder: one of the report's, or itself.
+std::string_view UnitOf(std::string_view name, const Units& units) {
+  if (name == "force") return units.force;
+  if (name == "stiffness") return units.stiffness;
+  return name == "excitation" ? units.excitation : name;
+}
+
+std::string ValueOf(std::string_view place, const Finding& finding, const FitResult& fit,
+                    const Units& units) {
+  if (place == "parameters") return fmt::format("{}", fmt::join(finding.parameters, ", "));
+  if (place == "parameter") return finding.parameters.empty() ? "NAME" : finding.parameters.front();
+  if (place == "confidence") return fmt::format("{:.0f} %", 100 * fit.confidence);
+  if (place == "message") return fit.solver.message;
+  if (place == "remedy") {  // none of what the model misses
+    const bool is_noise = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
+    return is_noise ? "; more samples or less noise" : "";
+  }
+  const std::size_t colon = place.find(':');
+  const bool is_percent = place.ends_with('%');
+  const std::string_view name = place.substr(0, is_percent ? place.size() - 1 : colon);
+  const double number = finding.Number(name).value_or(std::numeric_limits<double>::quiet_NaN());
+  if (colon != std::string_view::npos) {
+    return Quantity(number, UnitOf(place.substr(colon + 1), units), 3);
+  }
+  if (is_percent) return fmt::format("{} %", Quantity(100 * std::max(number, 0.0), "-", 2));
+  return number == std::round(number) ? fmt::format("{:.0f}", number)
+                                      : fmt::format("{:.2g}", number);
+}
 
 }  // namespace
 
-bool HasSentence(std::string_view code) {
-  return std::ranges::find(kSentences, code, &SentenceRow::code) != kSentences.end();
-}
+bool HasSentence(std::string_view code) { return FindRow(code) != nullptr; }
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;
-  const auto row = std::ranges::find(kSentences, code, &SentenceRow::code);
+  const SentenceRow* row = FindRow(fmt::format("{}.{}", code, finding.kind));
+  if (row == nullptr) row = FindRow(code);
+  const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
+  std::string_view text = row == nullptr                         ? code
+                          : slides && !row->if_it_slides.empty() ? row->if_it_slides
+                                                                 : row->text;
   std::string sentence;
-  if (row == kSentences.end()) {
-    sentence = code;
-    std::ranges::replace(sentence, '_', ' ');
-  } else {
-    sentence = row->text != nullptr ? row->text : row->sentence(finding, fit, units);
+  if (const std::optional<double> record = finding.Number("record")) {
+    sentence = fmt::format("record {:.0f}: ", *record);
   }
-  const std::optional<double> record = finding.Number("record");
-  return record ? fmt::format("record {:.0f}: {}", *record, sentence) : sentence;
+  for (std::size_t open = text.find('{'); open != std::string_view::npos; open = text.find('{')) {
+    const std::size_t close = text.find('}', open);
+    sentence += text.substr(0, open);
+    sentence += ValueOf(text.substr(open + 1, close - open - 1), finding, fit, units);
+    text.remove_prefix(close + 1);
+  }
+  return sentence.append(text);
 }
 
 }  // namespace mindahl::report

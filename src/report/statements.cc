@@ -55,32 +55,26 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
   return Shown::kValue;
 }
 
-std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
+std::string ValueText(const ParameterEstimate& estimate) {
   constexpr int kDigits = 4;
-  const auto limit = [&](char sign, double end) {
-    return fmt::format("{} {} {}", symbol, sign, Quantity(end, estimate.unit, kDigits));
-  };
   switch (WhatIsShown(estimate)) {
     case Shown::kValue:
-      return fmt::format(
-          "{} {}", symbol,
-          QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95, estimate.unit));
+      return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
+                                  estimate.unit);
     case Shown::kHeld:
-      return fmt::format("{} {} (held)", symbol, Quantity(estimate.value, estimate.unit));
+      return fmt::format("{} (held)", Quantity(estimate.value, estimate.unit));
     case Shown::kLowerLimit:
-      return limit('>', *estimate.lower95);
+      return fmt::format("> {}", Quantity(*estimate.lower95, estimate.unit, kDigits));
     case Shown::kUpperLimit:
-      return limit('<', *estimate.upper95);
+      return fmt::format("< {}", Quantity(*estimate.upper95, estimate.unit, kDigits));
     case Shown::kNothing:
       break;
   }
-  return fmt::format("{} not determined", symbol);
+  return "not determined";
 }
 
-std::string Words(Identifiability identifiability) {
-  std::string words(Name(identifiability));
-  std::ranges::replace(words, '_', ' ');
-  return words;
+std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
+  return fmt::format("{} {}", symbol, ValueText(estimate));
 }
 
 std::string ChanceText(double p_value, int digits) {

@@ -36,12 +36,12 @@ enum class Shown {
 };
 Shown WhatIsShown(const identification::ParameterEstimate& estimate);
 
-/// Returns "σ 48.14 N/µm (48.07 … 48.22)", "α 0.333 (held)", "Tc > 12 N" or "σ not determined".
+/// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
+std::string ValueText(const identification::ParameterEstimate& estimate);
+
+/// Returns the same behind a symbol: "σ 48.14 N/µm (48.07 … 48.22)".
 std::string ParameterText(std::string_view symbol,
                           const identification::ParameterEstimate& estimate);
-
-/// Returns the name with blanks, for people.
-std::string Words(identification::Identifiability identifiability);
 
 /// Returns "p = 0.012" of two digits; no p-value is 0.
 std::string ChanceText(double p_value, int digits = 3);

@@ -202,54 +202,7 @@ constexpr std::array<std::string_view, 3> kParameters = {"sigma", "alpha", "slip
 /// Returns no number of what is not known.
 std::string ParameterText(const BatchEntry& entry, std::string_view name) {
   const auto found = std::ranges::find(entry.parameters, name, &ParameterEstimate::name);
-  if (found == entry.parameters.end()) return kNone;
-  const ParameterEstimate& estimate = *found;
-  switch (report::WhatIsShown(estimate)) {
-    case report::Shown::kValue:
-      return report::QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
-                                          estimate.unit);
-    case report::Shown::kHeld:
-      return report::Quantity(estimate.value, estimate.unit) + ", held";
-    case report::Shown::kLowerLimit:
-      if (estimate.lower95) return "> " + report::Quantity(*estimate.lower95, estimate.unit);
-      break;
-    case report::Shown::kUpperLimit:
-      if (estimate.upper95) return "< " + report::Quantity(*estimate.upper95, estimate.unit);
-      break;
-    case report::Shown::kNothing:
-      break;
-  }
-  return kNone;
-}
-
-/// Draws a parameter of every file that identifies it, with its interval, over the file's place.
-std::optional<io::PlotPanel> QuantityPanel(std::span<const BatchEntry> entries,
-                                           std::string_view name) {
-  io::PlotSeries series{.label = "interval", .style = io::PlotStyle::kIntervals, .shade = 0.3};
-  std::string_view unit;
-  double largest = 0.0;
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    const auto& parameters = entries[k].parameters;
-    const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-    if (found == parameters.end()) continue;
-    const ParameterEstimate& estimate = *found;
-    if (report::WhatIsShown(estimate) != report::Shown::kValue) continue;
-    if (!estimate.lower95 || !estimate.upper95) continue;
-    series.x.push_back(static_cast<double>(k + 1));
-    series.y.push_back(estimate.value);
-    series.lower.push_back(*estimate.lower95);
-    series.upper.push_back(*estimate.upper95);
-    unit = estimate.unit;
-    largest = std::max(largest, std::abs(estimate.value));
-  }
-  if (series.x.size() < 2) return std::nullopt;
-  const report::ScaledUnit prefixed = report::UnitFor(unit, largest);
-  for (auto* values : {&series.y, &series.lower, &series.upper}) {
-    for (double& value : *values) value /= prefixed.factor;
-  }
-  return io::PlotPanel{.x_label = "file",
-                       .y_label = report::WithUnit(name, prefixed.name),
-                       .series = {std::move(series)}};
+  return found == entry.parameters.end() ? kNone : report::ValueText(*found);
 }
 
 /// Returns an address within a page: whatever is no letter, digit, '-', '_' or '.' in hexadecimal.
@@ -273,12 +226,12 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
   entry.file = name;
   FitRequest own = request;
   own.files = {name};
-  const Tell note = [&](std::string_view text) { entry.notes.emplace_back(text); };
   std::string& fault = entry.fault;
   try {
     if (std::filesystem::is_regular_file(name)) entry.sha256 = io::Sha256OfFile(name).value_or("");
     Validate(own);
-    const report::Report report = FitRecords(own, read(own, note), note);
+    const report::Report report = FitRecords(own, read(own));
+    entry.notes = report.notes;
     entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
@@ -303,8 +256,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
 
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads,
-                                 const std::function<WritePage(std::size_t k)>& page_of,
-                                 const std::function<void(std::size_t)>& progress) {
+                                 const std::function<WritePage(std::size_t k)>& page_of) {
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
   const std::vector<std::string>& files = request.files;
   std::vector<BatchEntry> entries;
@@ -325,7 +277,6 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
     }
     entries.push_back(at_work.front().get());
     at_work.pop_front();
-    if (progress) progress(entries.size());
   }
   return entries;
 }
@@ -453,19 +404,10 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
                        {"conclusion", found.InWords()},
                        {"class", found.exceed_errors() ? "poor" : "good"}});
   }
-  Json quantities = Json::array();
-  for (const std::string_view parameter : kParameters) {
-    const std::string id = fmt::format("files-{}", parameter);
-    if (const auto panel = QuantityPanel(entries, parameter)) {
-      quantities.push_back(
-          {{"id", id}, {"quantity", parameter}, {"figure", report::FigureData(panel, id)}});
-    }
-  }
   return report::RenderPage("batch",
                             {{"title", fmt::format("{} of {} files fitted", done, entries.size())},
                              {"files", std::move(files)},
                              {"repeats", std::move(repeats)},
-                             {"quantities", std::move(quantities)},
                              {"provenance", report::ProvenanceData(provenance)}});
 }
 

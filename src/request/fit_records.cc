@@ -19,7 +19,6 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/test_part.h"
-#include "mindahl/report/contact.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
@@ -222,18 +221,13 @@ void RequireLoadsOfRecords(const FitRequest& request) {
 
 /// Uses the measured normal load where it was not given: its mean.
 void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::FitResult& fit,
-                           std::span<const Record> records, const std::optional<Interval>& window,
-                           const Tell& note) {
+                           const Record& first, std::vector<std::string>& notes) {
   if (known.normal_load) return;
   if (fit.normal_load) {
     known.normal_load = *fit.normal_load;
-    note(fmt::format("normal load: the mean of its column, {:.6g} N", *fit.normal_load));
-    return;
+  } else if (!first.normal_load.empty()) {
+    notes.emplace_back("the normal load is not positive in every file: it is not used");
   }
-  const std::optional<double> mean = report::MeanNormalLoad(records, window);
-  if (!mean) return;
-  note(fmt::format("the mean normal load is {:.4g} N, not positive in every file: it is not used",
-                   *mean));
 }
 
 /// A fit with the options that it has in the end.
@@ -315,13 +309,25 @@ bool KnowsSlipForce(const FitResult& fit) {
   return slip_force != nullptr && slip_force->is_known();
 }
 
+/// True if a term takes the slip force's place: it is known no more, or no longer the half gap of a
+/// loop that slides.
+bool LosesSlipForce(const FitResult& before, const FitResult& after) {
+  if (!KnowsSlipForce(before)) return false;
+  if (!KnowsSlipForce(after)) return true;
+  constexpr double kMost = 1.25;
+  const loop::LoopFacts& facts = after.WidestRecord().facts;
+  if (!loop::Slides(facts) || !facts.half_gap) return false;
+  const double share = after.law.slip_force / std::abs(*facts.half_gap);
+  return share > kMost || share < 1 / kMost;
+}
+
 /// Fits the record again with each of the few most likely terms, where the law alone is not
 /// adequate, and returns the one that misses least, if by a tenth less than the law. A term with
 /// which the slip force is lost is none.
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records,
                                              const FitResult& fit) {
-  constexpr std::size_t kMostTried = 2;
+  constexpr std::size_t kMostTried = 3;
   constexpr double kLeastGain = 0.1;
   constexpr double kGoodEnough = 0.5;  // of the misfit: no other term is tried
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
@@ -345,8 +351,9 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       tried.model = options.model;
       const FitResult found = FitLaw(with, tried, records, /*chooses_terms=*/false).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
-      if (KnowsSlipForce(fit) && !KnowsSlipForce(found)) continue;
+      if (LosesSlipForce(fit, found)) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
+      for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
     }
@@ -404,7 +411,7 @@ bool Established(const FitResult& fit, Strictness strictness) {
   return false;
 }
 
-std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note) {
+std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
   columns.covariates = CovariateColumns(request);
   std::vector<RecordFile> inputs;
@@ -414,13 +421,11 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
     const std::size_t rows = input.record.size();
     left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
     KeepTimeWindow(request, file, input);
-    for (const std::string& text : input.notes) note(text);
   }
   return inputs;
 }
 
-report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,
-                          const Tell& note) {
+report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
   if (inputs.empty()) throw InputError("a fit needs a record: give one");
   RequireSameSize("names", request.files.size(), "records", inputs.size());
   if (request.join && inputs.size() > 1) {
@@ -429,7 +434,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     joined.files = {fmt::format("{} … {}", request.files.front(), request.files.back())};
     std::vector<RecordFile> one;
     one.push_back(io::Joined(std::move(inputs), request.files));
-    return FitRecords(joined, std::move(one), note);
+    return FitRecords(joined, std::move(one));
   }
   RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
@@ -442,6 +447,10 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);
   RequireLoads(request, options.preparation.load_window, inputs);
+  std::vector<std::string> notes;
+  for (const RecordFile& input : inputs) {
+    notes.insert(notes.end(), input.notes.begin(), input.notes.end());
+  }
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
   std::vector<report::LeftOut> left_out = KeepTests(request, names, inputs, options);
@@ -460,7 +469,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::optional<report::NextStep> next;
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
-  UseMeasuredNormalLoad(known, asked.fit, records, options.preparation.load_window, note);
+  UseMeasuredNormalLoad(known, asked.fit, records.front(), notes);
   return report::MakeReport({.files = std::move(names),
                              .records = std::move(inputs),
                              .fit = std::move(asked.fit),
@@ -468,6 +477,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .known = known,
                              .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
+                             .notes = std::move(notes),
                              .selection = std::move(selection),
                              .terms = std::move(asked.terms),
                              .next = std::move(next)});

@@ -374,40 +374,24 @@ std::string ToJson(const Plan& plan) {
 }
 
 io::Plot ToPlot(const Plan& plan) {
-  constexpr int kPoints = 60;
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
-  const FitOptions fit_options = FitOptionsOf(plan.request);
-  for (const auto& [state, name] : kStates) {
-    if (plan.request.initial_state.value_or(state) != state) continue;
+  for (const PlannedLoops& column : plan.columns) {
     io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
                         .y_label = "standard error [-]",
                         .log_x = true,
                         .log_y = true,
-                        .title = std::string(name)};
-    Protocol protocol = ProtocolOf(plan.request, state);
-    std::vector<Shown> shown;
-    std::vector<io::PlotSeries> series;
-    for (int i = 0; i <= kPoints; ++i) {
-      const double share =
-          kLeastOfSlip * std::pow(kMost / kLeastOfSlip, static_cast<double>(i) / kPoints);
-      protocol.amplitude = share * plan.slip;
-      const ExpectedFit fit = identification::ExpectFit(plan.expected, protocol, fit_options);
-      if (i == 0) {
-        shown = ShownOf(fit);
-        for (const Shown& each : shown) {
-          series.push_back(
-              {.label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative")});
-        }
-      }
-      for (std::size_t k = 0; k < shown.size(); ++k) {
-        const std::optional<double> error = ErrorOf(fit, shown[k]);
+                        .title = std::string(column.initial_state)};
+    for (const Shown& each : ShownOf(column.loops.front())) {
+      io::PlotSeries series{
+          .label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
+          .style = io::PlotStyle::kLineAndPoints};
+      for (const ExpectedFit& fit : column.loops) {
+        const std::optional<double> error = ErrorOf(fit, each);
         if (!error || *error <= 0) continue;
-        series[k].x.push_back(share);
-        series[k].y.push_back(*error);
+        series.x.push_back(fit.protocol.amplitude / plan.slip);
+        series.y.push_back(*error);
       }
-    }
-    for (io::PlotSeries& each : series) {
-      if (!each.x.empty()) panel.series.push_back(std::move(each));
+      if (!series.x.empty()) panel.series.push_back(std::move(series));
     }
     if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
   }

@@ -118,16 +118,8 @@ std::string ToText(const FittedSweep& fitted) {
       fmt::format("{} of {} points over the {} amplitude, {}\n\n",
                   sweep.is_compliance ? "compliance" : "stiffness", sweep.amplitude.size(),
                   sweep.over_force ? "force" : "displacement", KindOf(fitted.asked));
-  const auto end = [](const std::optional<double>& value) {
-    return value ? fmt::format("{:.5g}", *value) : std::string("…");
-  };
   for (const ParameterEstimate& parameter : fit.parameters) {
-    text +=
-        fmt::format("  {:<12}{:>14.6g} {:<4}  ", parameter.name, parameter.value, parameter.unit);
-    text += IsHeld(parameter)
-                ? std::string("held\n")
-                : fmt::format("({} … {})  {}\n", end(parameter.lower95), end(parameter.upper95),
-                              report::Words(parameter.identifiability));
+    text += fmt::format("  {:<12}{}\n", parameter.name, report::ValueText(parameter));
   }
   text += fmt::format("\n  residuals {:.4g} {} rms, R² {:.6g}\n", fit.rms,
                       sweep.is_compliance ? "m/N" : "N/m", fit.r_squared);

@@ -237,11 +237,12 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
   if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
   reading_ = campaign::ChooseReading(head, fit_);
   chosen_terms_ = ChooseTermsOfCycles(request_.fit, head, fit_);
-  campaign::TrackOptions options{.fit = fit_,
-                                 .compliance = ComplianceOf(known),
-                                 .together = request_.average,
-                                 .every = request_.every,
-                                 .threads = request_.threads};
+  campaign::TrackOptions options{
+      .fit = fit_,
+      .compliance = test_.is_torsional ? std::nullopt : ComplianceOf(known),
+      .together = request_.average,
+      .every = request_.every,
+      .threads = request_.threads};
   if (events_.begins) events_.begins(options);
   const auto doubt = campaign::DoubtAbout(reading_, source);
   if (doubt && events_.warn) events_.warn(*doubt);
@@ -333,62 +334,6 @@ void TrackRun::Finish() {
   test_.is_gate_certain = reading_.gate.certain;
   campaign::RequireCycles(test_.cycles, request_.average, reading_, test_.reversal_gate,
                           fmt::format("{}", fmt::join(names_, ", ")));
-}
-
-struct SeparateTests::Document {
-  Json tests = Json::array();
-};
-
-SeparateTests::SeparateTests(std::string output, bool has_document)
-    : output_(std::move(output)),
-      document_(has_document ? std::make_unique<Document>() : nullptr) {}
-
-SeparateTests::~SeparateTests() = default;
-
-void SeparateTests::Add(const std::string& file, const std::string& fault, const TrackedTest& test,
-                        bool was_there) {
-  ++tests_;
-  fits_ += test.fits;
-  flagged_ += test.flagged;
-  energy_ += test.energy.total();
-  if (was_there) kept_ += test.fits;
-  if (!fault.empty()) faults_.push_back(fault);
-  established_ = established_ && fault.empty() && test.established();
-  if (document_ == nullptr) return;
-  document_->tests.push_back(
-      {{"file", file},
-       {"fault", fault.empty() ? Json() : Json(fault)},
-       {"fits", test.fits},
-       {"flagged", test.flagged},
-       {"flags", FlagsJson(test)},
-       {"accumulated_energy", test.energy.total()},
-       {"energy_counts", EnergyCountsJson(test.energy.counts())},
-       {"quantities", QuantitiesJson(test.courses.Describe(test.is_torsional))}});
-}
-
-std::string SeparateTests::ToJson() const {
-  return Dump({{"schema", "mindahl.track_separate/1"},
-               {"version", Version()},
-               {"output", output_},
-               {"fits", fits_},
-               {"flagged", flagged_},
-               {"accumulated_energy", energy_},
-               {"tests", document_->tests}});
-}
-
-std::string SeparateTests::ToText() const {
-  std::string text = fmt::format("{} test{}, {} fit{} in {}\n", tests_, tests_ == 1 ? "" : "s",
-                                 fits_, fits_ == 1 ? "" : "s", output_);
-  if (kept_ > 0) text += fmt::format("{} of them existed already\n", kept_);
-  text += fmt::format("{:.6g} J dissipated in all\n", energy_);
-  if (flagged_ > 0) {
-    text += fmt::format("{} {} a flag\n", flagged_, flagged_ == 1 ? "cycle has" : "cycles have");
-  }
-  if (!faults_.empty()) {
-    text +=
-        fmt::format("{} of the tests failed:\n  {}\n", faults_.size(), fmt::join(faults_, "\n  "));
-  }
-  return text;
 }
 
 }  // namespace mindahl::request

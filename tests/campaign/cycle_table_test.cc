@@ -64,7 +64,8 @@ TEST(CycleTable, HasAsManyNamesAsCells) {
   for (const bool is_torsional : {false, true}) {
     const std::string header = CycleTableHeader(is_torsional);
     EXPECT_EQ(std::ranges::count(header, ','),
-              std::ranges::count(CycleTableRow(Filled(), 0.0), ','));
+              std::ranges::count(CycleTableRow(Filled(), 0.0, is_torsional), ','));
+    EXPECT_EQ(header.find("contact_radius") == std::string::npos, is_torsional);
     EXPECT_EQ(header.back(), '\n');
   }
 }
@@ -96,7 +97,7 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
             "energy_friction_coefficient,slope_after_reversal [N m/rad],normal_load [N m],"
             "sigma [N m/rad],sigma_error [N m/rad],alpha,alpha_error,slip_force [N m],"
             "slip_force_error [N m],force_offset [N m],force_offset_error [N m],rms [N m],"
-            "friction_coefficient,contact_radius [rad],slip_regime,accumulated_energy [J],flags,"
+            "friction_coefficient,slip_regime,accumulated_energy [J],flags,"
             "checksum\n");
   CycleFit fit = Filled();
   fit.start_time = 1.5;

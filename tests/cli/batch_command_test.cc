@@ -156,20 +156,6 @@ TEST_F(BatchCommand, WritesTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(content("7"), one);
 }
 
-TEST_F(BatchCommand, FindsTheScatterOfRepeatsInTheirErrors) {
-  std::vector<std::string> words = {"--json", "-"};
-  for (int seed = 1; seed <= 12; ++seed) words.push_back(Repeat(seed));
-  const nlohmann::json repeats = Batch(words).Json()["repeats"];
-  for (const char* name : {"sigma", "slip_force"}) {
-    EXPECT_EQ(repeats[name]["files"], 12) << name;
-    // χ² of 11: within its 0.1 % quantiles.
-    EXPECT_GT(repeats[name]["p_value"].get<double>(), 1e-3) << name;
-    EXPECT_LT(repeats[name]["p_value"].get<double>(), 1 - 1e-3) << name;
-  }
-  EXPECT_NEAR(repeats["slip_force"]["mean"].get<double>(), 15.0,
-              4 * repeats["slip_force"]["stated_error"].get<double>() / std::sqrt(12.0));
-}
-
 TEST_F(BatchCommand, FailsAFileThatIsNotEstablishedWhereStrict) {
   const std::string small = Path("small.csv");
   RunCommand({"simulate", "--sigma", "5e7", "--slip-force", "15", "--lambda", "0.05",

@@ -52,18 +52,6 @@ TEST(Convert, ToDahlGivesTheLawOfTheSameSteadyLoop) {
   EXPECT_NEAR(Parameter(back, "slip_force") / 40, 1.0, kBack);
 }
 
-TEST(Convert, PrintsParametersErrorsAndTheRange) {
-  const Outcome outcome = RunCommand(Command({"--to", "dahl"}));
-  EXPECT_EQ(outcome.status, kDone);
-  EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_THAT(
-      outcome.out,
-      StartsWith(
-          "Dahl's own law; at 1.2e-06 m the force is within 0 % of T*, the energy off by 0 %\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("force and energy within 1 % from "));
-  EXPECT_THAT(RunCommand(Command({"--to", "lammps"})).out, HasSubstr("not within 1 %"));
-}
-
 TEST(Convert, WritesElementsAsOpenSeesReadsThem) {
   const TemporaryDirectory directory;
   const std::string file = directory.path() / "contact.tcl";
@@ -93,60 +81,6 @@ TEST(Convert, WritesElementsAsOpenSeesReadsThem) {
   EXPECT_THAT(lines, HasSubstr("uniaxialMaterial Parallel 4 1 2 3\n"));
 }
 
-TEST(Convert, WritesBoucAndWensLawWithItsOwnGammaAndBeta) {
-  const Words words = Command({"--to", "bouc-wen", "--beta", "0.7"});
-  Words as_json = words;
-  as_json.insert(as_json.end(), {"--json", "-"});
-  const json report = RunCommand(as_json).Json();
-  const double beta = Parameter(report, "beta");
-  const double gamma = Parameter(report, "gamma");
-  const double exponent = Parameter(report, "n");
-  // z* = (β + γ)^{−1/n} is where dz/dx = A − (β + γ)·zⁿ vanishes; kz* is the slip force.
-  EXPECT_NEAR(Parameter(report, "k") * std::pow(beta + gamma, -1 / exponent) /
-                  Parameter(report, "slip_force"),
-              1.0, 1e-12);
-  EXPECT_NEAR(beta / (beta + gamma), 0.7, 1e-12);
-  Words as_lines = words;
-  as_lines.insert(as_lines.end(), {"--input-lines", "-"});
-  const std::string lines = RunCommand(as_lines).out;
-  EXPECT_THAT(lines,
-              AllOf(StartsWith("# at 1.2e-06 m the force is within "), HasSubstr("\n# OpenSees")));
-  std::istringstream text(lines.substr(lines.find("BoucWen 1 0.0 ") + 14));
-  double ko = 0.0;
-  double n = 0.0;
-  double first = 0.0;
-  double second = 0.0;
-  text >> ko >> n >> first >> second;
-  EXPECT_DOUBLE_EQ(ko, Parameter(report, "k"));
-  EXPECT_DOUBLE_EQ(first, gamma);
-  EXPECT_DOUBLE_EQ(second, beta);
-}
-
-TEST(Convert, WritesASpringForDiscreteElements) {
-  const Words words =
-      Command({"--to", "lammps", "--normal-load", "100", "--contact-radius", "2e-4"});
-  Words as_json = words;
-  as_json.insert(as_json.end(), {"--json", "-"});
-  const json report = RunCommand(as_json).Json();
-  EXPECT_DOUBLE_EQ(Parameter(report, "mu"), Parameter(report, "slip_force") / 100);
-  EXPECT_DOUBLE_EQ(Parameter(report, "kt_mindlin"), Parameter(report, "kt") / 2e-4);
-  // Softer than Mindlin's at rest, and it slips at the amplitude: else it would lose nothing.
-  EXPECT_LT(Parameter(report, "kt"), 4e7);
-  EXPECT_LT(Parameter(report, "slip_force") / Parameter(report, "kt"), kAmplitude);
-  Words as_lines = words;
-  as_lines.insert(as_lines.end(), {"--input-lines", "-"});
-  const std::string lines = RunCommand(as_lines).out;
-  EXPECT_THAT(lines, HasSubstr("\ntangential linear_history "));
-  EXPECT_THAT(lines, HasSubstr("\ntangential mindlin "));
-}
-
-TEST(Convert, ToLuGreHasNoRate) {
-  const json report = RunCommand(Command({"--to", "lugre", "--json", "-"})).Json();
-  EXPECT_EQ(Parameter(report, "sigma1"), 0.0);
-  EXPECT_EQ(Parameter(report, "sigma2"), 0.0);
-  EXPECT_EQ(Parameter(report, "Fs"), Parameter(report, "Fc"));
-}
-
 TEST(Convert, TakesAFit) {
   const TemporaryDirectory directory;
   const std::string fit = directory.path() / "fit.json";
@@ -160,14 +94,6 @@ TEST(Convert, TakesAFit) {
   EXPECT_EQ(none.status, kBadInput);
   EXPECT_THAT(none.Errors(),
               ElementsAre(HasSubstr("--sigma missing: give it, or the JSON file of a fit")));
-}
-
-TEST(Convert, TakesItsOptionsFromAFile) {
-  const TemporaryDirectory directory;
-  const std::string file = directory.Write(
-      "convert.toml", "sigma = 4e7\nslip-force = 40\namplitude = 1.2e-6\nto = \"dahl\"\n");
-  EXPECT_EQ(RunCommand({"convert", "--config", file}).out,
-            RunCommand(Command({"--to", "dahl"})).out);
 }
 
 }  // namespace

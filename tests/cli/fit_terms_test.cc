@@ -5,7 +5,6 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
-#include "mindahl/models/variable_load.h"
 #include "support/prelude.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
@@ -97,48 +96,6 @@ TEST_F(FitTerms, KnownRigIsTakenOffTheDisplacement) {
   EXPECT_EQ(rig["status"], "fixed");
 }
 
-TEST_F(FitTerms, UnknownRigIsFoundUnderMindlinsExponent) {
-  const json fit = Fit(InRig(Simulate({"--cycles", "2"}), 8e7),
-                       {"--rig-stiffness", "fit", "--model", "mindlin"});
-  ExpectContact(fit, kNoiseFree);
-  EXPECT_NEAR(Value(fit, "rig_stiffness") / 8e7, 1, kNoiseFree);
-  EXPECT_EQ(fit["parameters"]["rig_stiffness"]["status"], "free");
-}
-
-TEST_F(FitTerms, SlopedPlateauHasASlopeOfItsOwn) {
-  std::vector<Sample> loop = Simulate({"--cycles", "2"});
-  for (Sample& sample : loop) sample.force += 1e6 * sample.displacement;
-  const json fit = Fit(loop, {"--terms", "plateau_slope"});
-  ExpectContact(fit, kNoiseFree);
-  EXPECT_NEAR(Value(fit, "plateau_slope") / 1e6, 1, kNoiseFree);
-  EXPECT_EQ(fit["parameters"]["plateau_slope"]["unit"], "N/m");
-}
-
-TEST_F(FitTerms, ForceFollowsALoadThatSwings) {
-  std::vector<Sample> loop = Simulate({"--cycles", "2"});
-  std::vector<double> displacement;
-  std::vector<double> load;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    load.push_back(100 + 5 * std::sin(0.05 * static_cast<double>(i)));
-    displacement.push_back(loop[i].displacement);
-    sum += load.back();
-  }
-  const double mean = sum / static_cast<double>(loop.size());
-  std::vector<double> force(loop.size());
-  models::EvaluateForceUnderLoad({.friction_coefficient = kSlipForce / mean,
-                                  .reference_load = mean,
-                                  .reference_stiffness = kSigma},
-                                 displacement, load, force);
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    loop[i].normal_load = load[i];
-    loop[i].force = force[i];
-  }
-  const json fit = Fit(loop);
-  ExpectContact(fit, kNoiseFree);
-  EXPECT_NEAR(fit["contact"]["normal_load"]["value"].get<double>() / mean, 1, kNoiseFree);
-}
-
 TEST_F(FitTerms, FilesUnderSeveralLoadsAreOneContact) {
   constexpr double kExponent = 0.5;
   Words words = {"fit"};
@@ -194,28 +151,6 @@ TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
   EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 150 + loop.size() - 499);
 }
 
-TEST_F(FitTerms, LateForceIsPutInItsPlace) {
-  // Twice as dense a loop, of which every other sample is read, its force a sample later.
-  const std::vector<Sample> dense = Simulate({"--cycles", "2", "--samples-per-cycle", "400"});
-  std::vector<Sample> late;
-  for (std::size_t i = 0; i < dense.size(); i += 2) {
-    late.push_back(dense[i]);
-    late.back().force = i >= 3 ? dense[i - 3].force : 0.0;
-  }
-  const double lag = 3 * (dense[1].time - dense[0].time);
-  // Chords of the record lie within X(2π/200)²/8 of the sine: some 2e-4 of Tc.
-  constexpr double kOfChords = 5e-3;
-  const json fitted = Fit(late, {"--terms", "lag"});
-  ExpectContact(fitted, kOfChords);
-  EXPECT_NEAR(Value(fitted, "lag") / lag, 1, 10 * kOfChords);
-  EXPECT_EQ(fitted["parameters"]["lag"]["unit"], "s");
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", lag);
-  const json known = Fit(late, {"--fix", std::string("lag=") + text});
-  ExpectContact(known, kOfChords);
-  EXPECT_EQ(known["parameters"]["lag"]["status"], "fixed");
-}
-
 TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
   const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
   const json fit = Fit(loop, {"--terms", "asymmetry"});
@@ -249,24 +184,6 @@ TEST_F(FitTerms, ForceOfAColumnIsFittedOrTakenOff) {
     EXPECT_EQ(fit["parameters"][name]["unit"], "N/N");
   }
 }
-
-class FitWithLoss : public FitTerms, public ::testing::WithParamInterface<const char*> {};
-
-TEST_P(FitWithLoss, IsNotMovedByOutliers) {
-  std::vector<Sample> loop = Simulate({"--cycles", "3", "--noise-force", "0.1"});
-  // Four at a time: fewer are spikes, which are left out whatever the loss.
-  for (std::size_t i = 20; i + 4 < loop.size(); i += 160) {
-    for (std::size_t k = 0; k < 4; ++k) loop[i + k].force += 20;
-  }
-  const json fit = Fit(loop, {"--loss", GetParam()});
-  EXPECT_THAT(fit["input"]["left_out"], IsEmpty());
-  // One sample in 40 is 20 N out: the mean of the plateau moves by 0.5 N, 1.25 % of Tc, where it
-  // counts in full. With the least robust loss each pulls like 1.345 standard deviations.
-  EXPECT_NEAR(Value(fit, "slip_force") / kSlipForce, 1, 2e-3);
-}
-
-INSTANTIATE_TEST_SUITE_P(FitTerms, FitWithLoss, ::testing::Values("huber", "cauchy", "tukey"),
-                         [](const auto& test) { return std::string(test.param); });
 
 struct Misuse {
   const char* name;

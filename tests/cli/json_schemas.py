@@ -110,7 +110,6 @@ COMMANDS = [
     ("fit sweep.csv --sweep tangent --model mindlin", 0),
     ("track long.csv --output cycles.csv --normal-load 50", 0),
     ("track long.csv --output again.csv --average 3", 0),
-    ("track long.csv twin.csv broken.csv --separate --output tests.csv", 3),
     ("batch loop.csv twin.csv data/partial_slip.csv --output table.csv --normal-load 50", 0),
     ("batch loop.csv broken.csv --output table2.csv", 3),
 ]
@@ -261,8 +260,7 @@ def check_outputs(program):
             document = json.loads(done.stdout, parse_constant=lambda text: problems.append(
                 f"{line}: {text} is no JSON"))
             seen[document["schema"]] += 1
-            name = ("sweep" if "--sweep" in line else "track_separate" if "--separate" in line
-                    else line.split()[0])
+            name = "sweep" if "--sweep" in line else line.split()[0]
             if document["schema"] != schema_of(name):
                 problems.append(f"{line}: schema {document['schema']}")
             problems += [f"{line}: {fault}" for fault in faults(document)]
@@ -321,7 +319,7 @@ def undocumented_keys():
     """Of the other commands, whose keys docs/contract.md names in its text."""
     pages = re.split(r"\n## mindahl (\w+)\n", (ROOT / "docs/contract.md").read_text())
     sections = dict(zip(pages[1::2], pages[2::2]))
-    command = {"sweep": "fit", "track_separate": "track"}
+    command = {"sweep": "fit"}
     for name, schema in SCHEMAS.items():
         text = sections[command.get(name, name)]
         for key in sorted(set(keys_in(schema)) - set(re.findall(r"`([a-z_0-9]+)`", text)) if name != "fit" else []):

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <cmath>
 #include <iterator>
 #include <sstream>
 #include <tuple>
@@ -68,8 +71,17 @@ TEST(FitByDefault, TakesMasingsLawForAnUndecidedLoop) {
 
 TEST(NextStep, IsAStepThatWasTriedAndHelps) {
   const TemporaryDirectory directory;
-  const std::string path =
-      Simulated(directory, {"--lambda", "2", "--cycles", "4", "--viscous", "1e5"});
+  const Words clean = Lines(RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40",
+                                        "--noise-force", "0.1", "--lambda", "2", "--cycles", "4"})
+                                .out);
+  // A force in proportion to the speed of the sine, 2 N at the most.
+  std::string text = clean[0] + "\n";
+  for (const std::string& line : Words(clean.begin() + 1, clean.end())) {
+    const Words cells = Cells(line);
+    const double viscous = 2 * std::cos(2 * M_PI * std::stod(cells[0]));
+    text += fmt::format("{},{},{}\n", cells[0], cells[1], std::stod(cells[2]) + viscous);
+  }
+  const std::string path = directory.Write("viscous.csv", text).string();
   const json fit = FitOf(path);
   ASSERT_FALSE(fit["next"].is_null());
   const json& next = fit["next"];

@@ -74,47 +74,5 @@ TEST_F(NoiseIn, DisplacementIsReportedInTheText) {
   EXPECT_THAT(outcome.out, HasSubstr(" nm rms, like noise"));
 }
 
-TEST_F(NoiseIn, DisplacementFitsItsDrift) {
-  const json fit = RunCommand({"fit", Loop(0.0), "--noise-in", "displacement", "--terms",
-                               "displacement_drift", "--json", "-"})
-                       .Json();
-  EXPECT_EQ(fit["parameters"]["displacement_drift"]["status"], "free");
-  EXPECT_EQ(fit["parameters"]["displacement_drift"]["unit"], "m/s");
-  EXPECT_FALSE(fit["parameters"].contains("force_drift"));
-}
-
-TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
-  const std::string loop = Loop(0.0);
-  const auto refusal = [&](Words options) {
-    options.insert(options.begin(), {"fit", loop, "--noise-in", "displacement"});
-    const Outcome outcome = RunCommand(options);
-    EXPECT_EQ(outcome.status, kBadInput) << outcome.out;
-    EXPECT_EQ(outcome.Errors().size(), 1U) << outcome.err;
-    return outcome.err;
-  };
-  EXPECT_THAT(refusal({"--rig-stiffness", "fit"}),
-              HasSubstr("--rig-stiffness cannot be combined with --noise-in displacement"));
-  EXPECT_THAT(refusal({"--terms", "lag"}), HasSubstr("displacement_drift alone is a term"));
-  EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate cannot be combined"));
-  EXPECT_THAT(refusal({"--compare"}), HasSubstr("--compare cannot be combined"));
-  EXPECT_THAT(refusal({"--force-noise", "0.1"}), HasSubstr("give --displacement-noise"));
-  EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
-              HasSubstr("rig_stiffness has no place in a fit of the displacement"));
-  EXPECT_THAT(refusal({"--reversal-gate", "100"}), HasSubstr("the force ranges over 27 N only"));
-}
-
-TEST_F(NoiseIn, OfNoChannelIsRefused) {
-  const Outcome outcome = RunCommand({"fit", Loop(0.0), "--noise-in", "load"});
-  EXPECT_EQ(outcome.status, kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--noise-in"));
-}
-
-TEST_F(NoiseIn, DisplacementIsNotReadByTrack) {
-  const Outcome outcome = RunCommand({"track", Loop(0.0), "--noise-in", "displacement", "--output",
-                                      (directory_.path() / "cycles.csv").string()});
-  EXPECT_EQ(outcome.status, kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--noise-in displacement is not available in track"));
-}
-
 }  // namespace
 }  // namespace mindahl::cli::noise_in_test

@@ -55,46 +55,6 @@ TEST(Simulate, WritesTimeDisplacementAndForceWithUnits) {
   EXPECT_DOUBLE_EQ(columns.force[2], 3.0);
 }
 
-TEST(Simulate, HasAnOptionForEachForceInAdditionToTheContacts) {
-  using request::AddedForces;
-  constexpr std::array kOptions = {
-      std::pair{"--viscous", &AddedForces::viscous},
-      std::pair{"--speed-exponent", &AddedForces::speed_exponent},
-      std::pair{"--inertia", &AddedForces::inertia},
-      std::pair{"--slip-slope", &AddedForces::slip_slope},
-      std::pair{"--slip-curvature", &AddedForces::slip_curvature},
-      std::pair{"--slip-trend", &AddedForces::slip_trend},
-      std::pair{"--plateau-slope", &AddedForces::plateau_slope},
-      std::pair{"--plateau-curvature", &AddedForces::plateau_curvature},
-      std::pair{"--ripple-amplitude", &AddedForces::ripple_amplitude},
-      std::pair{"--ripple-phase-up", &AddedForces::ripple_phase_up},
-      std::pair{"--ripple-phase-down", &AddedForces::ripple_phase_down}};
-  // The exponent needs a viscous force and the phases a ripple to have an effect.
-  request::SimulationRequest base;
-  base.law.sigma = 2;
-  base.law.slip_force = 3;
-  base.drive.lambda = 1;
-  base.drive.excitation.samples_per_cycle = 12;
-  base.forces.viscous = 0.5;
-  base.forces.ripple = 1.5;
-  base.forces.ripple_amplitude = 0.25;
-  Words words = {"simulate", "--sigma",  "2",  "--slip-force",
-                 "3",        "--lambda", "1",  "--samples-per-cycle",
-                 "12",       "--ripple", "1.5"};
-  for (const auto& [option, member] : kOptions) {
-    request::SimulationRequest request = base;
-    request.forces.*member = 0.125;
-    Words asked = words;
-    for (const auto& [other, value] :
-         {std::pair{"--viscous", "0.5"}, {"--ripple-amplitude", "0.25"}, {option, "0.125"}}) {
-      if (std::string_view(other) == option && std::string_view(value) != "0.125") continue;
-      asked.insert(asked.end(), {other, value});
-    }
-    EXPECT_EQ(RunCommand(asked).out, request::ToCsv(request::Simulate(request))) << option;
-    EXPECT_NE(request::Simulate(request).force, request::Simulate(base).force) << option;
-  }
-}
-
 TEST(Simulate, PathGivesOneRowAnInputRowInOrderWithEveryDigit) {
   const TemporaryDirectory directory;
   const Words inputs = {"0.30000000000000004", "-1.1234567890123457e-05", "0.7", "0.7", "-0.1",
@@ -131,9 +91,10 @@ TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
   EXPECT_THAT(Simulate({"--sigma", "1", "--slip-force", "1", "--path", path}).displacement,
               ElementsAre(0.4, -0.1));
   const std::string bare = directory.Write("bare.csv", "4\n-1\n").string();
-  EXPECT_THAT(Simulate({"--sigma", "1", "--slip-force", "1", "--path", bare, "--path-unit", "mm"})
-                  .displacement,
-              ElementsAre(0.004, -0.001));
+  EXPECT_THAT(
+      Simulate({"--sigma", "1", "--slip-force", "1", "--path", bare, "--displacement", "[mm]"})
+          .displacement,
+      ElementsAre(0.004, -0.001));
 }
 
 TEST(Simulate, OfAJointIsItsStateTimesTheTorqueOfEitherSign) {
@@ -165,76 +126,6 @@ TEST(Simulate, ForcePathGivesTheDisplacementThatMakesTheForce) {
   EXPECT_NEAR(columns.displacement[3], virgin(0.7), kRounding) << "return-point memory";
 }
 
-TEST(Simulate, ForcePathAndPathUndoEachOther) {
-  const TemporaryDirectory directory;
-  const std::string forces = directory.Write("f.csv", "0.3\n0.9\n-0.6\n0.2\n-0.1\n0.95\n").string();
-  for (const char* model : {"mindlin", "mindlin-dahl", "jenkins", "dahl"}) {
-    const Words law = {"simulate", "--model", model, "--sigma", "2", "--slip-force", "1"};
-    const auto run = [&](const char* option, const std::string& path) {
-      Words words = law;
-      words.insert(words.end(), {option, path});
-      return RunCommand(words).out;
-    };
-    const std::string driven = run("--force-path", forces);
-    const Columns back = Parse(run("--path", directory.Write("x.csv", driven).string()));
-    const Columns there = Parse(driven);
-    ASSERT_THAT(back.force, SizeIs(6)) << model;
-    for (std::size_t i = 0; i < 6; ++i) {
-      EXPECT_NEAR(back.force[i], there.force[i], kRounding) << model << ", row " << i;
-    }
-  }
-}
-
-TEST(Simulate, AForceThatReachesSlipIsRefusedWithItsLine) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("forces.csv", "F [N]\n0\n2.5\n\n-3\n").string();
-  const Outcome outcome =
-      RunCommand({"simulate", "--sigma", "2", "--slip-force", "3", "--force-path", path});
-  EXPECT_EQ(outcome.status, cli::kBadInput);
-  ASSERT_THAT(outcome.Errors(), SizeIs(1));
-  EXPECT_THAT(outcome.err,
-              HasSubstr(path + ":5: a force of -3 N is not within the slip force, 3 N"));
-  EXPECT_THAT(outcome.err, HasSubstr("--path"));
-  EXPECT_THAT(outcome.out, IsEmpty());
-}
-
-TEST(Simulate, EveryModelFollowsItsOwnVirginCurve) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("path.csv", "0.5\n").string();
-  const auto force = [&](const Words& words) {
-    Words all = {"--sigma", "1", "--slip-force", "1", "--path", path};
-    all.insert(all.end(), words.begin(), words.end());
-    return Simulate(all).force.at(0);
-  };
-  EXPECT_NEAR(force({"--model", "jenkins"}), 0.5, kRounding);
-  EXPECT_NEAR(force({"--model", "mindlin"}), 1 - std::pow(2.0 / 3, 1.5), kRounding);
-  EXPECT_NEAR(force({"--model", "mindlin-dahl", "--alpha", "0.5"}), 1 - 0.75 * 0.75, kRounding);
-  EXPECT_NEAR(force({"--model", "dahl", "--alpha", "1"}), 1 - std::exp(-0.5), kRounding);
-  EXPECT_NEAR(force({"--model", "dahl", "--alpha", "2"}), 1 - 1 / 1.5, kRounding);
-}
-
-TEST(Simulate, NoiseIsThatOfItsSeed) {
-  const Words words = {"simulate", "--sigma",       "1",   "--slip-force", "1",  "--lambda",
-                       "1",        "--noise-force", "0.1", "--cycles",     "50", "--seed"};
-  const auto with_seed = [&](const char* seed) {
-    Words all = words;
-    all.emplace_back(seed);
-    return RunCommand(all).out;
-  };
-  EXPECT_EQ(with_seed("5"), with_seed("5"));
-  EXPECT_NE(with_seed("5"), with_seed("6"));
-  const Columns noisy = Parse(with_seed("5"));
-  const Columns clean =
-      Simulate({"--sigma", "1", "--slip-force", "1", "--lambda", "1", "--cycles", "50"});
-  double sum = 0.0;
-  for (std::size_t i = 0; i < clean.force.size(); ++i) {
-    sum += (noisy.force[i] - clean.force[i]) * (noisy.force[i] - clean.force[i]);
-  }
-  // 10001 samples: the standard deviation is known to 1/√20000 = 0.7 %; five times that.
-  EXPECT_NEAR(std::sqrt(sum / static_cast<double>(clean.force.size())), 0.1, 0.035 * 0.1);
-  EXPECT_EQ(noisy.displacement, clean.displacement);
-}
-
 TEST(Simulate, RandomWaveformIsThatOfItsSeed) {
   const auto with_seed = [](const char* seed) {
     return Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "2", "--waveform",
@@ -246,19 +137,6 @@ TEST(Simulate, RandomWaveformIsThatOfItsSeed) {
   EXPECT_NE(drawn, with_seed("6"));
   const auto [least, greatest] = std::ranges::minmax(drawn);
   EXPECT_EQ(std::max(-least, greatest), 2.0);
-}
-
-TEST(Simulate, NestedWaveformComesBackToTheBranchOfItsFirstExtreme) {
-  // Once all inner loops are closed, the way back runs on the branch down from the first extreme.
-  const Columns nested = Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "1",
-                                   "--waveform", "nested", "--cycles", "6"});
-  constexpr std::size_t kLastExtreme = 1150;  // of 200 samples a cycle
-  const double extreme = nested.displacement.at(kLastExtreme);
-  EXPECT_NEAR(extreme, -21.0 / 23, kRounding);
-  // Masing: f(1) − 2·f((1 − δ)/2) with f(x) = 1 − (1 − x/δc)^{3/2} and δc = 3/2.
-  const auto backbone = [](double x) { return 1 - std::pow(1 - x / 1.5, 1.5); };
-  EXPECT_NEAR(nested.force.at(kLastExtreme), backbone(1) - 2 * backbone((1 - extreme) / 2),
-              kRounding);
 }
 
 TEST(Simulate, ContactGivesTheSameLoopAsItsParameters) {
@@ -290,23 +168,6 @@ double Value(const json& contact, const char* section, const char* name) {
   return contact.at(section).at(name).at("value");
 }
 
-TEST(Contact, OfRadiusAndComplianceFollowsTheMapping) {
-  const Outcome outcome =
-      RunCommand({"contact", "--friction", "0.3", "--normal-load", "100", "--contact-radius",
-                  "1e-3", "--compliance", "4e-11", "--json", "-"});
-  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
-  const json contact = outcome.Json();
-  EXPECT_EQ(contact["schema"], "mindahl.contact/1");
-  EXPECT_NEAR(Value(contact, "parameters", "sigma") / 2e8, 1, kRounding);
-  EXPECT_EQ(Value(contact, "parameters", "alpha"), 1.0 / 3);
-  EXPECT_NEAR(Value(contact, "parameters", "slip_force") / 30, 1, kRounding);
-  // δc = 3Tc/(2σ) = 2.25e-7 m; p₀ = 3N/(2πa²) = 150e6/π Pa.
-  EXPECT_NEAR(Value(contact, "contact", "gross_slip_displacement") / 2.25e-7, 1, kRounding);
-  EXPECT_NEAR(Value(contact, "contact", "maximum_pressure") / (150e6 / M_PI), 1, kRounding);
-  EXPECT_EQ(contact["parameters"]["sigma"]["unit"], "N/m");
-  EXPECT_EQ(contact["contact"]["compliance"]["unit"], "1/Pa");
-}
-
 TEST(Contact, OfMaterialsAndRadiiFollowsHertzAndMindlin) {
   const Outcome outcome =
       RunCommand({"contact", "--friction", "0.4", "--normal-load", "25", "--youngs-modulus-1",
@@ -326,22 +187,6 @@ TEST(Contact, OfMaterialsAndRadiiFollowsHertzAndMindlin) {
               kRounding);
   EXPECT_NEAR(Value(contact, "parameters", "sigma") / (8 * radius / compliance), 1, kRounding);
   EXPECT_NEAR(Value(contact, "parameters", "slip_force") / 10, 1, kRounding);
-}
-
-TEST(Contact, NamesMissingInputs) {
-  const auto message = [](Words words) {
-    words.insert(words.begin(), "contact");
-    const Outcome outcome = RunCommand(words);
-    EXPECT_EQ(outcome.status, cli::kBadInput);
-    return outcome.err;
-  };
-  EXPECT_THAT(message({"--friction", "0.3", "--normal-load", "1", "--contact-radius", "1"}),
-              HasSubstr("--compliance missing"));
-  EXPECT_THAT(message({"--normal-load", "1", "--contact-radius", "1", "--compliance", "1"}),
-              HasSubstr("--friction missing"));
-  EXPECT_THAT(message({"--friction", "0.3", "--normal-load", "1", "--youngs-modulus-1", "1e9"}),
-              HasSubstr("--poisson-1, --radius-1, --youngs-modulus-2, --poisson-2, --radius-2 "
-                        "missing"));
 }
 
 TEST(Contact, PrintsEveryQuantityWithItsUnitAndDefinition) {
@@ -373,25 +218,6 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
     EXPECT_GT(verdict["intervals"], verdict["sliding_intervals"]) << verdict;
   }
   EXPECT_TRUE(report["failed_coverages"].empty());
-}
-
-TEST(Validate, SkipsAmplitudesWithoutCases) {
-  // One contact has one of seven amplitudes.
-  const json report = RunCommand({"validate", "--cases", "1", "--json", "-"}).Json();
-  std::size_t empty = 0;
-  for (const json& row : report["rows"]) {
-    const bool none = row["cases"] == 0;
-    if (none) ++empty;
-    EXPECT_EQ(row["sigma_error"]["median"].is_null(), none);
-    EXPECT_EQ(row["slip_force_error"]["worst"].is_null(), none);
-    if (row["noise"] > 0) {
-      EXPECT_EQ(row["coverage"].is_null(), none);
-    }
-  }
-  EXPECT_EQ(empty, 6U * 4) << "four noise levels";
-  const Outcome text = RunCommand({"validate", "--cases", "1"});
-  EXPECT_THAT(text.out,
-              ::testing::ContainsRegex("\n0 +[0-9.]+ +0 +- +- +- +- +- +- +0 +- +- +0\n"));
 }
 
 TEST(Validate, PrintsATableAndTheVerdict) {

@@ -82,39 +82,6 @@ TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
   EXPECT_THAT(refused.err, HasSubstr("--force [kN]"));
 }
 
-TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {
-  const TemporaryDirectory directory;
-  const std::string file = directory.path() / "far.csv";
-  ASSERT_EQ(RunCommand({"simulate", "--model", "mindlin", "--sigma", "4e7", "--slip-force", "40",
-                        "--lambda", "0.2", "--cycles", "3", "--noise-force", "0.05", "-o", file})
-                .status,
-            kDone);
-  const Outcome outcome =
-      RunCommand({"plan", "--record", file, "--want", "slip_force=5%", "--json", "-"});
-  EXPECT_EQ(outcome.status, kDone) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("alpha is not identified: Mindlin's 1/3 is assumed"));
-  const json plan = outcome.Json();
-  // From second order alone, Tc = ασ²/(curvature): the noise leaves some per cent.
-  EXPECT_NEAR(plan["expected"]["slip_force"].get<double>(), 40.0, 0.2 * 40.0);
-  EXPECT_NEAR(plan["expected"]["force_noise"].get<double>(), 0.05, 0.1 * 0.05);
-}
-
-TEST(PlanCommand, PlansASeriesOfLoads) {
-  const Words series = {"--force-noise",   "0.4", "--load-ratio", "0.5,1,2",
-                        "--rig-stiffness", "8e7", "--with",       "rig_stiffness",
-                        "--amplitude",     "3e-6"};
-  const Outcome outcome = RunPlan(series);
-  EXPECT_EQ(outcome.status, kDone) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("at 0.5, 1, 2 times the load of this contact"));
-  EXPECT_THAT(outcome.out, HasSubstr("sigma    alpha    Tc       p        rig      law"));
-  Words as_json = series;
-  as_json.insert(as_json.end(), {"--load-exponent", "0.5", "--json", "-"});
-  const json plan = RunPlan(as_json).Json();
-  EXPECT_EQ(plan["protocol"]["load_ratios"], json({0.5, 1.0, 2.0}));
-  EXPECT_EQ(plan["expected"]["load_exponent"], 0.5);
-  EXPECT_GT(plan["loops"][0]["parameters"]["load_exponent"]["standard_error"], 0.0);
-}
-
 TEST(PlanCommand, DrawsTheErrors) {
   const TemporaryDirectory directory;
   const std::string file = directory.path() / "plan.svg";
@@ -130,18 +97,6 @@ TEST(PlanCommand, RefusesWhatItDoesNotUnderstandInOneLine) {
       {{"--force-noise", "0.4", "--want", "alpha=0"}, "is no precision"},
       {{"--force-noise", "0.4", "--want", "beta=1"}, "--want: 'beta' is no parameter"},
       {{"--force-noise", "0.4", "--want", "alpha=1,alpha=2"}, "alpha is given twice"},
-      {{"--force-noise", "0.4", "--load-exponent", "0.5"}, "--load-exponent needs --load-ratio"},
-      {{"--force-noise", "0.4", "--load-ratio", "1,1.001"}, "loads are one load"},
-      {{"--force-noise", "0.4", "--load-ratio", "1,-2"}, "load over that of the law"},
-      {{"--force-noise", "0.4", "--with", "beta"}, "--with: 'beta' cannot be planned for"},
-      {{"--force-noise", "0.4", "--with", "lag"}, "--with: 'lag' cannot be planned for"},
-      {{"--force-noise", "0.4", "--with", "covariate"}, "cannot be planned for"},
-      {{"--force-noise", "0.4", "--with", "rig_stiffness"}, "needs --rig-stiffness"},
-      {{"--force-noise", "-1"}, "--force-noise"},
-      {{"--force-noise", "0.4", "--autocorrelation", "1"}, "autocorrelation"},
-      {{"--force-noise", "0.4", "--cycles", "0.5"}, "cycles"},
-      {{"--force-noise", "0.4", "--amplitude", "0"}, "amplitude"},
-      {{"--record", "none.csv"}, "--record excludes"},
   };
   for (const auto& [words, message] : cases) {
     const Outcome outcome = RunPlan(words);

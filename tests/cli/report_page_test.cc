@@ -48,14 +48,6 @@ TEST_F(ReportPage, OfAConfigurationFileHasItsOptionsAndItsDigest) {
   EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(config)));
 }
 
-TEST_F(ReportPage, IsNotWrittenOverTheRecord) {
-  const std::string record = Copy("loop.csv");
-  const Outcome outcome = RunCommand({"fit", record, "--report", record});
-  EXPECT_EQ(outcome.status, kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--report: "));
-  EXPECT_EQ(FileContent(record), FileContent(SampleRecord()));
-}
-
 TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
   std::filesystem::create_directory(At("a"));
   std::filesystem::create_directory(At("b"));
@@ -86,29 +78,6 @@ TEST_F(ReportPage, OfABatchNeedsADirectory) {
     EXPECT_THAT(outcome.err, HasSubstr("--report: "));
     EXPECT_FALSE(Exists("table.csv"));
   }
-}
-
-TEST_F(ReportPage, OfATestOfManyCyclesShowsWhatChanged) {
-  std::vector<std::string> words = {"track"};
-  for (const char* slip_force : {"60", "50"}) {
-    const std::string path = At(std::string("loop_") + slip_force + ".csv");
-    ASSERT_EQ(RunCommand({"simulate", "--sigma", "5e7", "--slip-force", slip_force, "--amplitude",
-                          "2.5e-6", "--cycles", "40", "--samples-per-cycle", "80", "--noise-force",
-                          "0.5", "-o", path})
-                  .status,
-              kDone);
-    words.push_back(path);
-  }
-  for (const std::string& word :
-       {std::string("--output"), At("cycles.csv"), std::string("--report"), At("out.html")}) {
-    words.push_back(word);
-  }
-  const Outcome outcome = RunCommand(words);
-  ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  const std::string page = testing::Unbroken(FileContent(At("out.html")));
-  EXPECT_THAT(page, HasSubstr("<strong>changed</strong>"));
-  EXPECT_THAT(page, HasSubstr("slip_force: a step at cycle 40"));
-  EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-5\">"));
 }
 
 TEST_F(ReportPage, ATestIsNotTrackedForAPlotThatCannotBe) {

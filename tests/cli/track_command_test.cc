@@ -206,33 +206,6 @@ TEST_F(TrackCommand, RefusesToGoOnWithOptionsOfNoEffectYet) {
   EXPECT_EQ(resume({"--threads", "2", "--average", "1"}), 0) << "the default, said";
 }
 
-TEST_F(TrackCommand, HasNoInfinityInItsTableNorInItsSummary) {
-  std::vector<std::string> lines = Lines(ContentOf(record_));
-  for (const std::size_t line : {100U, 101U, 102U, 5'000U}) {
-    std::vector<std::string> cells = Cells(lines[line]);
-    lines[line] = fmt::format("{},{},{}", cells[0], cells[1], line % 2 == 0 ? "1e300" : "-1e308");
-  }
-  const std::string record = Write("huge.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
-  const Outcome outcome =
-      RunCommand({"track", record, "--output", Path("huge_table.csv"), "--json", "-"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  const std::string table = ContentOf(Path("huge_table.csv"));
-  EXPECT_EQ(Lines(table).size(), 1 + kCycles);
-  for (const char* word : {"inf", "nan"}) {
-    EXPECT_EQ(table.find(word), std::string::npos) << word;
-    EXPECT_EQ(
-        RunCommand({"track", record, "--output", Path("again.csv"), "--overwrite"}).out.find(word),
-        std::string::npos)
-        << word;
-  }
-  const nlohmann::json quantities = outcome.Json()["quantities"];
-  for (const auto& [name, quantity] : quantities.items()) {
-    for (const char* key : {"first", "last"}) {
-      EXPECT_TRUE(quantity[key].is_number()) << name << ' ' << key;
-    }
-  }
-}
-
 TEST_F(TrackCommand, GivesNoFrictionOfASlipForceThatIsOpen) {
   const std::string record = std::string(MINDAHL_SOURCE_DIR) + "/data/far_from_slip.csv";
   ASSERT_EQ(
@@ -353,30 +326,23 @@ TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
   ASSERT_EQ(slip_force["steps"].size(), 1U);
   EXPECT_NEAR(slip_force["steps"][0]["cycle"].get<double>(), 120.5, 2);
   EXPECT_TRUE(json["quantities"]["sigma"]["steps"].empty());
-  // The summary says what the table says.
-  const std::vector<std::string> rows = Lines(ContentOf(Path("t.csv")));
-  EXPECT_EQ(slip_force["first"].get<double>(), std::stod(Cells(rows[1])[17]));
-  EXPECT_EQ(slip_force["last"].get<double>(), std::stod(Cells(rows.back())[17]));
   const Outcome text = RunCommand({"track", record_, "--output", Path("u.csv")});
   EXPECT_NE(text.out.find("a step"), std::string::npos) << text.out;
   EXPECT_TRUE(text.out.starts_with("Tc ")) << text.out;
 }
 
-TEST_F(TrackCommand, TakesSeveralFilesForOneTest) {
-  const Outcome outcome = RunCommand({"track", record_, Write("second.csv", StepText()), "--output",
-                                      Path("t.csv"), "--json", "-"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.Json()["input"]["cycles"], 2 * kCycles);
-  const std::vector<std::string> rows = Lines(ContentOf(Path("t.csv")));
-  EXPECT_EQ(Cells(rows[kCycles + 1])[0], std::to_string(kCycles + 1));
-  EXPECT_EQ(Cells(rows[kCycles + 1])[1], Cells(rows[1])[1]);
-}
-
-TEST_F(TrackCommand, ReportsFrictionCoefficientForGivenLoad) {
-  const Outcome outcome = RunCommand(
-      {"track", record_, "--output", Path("t.csv"), "--normal-load", "120", "--json", "-"});
-  const nlohmann::json friction = outcome.Json()["quantities"]["friction_coefficient"];
-  EXPECT_NEAR(friction["first"].get<double>(), 0.5, 0.02);
+TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {
+  for (const char* average : {"1", "10"}) {
+    const nlohmann::json quantities =
+        RunCommand({"track", record_, "--output", Path("t.csv"), "--overwrite", "--average",
+                    average, "--json", "-"})
+            .Json()["quantities"];
+    const std::vector<std::string> rows = Lines(ContentOf(Path("t.csv")));
+    for (const auto& [name, column] : {std::pair("slip_force", 17U), {"half_gap", 7U}}) {
+      EXPECT_EQ(quantities[name]["first"].get<double>(), std::stod(Cells(rows[1])[column]));
+      EXPECT_EQ(quantities[name]["last"].get<double>(), std::stod(Cells(rows.back())[column]));
+    }
+  }
 }
 
 TEST_F(TrackCommand, StandsForTheCyclesThatItLeavesOut) {
@@ -448,7 +414,6 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
-        Case{{record_, "--output", Path("refused.parquet")}, "refused.parquet: the table is CSV"},
         Case{{Path("nowhere.csv")}, "nowhere.csv"}}) {
     std::vector<std::string> words = {"track"};
     words.insert(words.end(), refused.words.begin(), refused.words.end());

@@ -163,21 +163,6 @@ const std::vector<BadUsage> kBadUsage = {
      {"fit", "@", "--json", "#", "--residuals", "/no/such/r.csv"},
      "--residuals: cannot write"},
     {"ConfigMissing", {"fit", "@", "--config", "no.toml"}, "no.toml"},
-    {"SimulateAnAsymmetryOfOneSense",
-     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--asymmetry", "1"},
-     "--asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
-    {"SimulateAnAsymmetryOfSimplifiedDahl",
-     {"simulate", "--model", "simplified-dahl", "--sigma", "1", "--slip-force", "1", "--lambda",
-      "1", "--asymmetry", "0.1"},
-     "--asymmetry cannot be used with --model simplified-dahl --method exact: use --model mindlin"},
-    {"SimulateAnAsymmetryByElements",
-     {"simulate", "--method", "iwan", "--sigma", "1", "--slip-force", "1", "--lambda", "1",
-      "--asymmetry", "0.1"},
-     "--asymmetry cannot be used with --model mindlin --method iwan: use --model mindlin"},
-    {"SimulateAnAsymmetryOfAnImposedForce",
-     {"simulate", "--sigma", "1", "--slip-force", "1", "--force-path", "f.csv", "--asymmetry",
-      "0.1"},
-     "--asymmetry cannot be used with --force-path: leave one of the two out"},
     {"SimulateWithoutParameters", {"simulate", "--lambda", "1"}, "--sigma missing"},
     {"SimulateWithoutSlipForce",
      {"simulate", "--sigma", "1", "--lambda", "1"},
@@ -197,14 +182,6 @@ const std::vector<BadUsage> kBadUsage = {
     {"SimulateForceAndDisplacement",
      {"simulate", "--sigma", "1", "--slip-force", "1", "--path", "p.csv", "--force-path", "f.csv"},
      "excludes --force-path"},
-    {"SimulateForceOfAModelWithoutInverse",
-     {"simulate", "--model", "coulomb", "--sigma", "1", "--slip-force", "1", "--force-path",
-      "f.csv"},
-     "--force-path cannot be used with --model coulomb"},
-    {"SimulateForceByAMethodOfDisplacement",
-     {"simulate", "--method", "table", "--sigma", "1", "--slip-force", "1", "--force-path",
-      "f.csv"},
-     "--method table: use --model mindlin"},
     {"SimulateLambdaWithoutSlip",
      {"simulate", "--model", "dahl", "--sigma", "1", "--slip-force", "1", "--alpha", "1",
       "--lambda", "1"},
@@ -419,15 +396,6 @@ TEST_F(Config, TakesListsAndYieldsToTheCommandLine) {
   EXPECT_EQ(json["model"], "mindlin-dahl");
   EXPECT_EQ(json["parameters"]["alpha"]["value"], 0.3);
   EXPECT_EQ(json["parameters"]["alpha"]["status"], "fixed");
-  EXPECT_EQ(json["parameters"]["force_offset"]["status"], "fixed");
-}
-
-TEST_F(Config, TakesListsOverSeveralLines) {
-  const Outcome outcome =
-      FitWith("fix = [\n  \"alpha=0.3\",  # not Mindlin's\n  \"force_offset=0\",\n]\n");
-  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
-  const nlohmann::json json = outcome.Json();
-  EXPECT_EQ(json["parameters"]["alpha"]["value"], 0.3);
   EXPECT_EQ(json["parameters"]["force_offset"]["status"], "fixed");
 }
 

@@ -169,11 +169,6 @@ Words NamesAfter(const std::string& command,
   return words;
 }
 
-std::string WithoutHeader(const std::string& table) {
-  const std::size_t end = table.find('\n');
-  return end == std::string::npos ? "" : table.substr(end + 1);
-}
-
 std::vector<std::string> LinesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -238,43 +233,6 @@ void JoinRecords(Input input) {
   RequireFiniteCells(output.Content());
   if (outcome.status == cli::kBadInput) return;
   RequireNumbers(outcome.out);
-}
-
-void TrackSeparateTests(Input input) {
-  Bytes bytes(input);
-  Words options = {"--threads", "1", "--json", "-"};
-  AddOptions(options, kOptionsOfTrack, bytes);
-  const std::uint32_t cut = bytes.Number(2);
-  const auto files = FilesOf(bytes.Text());
-  const auto track = [&](const MemoryFile& output, const Words& more) {
-    Words words = NamesAfter("track", files);
-    Append(words, options);
-    Append(words, {"--output", output.name()});
-    Append(words, more);
-    return Run(words);
-  };
-  const MemoryFile whole("");
-  const Outcome outcome = track(whole, {"--separate", "--overwrite"});
-  RequireFiniteCells(whole.Content());
-  if (outcome.status == cli::kBadInput) return;
-  RequireNumbers(outcome.out);
-  std::string joined;
-  for (const char* const shard : {"1/2", "2/2"}) {
-    const MemoryFile part("");
-    Require(track(part, {"--overwrite", "--shard", shard}).status != cli::kBadInput,
-            "a shard of what is tracked is tracked");
-    joined += WithoutHeader(part.Content());
-  }
-  const std::string table = whole.Content();
-  Require(joined == WithoutHeader(table), "the tables of the shards are that of all tests");
-  const std::string before = table.substr(0, cut % (table.size() + 1));
-  const MemoryFile resumed(before);
-  if (track(resumed, {"--separate", "--resume"}).status == cli::kBadInput) {
-    Require(resumed.Content() == before, "a table that is refused is left alone");
-    Require(before.find('\n') == std::string::npos, "whole rows are gone on with");
-  } else {
-    Require(resumed.Content() == table, "tests that are gone on with become the undisturbed");
-  }
 }
 
 void FitSweeps(Input input) {

@@ -13,9 +13,6 @@ void ResumeTables(Input input);
 
 /// Runs `fit --join` or `track --join` on pieces of a record.
 void JoinRecords(Input input);
-/// Runs `track --separate` on some tests: its shards make the same table, and a piece of the table
-/// is completed to the whole.
-void TrackSeparateTests(Input input);
 /// Runs `fit --sweep` on any table.
 void FitSweeps(Input input);
 

@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 # Each file of a module declares only its module's namespace, mindahl::MODULE or deeper, and core's
-# alone declare mindahl itself; no file opens another's namespace wide. cli/app.h names two classes
+# alone declare mindahl itself; no file opens another's namespace wide. cli/app.h names a class
 # of CLI11 instead of including it.
 set(errors "")
 foreach(module core contact loop models methods tradeoff convert identification io campaign request cli)

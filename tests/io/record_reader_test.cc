@@ -275,7 +275,8 @@ TEST(ImposedColumn, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
   EXPECT_EQ(column(timed), (Numbers{2e-3, 4e-3})) << "past a time";
   EXPECT_EQ(column(timed, Imposed::kForce, "[mN]"), (Numbers{0.007, 0.008}));
   EXPECT_EQ(column(timed, Imposed::kNormalLoad, "normal"), (Numbers{1e3, 2e3}));
-  EXPECT_THROW(column("force [N],x [m]\n1,2\n"), InputError);
+  EXPECT_EQ(column("force [N],x [m]\n1,2\n"), (Numbers{2})) << "past a force";
+  EXPECT_THROW(column("force [N],remark\n1,2\n"), InputError);
 }
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();

@@ -276,9 +276,36 @@ TEST(Answer, SaysEveryWarningOnce) {
   input.fit.findings = {{.code = "reversals_uncertain",
                          .numbers = {{"count", 7.0}, {"other_count", 9.0}, {"other_gate", 1e-7}}},
                         {.code = "load_followed", .numbers = {{"variation", 0.1}}}};
-  EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals or 9"));
+  EXPECT_THAT(LineOf(input, "note"), StartsWith("7 reversals, or 9 if"));
   EXPECT_THAT(Answer(input), Not(HasSubstr("which the law follows")));
   EXPECT_THAT(Details(input), HasSubstr("which the law follows"));
+}
+
+TEST(Answer, SaysWhatWasAssumedOfTheFile) {
+  ReportInput input = MadeInput();
+  input.notes = {"loop.csv:4: 2 rows above the header skipped"};
+  EXPECT_EQ(LineOf(input, "read as"), input.notes[0]);
+  input.notes.emplace_back("loop.csv: force 'F' names no unit: taken as N");
+  EXPECT_EQ(LineOf(input, "read as"), "2 assumptions, units among them: --details");
+  EXPECT_THAT(Details(input), HasSubstr("names no unit: taken as N"));
+}
+
+TEST(Answer, DoesNotCallADriftWhatIsAlikeInEveryStroke) {
+  ReportInput input = Doubtful();
+  input.fit.findings = {{.code = "slow_residuals"}};
+  input.fit.records[0].structure.repeatable_share = 0.3;
+  EXPECT_THAT(Answer(input), HasSubstr("drifts slowly"));
+  input.fit.records[0].structure.repeatable_share = 0.7;
+  EXPECT_THAT(Answer(input), AllOf(HasSubstr("alike in every stroke"), Not(HasSubstr("drifts"))));
+}
+
+TEST(Sentence, AsksForSamplesOnlyWhereNoiseIsAllThatIsLeft) {
+  const identification::Finding wide{.code = "sigma_not_identifiable",
+                                     .parameters = {"sigma"},
+                                     .numbers = {{"lower", 1e6}, {"upper", 1e9}}};
+  EXPECT_EQ(Sentence(wide, MadeInput().fit),
+            "95 % interval 1 N/µm … 1 N/nm is too wide; more samples or less noise");
+  EXPECT_EQ(Sentence(wide, Doubtful().fit), "95 % interval 1 N/µm … 1 N/nm is too wide");
 }
 
 TEST(Answer, IsAtMostAHundredColumnsWide) {

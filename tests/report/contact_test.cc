@@ -151,14 +151,5 @@ TEST(TestLoadExponent, RejectsWhatTheExponentDenies) {
   EXPECT_TRUE(DeniesHertz(fit));
 }
 
-TEST(MeanNormalLoad, IsThatOfTheSamplesInTheWindow) {
-  loop::Record record = MadeRecord(1e-6, 4);
-  record.normal_load = {10, 20, 30, 40};
-  EXPECT_EQ(*MeanNormalLoad({&record, 1}), 25.0);
-  EXPECT_EQ(*MeanNormalLoad({&record, 1}, identification::Interval{15, 35}), 25.0);
-  EXPECT_EQ(*MeanNormalLoad({&record, 1}, identification::Interval{5, 25}), 15.0);
-  EXPECT_FALSE(MeanNormalLoad({&record, 1}, identification::Interval{50, 60}));
-}
-
 }  // namespace
 }  // namespace mindahl::report::contact_test

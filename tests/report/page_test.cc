@@ -89,30 +89,5 @@ TEST(DrawLoop, ShowsTheFitOfTheNextStep) {
   EXPECT_EQ(panels.loop.series.back().label, "fitted with --terms lag");
 }
 
-TEST(DrawLikelihood, IsOfAProfileAlone) {
-  ReportInput input = MadeInput();
-  EXPECT_FALSE(DrawLikelihood(MakeReport(input)));
-  input.fit.slip_force_profile =
-      identification::LikelihoodProfile{.critical = 4.0,
-                                        .points = {{.law = {4e7, 0.3, 38.0}, .statistic = 90.0},
-                                                   {.law = {4e7, 0.3, 39.0}, .statistic = 5.0},
-                                                   {.law = {4e7, 0.3, 40.0}, .statistic = 0.0}}};
-  const auto panel = DrawLikelihood(MakeReport(input));
-  ASSERT_TRUE(panel);
-  EXPECT_EQ(panel->series[0].y[0], 16.0);  // cut at four times the critical value
-}
-
-TEST(ResidualsCsv, HasARowASample) {
-  const std::string csv = ResidualsCsv(MakeReport(MadeInput()));
-  EXPECT_THAT(csv,
-              StartsWith("time [s],displacement [m],force [N],fitted_force [N],residual [N]\n"));
-  EXPECT_EQ(std::ranges::count(csv, '\n'), 10);
-}
-
-TEST(ToPlot, OfAFitThatFailedIsRefused) {
-  EXPECT_THROW(ToPlot(MakeReport(testing::FailedInput())), InvalidArgument);
-  EXPECT_THROW(ToText(MakeReport(testing::FailedInput())), InvalidArgument);
-}
-
 }  // namespace
 }  // namespace mindahl::report::page_test

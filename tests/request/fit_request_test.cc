@@ -83,9 +83,8 @@ TEST(FitRequest, KnowsTheMeanOfSeveralNormalLoads) {
 }
 
 TEST(FitRecords, NeedsARecordAndANameForEach) {
-  const Tell ignore = [](std::string_view) {};
-  EXPECT_THROW(FitRecords({}, {}, ignore), InputError);
-  EXPECT_THROW(FitRecords({}, {io::RecordFile{}}, ignore), InvalidArgument);
+  EXPECT_THROW(FitRecords({}, {}), InputError);
+  EXPECT_THROW(FitRecords({}, {io::RecordFile{}}), InvalidArgument);
 }
 
 TEST(FitRequest, BecomesOptionsEachInItsPlace) {

@@ -89,97 +89,6 @@ TEST(Simulate, AJointUnderAColumnOfLoadHasForcesInProportionToIt) {
   EXPECT_GT(std::abs(constant[2]), 0.0);
 }
 
-std::string RefusalOf(const std::string& rows) {
-  const TemporaryDirectory directory;
-  DriveRequest request;
-  request.force_path = directory.Write("force.csv", "F [N]\n" + rows).string();
-  try {
-    ReadImposedForce(request, kLaw);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(ReadImposedForce, IsWithinTheSlipForceOfEitherSign) {
-  EXPECT_EQ(RefusalOf("0\n39.9\n-39.9\n"), "");
-  EXPECT_THAT(RefusalOf("0\n39\n40\n"), HasSubstr("force.csv:4: a force of 40 N"));
-  EXPECT_THAT(RefusalOf("0\n39\n-40\n"), HasSubstr("force.csv:4: a force of -40 N"));
-  EXPECT_THAT(RefusalOf("0\n-41\n39\n"), HasSubstr("force.csv:3: a force of -41 N"));
-}
-
-// --- forces in addition to the contact's, along −1, 1, 3, 2, 0 µm, a row a second
-
-// The velocity [µm/s] is a central difference, one-sided at the ends; the acceleration [µm/s²] is
-// that of the velocity.
-constexpr std::array<double, 5> kVelocity = {2, 2, 0.5, -1.5, -2};
-constexpr std::array<double, 5> kAcceleration = {0, -0.75, -1.75, -1.25, -0.5};
-// From the middle, 1 µm, to either end at 2 µm; of the time from −1 to 1.
-constexpr std::array<double, 5> kFromMiddle = {-2, 0, 2, 1, -1};  // [µm]
-constexpr std::array<double, 5> kPosition = {-1, 0, 1, 0.5, -0.5};
-constexpr std::array<double, 5> kTimeOfAll = {-1, -0.5, 0, 0.5, 1};
-constexpr double kMicro = 1e-6;
-
-std::vector<double> Simulated(const AddedForces& forces) {
-  const TemporaryDirectory directory;
-  SimulationRequest request;
-  request.law.sigma = kLaw.tangential_stiffness;
-  request.law.slip_force = kLaw.slip_force;
-  request.drive.path = directory.Write("path.csv", "x [um]\n-1\n1\n3\n2\n0\n").string();
-  request.forces = forces;
-  return Simulate(request).force;
-}
-
-/// Compares what the forces add to that of the contact alone [N].
-template <typename Added>
-void ExpectAdded(const AddedForces& forces, Added added) {
-  const std::vector<double> alone = Simulated({});
-  const std::vector<double> all = Simulated(forces);
-  ASSERT_EQ(all.size(), 5U);
-  constexpr double kRounding = 1e-12;  // of 40 N
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_NEAR(all[i] - alone[i], added(i, alone[i]), kRounding * kLaw.slip_force) << i;
-  }
-}
-
-TEST(AddedForces, FollowTheSpeedAndTheAcceleration) {
-  ExpectAdded({.viscous = 3e6, .ripple = {}},
-              [](std::size_t i, double) { return 3e6 * kMicro * kVelocity[i]; });
-  ExpectAdded({.viscous = 3e3, .speed_exponent = 0.5, .ripple = {}}, [](std::size_t i, double) {
-    return 3e3 * std::copysign(std::sqrt(kMicro * std::abs(kVelocity[i])), kVelocity[i]);
-  });
-  ExpectAdded({.inertia = 2e6, .ripple = {}},
-              [](std::size_t i, double) { return 2e6 * kMicro * kAcceleration[i]; });
-}
-
-TEST(AddedForces, ScaleTheContactsOverTheStrokeAndTheTime) {
-  ExpectAdded({.slip_slope = 0.2, .slip_curvature = 0.3, .slip_trend = 0.1, .ripple = {}},
-              [](std::size_t i, double alone) {
-                return alone * (0.2 * kPosition[i] + 0.3 * kPosition[i] * kPosition[i] +
-                                0.1 * kTimeOfAll[i]);
-              });
-}
-
-TEST(AddedForces, FollowThePositionFromTheMiddle) {
-  ExpectAdded(
-      {.plateau_slope = 4e6, .plateau_curvature = 1e12, .ripple = {}},
-      [](std::size_t i, double) { return 4 * kFromMiddle[i] + kFromMiddle[i] * kFromMiddle[i]; });
-  ExpectAdded(
-      {.ripple = 8e-6, .ripple_amplitude = 5, .ripple_phase_up = 0.1, .ripple_phase_down = 0.7},
-      [](std::size_t i, double) {
-        return 5 * std::cos(2 * M_PI * kFromMiddle[i] / 8 + (i < 3 ? 0.1 : 0.7));
-      });
-}
-
-TEST(AddedForces, KeepTheSlipForcePositive) {
-  EXPECT_NO_THROW(
-      Simulated({.slip_slope = -0.5, .slip_curvature = 0.3, .slip_trend = -0.19, .ripple = {}}));
-  EXPECT_THROW(
-      Simulated({.slip_slope = -0.5, .slip_curvature = 0.3, .slip_trend = -0.2, .ripple = {}}),
-      InputError);
-  EXPECT_THROW(Simulated({.ripple = {}, .ripple_amplitude = 1}), InputError);
-}
-
 // --- what a simulation takes from its request
 
 std::string SimulationRefusal(const SimulationRequest& request) {
@@ -265,9 +174,13 @@ TEST_F(SimulateRequest, OfAnImposedForceMovesAJenkinsElementByItsSpring) {
     EXPECT_NEAR(made.motion.displacement[i], made.force[i] / 4e7, 1e-20) << i;
   }
   EXPECT_TRUE(made.motion.normal_load.empty() && made.motion.envelope.empty());
-  request_.forces.viscous = 1.0;
-  EXPECT_THAT(SimulationRefusal(request_), StartsWith("--force-path imposes the whole force"));
-  request_.forces.viscous = 0.0;
+  for (const auto& [rows, said] : {std::pair{"0\n39.9\n-39.9\n", ""},
+                                   {"0\n39\n40\n", "force.csv:4: a force of 40 N"},
+                                   {"0\n39\n-40\n", "force.csv:4: a force of -40 N"},
+                                   {"0\n-41\n39\n", "force.csv:3: a force of -41 N"}}) {
+    ImposeForce(rows);
+    EXPECT_THAT(SimulationRefusal(request_), HasSubstr(said));
+  }
   request_.model = "simplified-dahl";
   EXPECT_THAT(SimulationRefusal(request_), StartsWith("--force-path cannot be used with --model"));
   request_.model = "jenkins";
@@ -287,9 +200,6 @@ TEST_F(SimulateRequest, OfAnAsymmetrySlidesAtAnotherForceEachWay) {
     EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--asymmetry [-]"));
   }
   request_.asymmetry = 0.25;
-  request_.backlash = 1e-7;
-  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--asymmetry cannot be used with --backlash"));
-  request_.backlash = 0.0;
   request_.drive.load_column = "N";
   request_.law.contact.known.normal_load = 50.0;
   EXPECT_THAT(SimulationRefusal(request_),
@@ -299,24 +209,6 @@ TEST_F(SimulateRequest, OfAnAsymmetrySlidesAtAnotherForceEachWay) {
   ImposeForce("0\n5\n");
   EXPECT_THAT(SimulationRefusal(request_),
               HasSubstr("--asymmetry cannot be used with --force-path"));
-}
-
-TEST_F(SimulateRequest, OfABacklashPassesItsGapWhereTheForceTurnsItsSign) {
-  request_.model = "jenkins";
-  request_.law.slip_force = 1e4;  // never slips: a spring with a gap of 0.2 µm about its middle
-  request_.drive.path = directory_.Write("gap.csv", "x [um]\n0\n1\n0.9\n0.5\n-1\n0.05\n").string();
-  request_.backlash = 2e-7;
-  const std::vector<double> force = Simulate(request_).force;
-  const std::array<double, 6> expected = {0, 36, 32, 16, -36, 0};  // 4e7·(|x| − 0.1 µm)
-  ASSERT_EQ(force.size(), expected.size());
-  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_NEAR(force[i], expected[i], 1e-9) << i;
-  request_.backlash = -1e-7;
-  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--backlash [m]"));
-  request_.backlash = 2e-7;
-  request_.model = "dahl";
-  EXPECT_EQ(SimulationRefusal(request_), "");
-  request_.method = "dopri5";
-  EXPECT_THAT(SimulationRefusal(request_), HasSubstr("--backlash cannot be used with"));
 }
 
 TEST_F(SimulateRequest, AddsNoiseOfTheDeviationsThatAreAsked) {

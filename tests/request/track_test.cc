@@ -8,19 +8,6 @@
 namespace mindahl::request::track_test {
 namespace {
 
-TrackedTest TestOf(std::size_t fits) {
-  TrackedTest test;
-  for (std::size_t k = 0; k < fits; ++k) test.Add({});
-  return test;
-}
-
-TEST(SeparateTests, CountTheFitsThatWereThereApart) {
-  SeparateTests tests("table.csv", /*has_document=*/false);
-  tests.Add("a.csv", "", TestOf(3), /*was_there=*/true);
-  tests.Add("b.csv", "", TestOf(4), /*was_there=*/false);
-  EXPECT_THAT(tests.ToText(), HasSubstr("2 tests, 7 fits in table.csv\n3 of them existed"));
-}
-
 TEST(TrackedTest, CountsACycleOnceThatHasTwoFlags) {
   TrackedTest test;
   campaign::CycleFit open;
@@ -81,31 +68,6 @@ TEST(TrackedTest, IsEstablishedUnlessNoFitConverged) {
   EXPECT_TRUE(Lossy({Losing(1.0), Losing(1.0, {"not_converged"})}, 1).established());
   EXPECT_FALSE(
       Lossy({Losing(1.0, {"not_converged"}), Losing(1.0, {"not_converged"})}, 1).established());
-}
-
-TEST(SeparateTests, AddUp) {
-  SeparateTests tests("table.csv", /*has_document=*/true);
-  tests.Add("a.csv", "", Lossy({Losing(3.0), Losing(5.0, {"sigma_open"})}, 1), false);
-  EXPECT_TRUE(tests.established());
-  tests.Add("b.csv", "b.csv:7: no number", Lossy({Losing(0.5)}, 4), false);
-  EXPECT_FALSE(tests.established());
-  EXPECT_EQ(tests.size(), 2U);
-  const auto json = nlohmann::json::parse(tests.ToJson());
-  EXPECT_EQ(json["fits"], 3);
-  EXPECT_EQ(json["flagged"], 1);
-  EXPECT_EQ(json["accumulated_energy"], 10.0);
-  ASSERT_EQ(json["tests"].size(), 2U);
-  EXPECT_EQ(json["tests"][0]["file"], "a.csv");
-  EXPECT_EQ(json["tests"][0]["accumulated_energy"], 8.0);
-  EXPECT_TRUE(json["tests"][0]["fault"].is_null());
-  EXPECT_EQ(json["tests"][0]["flags"]["sigma_open"], 1);
-  EXPECT_EQ(json["tests"][1]["fits"], 1);
-  EXPECT_EQ(json["tests"][1]["accumulated_energy"], 2.0);
-  EXPECT_EQ(json["tests"][1]["fault"], "b.csv:7: no number");
-  EXPECT_THAT(
-      tests.ToText(),
-      StartsWith("2 tests, 3 fits in table.csv\n10 J dissipated in all\n1 cycle has a flag\n"
-                 "1 of the tests failed:\n  b.csv:7: no number\n"));
 }
 
 /// A test whose σ falls by a tenth after its 60th cycle, each of which loses 2.5 mJ.

@@ -60,7 +60,7 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
   file.force.unit = "N";
   request.files = {"a.csv"};
   request.trim = "on";
-  return FitRecords(request, {file}, [](std::string_view) {});
+  return FitRecords(request, {file});
 }
 
 TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {

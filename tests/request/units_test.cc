@@ -116,7 +116,7 @@ report::Report Ask(const Question& question, const UnitScale& scale) {
     request.files.push_back("loop" + std::to_string(files.size() + 1));
     files.push_back(FileOf(record, scale));
   }
-  return FitRecords(request, std::move(files), [](std::string_view) {});
+  return FitRecords(request, std::move(files));
 }
 
 FitRequest WithTerms(std::vector<std::string> names) {

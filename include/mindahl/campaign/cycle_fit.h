@@ -95,8 +95,8 @@ struct CycleNumber {
   std::optional<double>& (*of)(CycleFit&) = nullptr;
 };
 
-/// Returns all of them, in the order of the table.
-std::span<const CycleNumber> CycleNumbers();
+/// Returns all of them, in the order of the table; of a torque about the contact no contact radius.
+std::span<const CycleNumber> CycleNumbers(bool is_torsional = false);
 
 /// Returns the first line of a table of cycles: the columns with their units.
 /// @param is_torsional  of torques against angles
@@ -105,7 +105,8 @@ std::string CycleTableHeader(bool is_torsional);
 /// Returns one line of it (RFC 4180, LF): numbers with as many digits as read back the same double,
 /// an empty cell for what is not known, flags separated by blanks.
 /// @param accumulated_energy  [J] dissipated up to the end of the cycle
-std::string CycleTableRow(const CycleFit& fit, double accumulated_energy);
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy,
+                          bool is_torsional = false);
 
 /// Holds what is read back from a line of the table: the inverse of CycleTableRow().
 struct CycleTableEntry {
@@ -115,6 +116,6 @@ struct CycleTableEntry {
 
 /// @param line  without its end
 /// @throws InputError where it is no line of such a table, saying why
-CycleTableEntry ReadCycleTableRow(std::string_view line);
+CycleTableEntry ReadCycleTableRow(std::string_view line, bool is_torsional = false);
 
 }  // namespace mindahl::campaign

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -116,9 +115,7 @@ struct ValidationReport {
 /// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
 /// fits them with free α by either law and compares. Coverage is judged by binomial tests, one a
 /// parameter, law and row with noise, and over all rows, at kCoverageFalseAlarm over their number.
-/// @param progress  called with the number of contacts done, may be empty
 /// @throws InvalidArgument for options out of range
-ValidationReport ValidateMapping(const ValidationOptions& options,
-                                 const std::function<void(std::size_t)>& progress = {});
+ValidationReport ValidateMapping(const ValidationOptions& options);
 
 }  // namespace mindahl::identification

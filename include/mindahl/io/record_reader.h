@@ -153,9 +153,8 @@ enum class Imposed { kDisplacement, kForce, kNormalLoad };
 
 /// Returns what is to be imposed, one value a row, in order: displacements [m] or [rad], forces [N]
 /// or normal loads [N]; in SI units the very doubles of the file.
-/// @param column  by default the first, or, where that is a time, the one of a recognised name;
-/// unit
-///   as for ReadRecord(), without one SI
+/// @param column  by default the first, or, where that is another channel by its name, the one of a
+///   recognised name; unit as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()
 std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
                                   const std::string& column = {});

@@ -61,11 +61,6 @@ std::vector<LoadHypothesis> TestLoadExponent(const identification::FitResult& fi
 /// Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
 
-/// Returns the mean measured normal load [N], which a steady test keeps to: of the samples in the
-/// window where there is one. Empty where a record has no load or no sample counts.
-std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
-                                     const std::optional<identification::Interval>& window = {});
-
 /// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip; of a law with
 /// α >= 1, which never quite does, 99 % of its slip force.
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,

@@ -49,7 +49,8 @@ struct ReportInput {
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};
-  std::vector<LeftOut> left_out = {};  ///< what was cut off the records as not of their tests
+  std::vector<LeftOut> left_out = {};   ///< what was cut off the records as not of their tests
+  std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::optional<identification::ModelSelection> selection = {};  ///< if models were compared
   std::optional<identification::TermSelection> terms = {};       ///< if terms were chosen
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not

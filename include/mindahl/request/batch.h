@@ -32,8 +32,8 @@ struct BatchEntry {
   std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
 };
 
-/// Reads the records of one source, with notes on what was assumed.
-using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&, const Tell& note)>;
+/// Reads the records of one source.
+using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&)>;
 
 /// Writes the page of a report and returns its name; an empty function writes no pages.
 using WritePage = std::function<std::string(const report::Report&)>;
@@ -45,12 +45,10 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
 
 /// Fits each of the request's files on its own, in their order whatever the number of threads.
 /// @param page_of   of the k-th file; may be empty
-/// @param progress  is called with the number of files that are done, may be empty
 /// @throws InputError or InvalidArgument for options that break a rule whatever the files are
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads,
-                                 const std::function<WritePage(std::size_t k)>& page_of = {},
-                                 const std::function<void(std::size_t)>& progress = {});
+                                 const std::function<WritePage(std::size_t k)>& page_of = {});
 
 /// True if every entry is done.
 bool AllDone(std::span<const BatchEntry> entries);

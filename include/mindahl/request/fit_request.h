@@ -135,13 +135,12 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, io::Reco
 
 /// Reads the request's files, within its limits and time window.
 /// @throws InputError naming file, line and column
-std::vector<io::RecordFile> ReadRecords(const FitRequest& request, const Tell& note);
+std::vector<io::RecordFile> ReadRecords(const FitRequest& request);
 
 /// Fits records together as one contact at Depth::kFull, and reports.
 /// @param records  within the time window, called as request.files; one whose normal load goes in
 ///   steps becomes a record for each load
 /// @throws InvalidArgument or InputError naming record, line and column, or the option
-report::Report FitRecords(const FitRequest& request, std::vector<io::RecordFile> records,
-                          const Tell& note);
+report::Report FitRecords(const FitRequest& request, std::vector<io::RecordFile> records);
 
 }  // namespace mindahl::request

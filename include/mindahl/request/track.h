@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -138,41 +137,5 @@ std::string ToPage(const TrackedTest& test, const std::vector<campaign::Evolutio
 /// Returns the time histories, one below the other.
 /// @throws InvalidArgument where none has two cycles
 io::Plot ToPlot(const TrackedTest& test, const std::vector<campaign::Evolution>& evolutions);
-
-/// Collects the answers for several separate tests in one table.
-class SeparateTests {
- public:
-  /// @param has_document  ToJson() is asked for: the description of each test is kept
-  SeparateTests(std::string output, bool has_document);
-  ~SeparateTests();
-  SeparateTests(const SeparateTests&) = delete;
-  SeparateTests& operator=(const SeparateTests&) = delete;
-
-  /// @param fault      why the test ended before its record; empty where it did not
-  /// @param was_there  its rows were in the table already
-  void Add(const std::string& file, const std::string& fault, const TrackedTest& test,
-           bool was_there);
-  /// Returns the number of tests that were added.
-  [[nodiscard]] std::size_t size() const { return tests_; }
-  /// True unless a test has a fault, or no fit of one converged.
-  [[nodiscard]] bool established() const { return established_; }
-  /// Returns the JSON of schema mindahl.track_separate/1.
-  [[nodiscard]] std::string ToJson() const;
-  /// Returns the summary that `mindahl track --separate` prints.
-  [[nodiscard]] std::string ToText() const;
-
- private:
-  struct Document;
-
-  std::string output_;
-  std::unique_ptr<Document> document_;  // null where it is not asked for
-  std::size_t tests_ = 0;
-  std::size_t fits_ = 0;
-  std::size_t flagged_ = 0;
-  std::size_t kept_ = 0;  // fits that were there
-  double energy_ = 0.0;   // [J]
-  bool established_ = true;
-  std::vector<std::string> faults_;
-};
 
 }  // namespace mindahl::request

@@ -201,12 +201,26 @@ std::optional<Finding> FindExtrapolated(const FitResult& result, const Threshold
                  .numbers = {{"alpha", result.law.shape_exponent}, {"share", share}}};
 }
 
+namespace {
+
+/// True if a record of two strokes ends where it began, in both channels: one closed cycle.
+bool IsOneCycle(const ScaledRecord& record) {
+  constexpr double kSame = 0.02;  // of the range
+  const auto returns = [](std::span<const double> values) {
+    const auto [lowest, highest] = std::ranges::minmax(values);
+    return std::abs(values.back() - values.front()) <= kSame * (highest - lowest);
+  };
+  return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
+}
+
+}  // namespace
+
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds) {
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    if (record.reversals.size() >= 2) return std::nullopt;
+    if (record.reversals.size() >= 2 || IsOneCycle(record)) return std::nullopt;
     const std::size_t offset = problem.parameters.PositionOfOrigin(r);
     is_assumed = is_assumed || problem.parameters[offset].assumed;
     if (problem.parameters[offset].assumed) continue;
