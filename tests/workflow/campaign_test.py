@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The workflow on a small campaign: what it merges is what `mindahl track --separate` says of all
 records, whatever the number of shards, also where a shard fails once, where the run is killed in the
-middle, and as an array of Slurm.
+middle, and as an array of Slurm. Other options and another version fit anew, one more record alone; paths
+may have spaces.
 
 usage: campaign_test.py --program PATH --workflow FOLDER
 Ends with 77 where snakemake is not installed.
@@ -21,7 +22,6 @@ from pathlib import Path
 
 # More than two batches of 64, less than one, more than one; and one whose record breaks off.
 CYCLES = {"new": 140, "old": 3, "worn": 70, "zero": 9}
-SHARD = {name: f"{k + 1}/{len(CYCLES)}" for k, name in enumerate(CYCLES)}
 
 
 def run(*words, **options):
@@ -45,23 +45,23 @@ def write_program(path, text):
 
 
 class Campaign:
-    def __init__(self, snakemake, workflow, folder, results, shards=0):
+    def __init__(self, snakemake, workflow, folder, results, shards=0, records="records"):
         self.command = [snakemake, "--snakefile", workflow / "Snakefile", "--cores", "2", "--quiet",
-                        "--config", f"records={folder / 'records'}", f"results={results}",
+                        "--config", f"records={folder / records}", f"results={results}",
                         f"shards={shards}"]
         self.folder = folder
         self.results = folder / results
         # Its locks and its caches belong to this test alone.
         self.environment = {**os.environ, "HOME": str(folder), "XDG_CACHE_HOME": str(folder)}
 
-    def start(self, program):
-        words = [str(word) for word in [*self.command, f"program={program}"]]
+    def start(self, program, options=""):
+        words = [str(word) for word in [*self.command, f"program={program}", f"options={options}"]]
         return subprocess.Popen(words, cwd=self.folder, env=self.environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                 start_new_session=True)
 
-    def run(self, program):
-        process = self.start(program)
+    def run(self, program, options=""):
+        process = self.start(program, options)
         output, _ = process.communicate()
         assert process.returncode == 0, output
         return output
@@ -85,7 +85,7 @@ def check_tables(campaign, expected, what):
         test["fault"] for test in summary["tests"] if test["fault"]], what
     energy = sum(float(row["energy"]) for row in rows if not row["fault"])
     assert abs(summary["accumulated_energy"] - energy) < 1e-12 * energy, what
-    assert not any((campaign.results / "begun").iterdir()), f"{what}: something was left behind"
+    assert not list((campaign.results / "begun").rglob("*.csv")), f"{what}: something was left behind"
 
 
 def check_array(program, workflow, folder, expected):
@@ -102,6 +102,45 @@ def check_array(program, workflow, folder, expected):
     run(sys.executable, workflow / "merge_tables.py", folder / "array.csv", folder / "array.json",
         *tables)
     assert (folder / "array.csv").read_bytes() == expected, "the array's table is another"
+
+
+def check_key(snakemake, workflow, folder, program):
+    """What is fitted again, in folders with spaces: all with other options or another version, of one
+    more record that alone, and nothing without a change."""
+    records = folder / "two records"
+    records.mkdir()
+    for name in ("b old", "c new"):
+        shutil.copy(folder / "records" / "old.csv", records / f"{name}.csv")
+    asked = folder / "asked.txt"
+    versioned = folder / "the program"
+
+    def make(version):
+        write_program(versioned, f'''
+if [ "$1" = --version ]; then echo "{version}"; exit; fi
+echo "$4" >> "{asked}"
+exec "{program}" "$@"
+''')
+
+    def fitted(options=""):
+        asked.write_text("")
+        campaign.run(versioned, options)
+        return sorted(Path(line).name.split(".")[0] for line in asked.read_text().splitlines())
+
+    make("1.0")
+    campaign = Campaign(snakemake, workflow, folder, "its results", records=records.name)
+    assert fitted() == ["b old", "c new"]
+    first = campaign.table()
+    assert fitted() == []
+    assert fitted("--model jenkins") == ["b old", "c new"]
+    assert campaign.table() != first, "other options give the old table"
+    assert fitted() == ["b old", "c new"]
+    shutil.copy(folder / "records" / "old.csv", records / "a first.csv")
+    assert fitted() == ["a first"]
+    with open(campaign.results / "campaign.csv", newline="") as file:
+        tests = [Path(row["test"]).stem for row in csv.DictReader(file)]
+    assert list(dict.fromkeys(tests)) == ["a first", "b old", "c new"], tests
+    make("1.1")
+    assert fitted() == ["a first", "b old", "c new"]
 
 
 def main():
@@ -132,11 +171,11 @@ def main():
         # One record fails at the first attempt, halfway: what it wrote is gone on with.
         broken = folder / "broken"
         write_program(broken, f'''
-case "$6" in
-  {SHARD['worn']})
+case "$4" in
+  */worn.csv.txt)
     if [ ! -e "{folder}/failed" ]; then
       touch "{folder}/failed"
-      head -c 20000 "{folder}/worn.csv" > "$8"
+      head -c 20000 "{folder}/worn.csv" > "$6"
       exit 1
     fi;;
 esac
@@ -150,9 +189,9 @@ exec "{program}" "$@"
         # The whole run is killed while a record is being fitted, and started anew.
         stalled = folder / "stalled"
         write_program(stalled, f'''
-case "$6" in
-  {SHARD['new']})
-    head -c 30000 "{folder}/new.csv" > "$8"
+case "$4" in
+  */new.csv.txt)
+    head -c 30000 "{folder}/new.csv" > "$6"
     touch "{folder}/stalled_now"
     exec sleep 600;;
 esac
@@ -166,7 +205,7 @@ exec "{program}" "$@"
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
         assert not (campaign.results / "campaign.csv").exists()
-        run(*campaign.command, "--unlock", cwd=folder, env=campaign.environment)
+        run(*campaign.command, f"program={program}", "--unlock", cwd=folder, env=campaign.environment)
         campaign.command.insert(1, "--rerun-incomplete")
         campaign.run(program)
         check_tables(campaign, expected, "a run that was killed")
@@ -176,8 +215,9 @@ exec "{program}" "$@"
         campaign = Campaign(snakemake, arguments.workflow.resolve(), folder, "shards", shards=2)
         campaign.run(program)
         check_tables(campaign, expected, "two shards")
+        check_key(snakemake, arguments.workflow.resolve(), folder, program)
     print("the workflow's table is that of mindahl track: a failed record, a killed run, two "
-          "shards, an array")
+          "shards, an array, what is fitted again")
 
 
 if __name__ == "__main__":
