@@ -16,15 +16,15 @@ namespace mindahl::request {
 /// Holds what is asked for the motion of a contact: a waveform, or a file.
 struct DriveRequest {
   std::string waveform = "sine";
-  std::optional<double> lambda;
-  std::optional<double> amplitude;
+  std::optional<double> lambda{};
+  std::optional<double> amplitude{};
   models::ExcitationOptions excitation{.cycles = 1.0};
-  std::string path;
-  std::string path_unit;
-  std::string load_column;  ///< column of that file; "" = the load is constant
-  std::string load_unit;
-  std::string force_path;  ///< a file that imposes the force instead
-  std::string force_path_unit;
+  std::string path{};
+  std::string path_unit{};
+  std::string load_column{};  ///< column of that file; "" = the load is constant
+  std::string load_unit{};
+  std::string force_path{};  ///< a file that imposes the force instead
+  std::string force_path_unit{};
   std::uint64_t seed = 1;
 };
 
@@ -63,7 +63,7 @@ struct AddedForces {
   double slip_trend = 0.0;         // K [-]
   double plateau_slope = 0.0;      // [N/m]
   double plateau_curvature = 0.0;  // [N/m²]
-  std::optional<double> ripple;    // λ [m]
+  std::optional<double> ripple{};  // λ [m]
   double ripple_amplitude = 0.0;   // [N]
   double ripple_phase_up = 0.0;    // φ₊ [rad]
   double ripple_phase_down = 0.0;  // φ₋ [rad]
@@ -74,16 +74,16 @@ struct AddedForces {
 /// Holds what is asked of a simulation: docs/contract.md, `mindahl simulate`.
 struct SimulationRequest {
   std::string model = "mindlin";
-  LawRequest law;
-  DriveRequest drive;
+  LawRequest law{};
+  DriveRequest drive{};
   double asymmetry = 0.0;
   double backlash = 0.0;  ///< [m]
-  AddedForces forces;
+  AddedForces forces{};
   double force_noise = 0.0;         ///< standard deviation [N]
   double displacement_noise = 0.0;  ///< standard deviation [m]
   std::string method = "exact";
-  std::optional<std::size_t> steps;
-  std::optional<double> tolerance;
+  std::optional<std::size_t> steps{};
+  std::optional<double> tolerance{};
 };
 
 /// Returns the names of the models that may be simulated.
