@@ -30,5 +30,6 @@ void AddFit(pybind11::module_& module);
 void AddTrack(pybind11::module_& module);
 void AddAnswers(pybind11::module_& module);
 void AddModels(pybind11::module_& module);
+void AddProgram(pybind11::module_& module);
 
 }  // namespace mindahl::python

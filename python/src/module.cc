@@ -10,4 +10,5 @@ PYBIND11_MODULE(_mindahl, module) {
   mindahl::python::AddTrack(module);
   mindahl::python::AddAnswers(module);
   mindahl::python::AddModels(module);
+  mindahl::python::AddProgram(module);
 }
