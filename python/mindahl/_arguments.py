@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from numbers import Number
 from typing import Any, Optional, Union
 
@@ -248,3 +248,12 @@ def numbers(name: str, values: Any) -> list[float]:
         return []
     given = [values] if isinstance(values, (Number, np.generic)) else values
     return [float(value) for value in array(name, given)]
+
+
+def in_executor(executor: Any, function: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+    """What an executor makes of each task: concurrent.futures, or dask.distributed's Client."""
+    if hasattr(executor, "submit"):
+        return [future.result() for future in [executor.submit(function, task) for task in tasks]]
+    if hasattr(executor, "map"):
+        return list(executor.map(function, tasks))
+    raise ValueError(f"executor: a {type(executor).__name__} has neither submit() nor map()")

@@ -14,7 +14,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import count, is_frame, path_text
+from ._arguments import count, in_executor, is_frame, path_text
 from ._fit import fit, prepared, request_and_arguments
 from ._records import is_path
 from ._result import FitWarning, Report, Table
@@ -108,7 +108,7 @@ def batch(
         raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
     tasks = [(source, f"record {k + 1}", strictness, given) for k, source in enumerate(sources)]
     if executor is not None:
-        entries = _in_executor(executor, tasks)
+        entries = in_executor(executor, _fit_one, tasks)
     else:
         workers = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
         with ThreadPoolExecutor(workers) as pool:
@@ -121,14 +121,6 @@ def batch(
 
 
 Task = tuple[Any, str, str, dict[str, Any]]
-
-
-def _in_executor(executor: Any, tasks: list[Task]) -> list[_mindahl.BatchEntry]:
-    if hasattr(executor, "submit"):
-        return [future.result() for future in [executor.submit(_fit_one, task) for task in tasks]]
-    if hasattr(executor, "map"):
-        return list(executor.map(_fit_one, tasks))
-    raise ValueError(f"executor: a {type(executor).__name__} has neither submit() nor map()")
 
 
 def _fit_one(task: Task) -> _mindahl.BatchEntry:

@@ -95,7 +95,8 @@ def fit(
             torsional record an angle [rad] and a torque [N m] by displacement_unit="rad".
         fit(frame): a data frame with named columns, "x [um]", recognised as in a file;
             displacement, force, time and normal_load_column choose others by name or number.
-        fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
+        fit({"x [um]": ..., "F": ...}): arrays by the names of columns, as in a frame.
+        fit("loop.csv"), fit(file), fit(read_csv(...)): a file, one that is open, or a record.
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
             A column is "Fx", 5, "5 [mm]", or a sum, "cell1+cell2".
     encoding: of files, as iconv names it. sample_rate: [Hz], where there is no time. with_file:

@@ -1,4 +1,4 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Optional
 
 import numpy as np
@@ -221,8 +221,6 @@ class ContactState:
     def tangent_stiffness(self) -> float: ...
     @property
     def remembered_extremes(self) -> int: ...
-    def __copy__(self) -> ContactState: ...
-    def __deepcopy__(self, memo: Mapping[Any, Any]) -> ContactState: ...
 
 class JointState:
     """Friction of a joint that is moved step by step: help(mindahl.JointState) has the law."""

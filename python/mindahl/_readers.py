@@ -6,6 +6,7 @@ import csv
 import datetime
 import inspect
 import os
+import re
 import tempfile
 from collections.abc import Iterator, Mapping
 from typing import Any, Optional, Union
@@ -26,8 +27,8 @@ def read_mat(path: Path, *, within: Optional[str] = None, **options: Any) -> Rec
 
     Every numeric vector of the file is a column, called by its variable, "test.x" in a struct; of a
     matrix the columns, called "data_1", "data_2", .... Those of the length that most have make the
-    table.
-    within: only variables whose name begins so.
+    table, each by the last part of its name, "x", where that is its alone.
+    within: only variables of this struct.
     options: displacement, force, time, units and the others of read_csv().
     Raises ImportError without scipy, ValueError for a file of version 7.3, which is HDF5.
     """
@@ -47,10 +48,11 @@ def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Re
 
     Every numeric dataset of one dimension is a column, called by its path without the first slash,
     with the unit of its attribute "units", "unit" or "Unit"; of two dimensions the columns, of a
-    compound one the fields. Those of the length that most have make the table.
-    within: only datasets whose path begins so.
+    compound one the fields. Those of the length that most have make the table, each by the last
+    part of its path, where that is its alone.
+    within: only datasets of this group.
     options: displacement, force, time, units and the others of read_csv().
-    Raises ImportError without h5py.
+    Raises ImportError without h5py, ValueError where no name says which is displacement, which force.
     """
     import h5py
 
@@ -132,17 +134,29 @@ def _vectors(variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def _record(path: Path, columns: Columns, within: Optional[str],
             options: Mapping[str, Any]) -> Record:
     chosen = {name: values for name, values in columns.items()
-              if within is None or name.startswith(within)}
+              if within is None or re.match(re.escape(within.rstrip("/.")) + r"([/. ]|$)", name)}
     lengths = [len(values) for values in chosen.values() if len(values) > 1]
     if not lengths:
         raise ValueError(f"{path_text(path)}: holds no vector of numbers"
-                         + ("" if within is None else f" whose name begins with {within!r}")
+                         + ("" if within is None else f" within {within!r}")
                          + f": it has {', '.join(columns) or 'none'}")
     length = max(set(lengths), key=lambda size: (lengths.count(size), size))
-    table = {name: values for name, values in chosen.items() if len(values) == length}
-    bound = inspect.signature(read_csv).bind(path, **options)  # TypeError for what it has not
+    # A column is called by the last part of its name, where no other has that.
+    last = {name: re.sub(r"^[^\[]*[/.](?=[^/.])", "", name)
+            for name, values in chosen.items() if len(values) == length}
+    headers = {name: short if list(last.values()).count(short) == 1 else name
+               for name, short in last.items()}
+    asked = {name.partition(" [")[0]: header.partition(" [")[0] for name, header in headers.items()}
+    given = {role: asked.get(value, value) if isinstance(value, str) else value
+             for role, value in options.items()}
+    bound = inspect.signature(read_csv).bind(path, **given)  # TypeError for what it has not
     bound.apply_defaults()
-    return _mindahl.record_of_columns(
-        path_text(path), list(table),
-        [array(name, values, keep_missing=True) for name, values in table.items()],
+    record = _mindahl.record_of_columns(
+        path_text(path), list(headers.values()),
+        [array(name, chosen[name], keep_missing=True) for name in headers],
         record_options(bound.arguments))
+    # Of a text the columns have an order, which some go by; variables have none.
+    if any("in their order" in note for note in record.notes):
+        raise ValueError(f"{path_text(path)}: no name says which is the displacement and which the force: "
+                         f"give displacement and force, of {', '.join(headers)}")
+    return record

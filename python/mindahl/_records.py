@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import os
+import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -113,6 +114,21 @@ class RecordArguments:
         arrays = [array(name, frame.iloc[:, k].to_numpy(), keep_missing=True)
                   for k, name in enumerate(names)]
         return self.of_table(name, names, arrays, self.columns())
+
+    def of_mapping(self, columns: Mapping[str, Any], name: str) -> Record:
+        """Arrays by the names of columns, with their units, as in a file: {"x [um]": ..., "F": ...}."""
+        return self.of_table(name, [str(column) for column in columns],
+                             [array(str(column), values, keep_missing=True)
+                              for column, values in columns.items()], self.columns())
+
+    def of_file(self, file: Any, name: str) -> Record:
+        """What a file object holds, read as a file of its name is."""
+        content = file.read()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, os.path.basename(str(getattr(file, "name", name))) or name)
+            with open(path, "wb") as copy:
+                copy.write(content.encode() if isinstance(content, str) else content)
+            return _mindahl.read_csv(path, self.columns(), self.max_memory)
 
     def of_dataset(self, dataset: Any, name: str) -> Record:
         """A Dataset of xarray: its variables and coordinates of one dimension, with their units."""
@@ -256,5 +272,9 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         return arguments.of_frame(source, name)
     if hasattr(source, "data_vars"):
         return arguments.of_dataset(source, name)
+    if isinstance(source, Mapping):
+        return arguments.of_mapping(source, name)
+    if hasattr(source, "read"):
+        return arguments.of_file(source, name)
     array(name, source)  # says why it is no array
     raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -10,12 +10,15 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import Any, NamedTuple, Optional, Union, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union, cast
 
 import numpy as np
 
 from . import _mindahl
 from ._arguments import Floats, array
+
+if TYPE_CHECKING:
+    from . import _sections
 
 
 class FitWarning(UserWarning):
@@ -54,12 +57,13 @@ class Section(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         return _wrapped(self._values[name], f"{self._path}.{name}")
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if name not in self._values:
-            raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
-        return self[name]
+    if not TYPE_CHECKING:  # type checkers know the sections of a fit by _sections.pyi
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            if name not in self._values:
+                raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
+            return self[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
@@ -74,7 +78,14 @@ class Section(Mapping[str, Any]):
         return f"{self._path}: {dict(self._values)!r}"
 
 
-class Report(Section):
+class AnySection(Section):
+    """A section whose items are not known to type checkers."""
+
+    if TYPE_CHECKING:
+        def __getattr__(self, name: str) -> Any: ...
+
+
+class Report(AnySection):
     """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it.
 
     established: did the program end with exit status 0?
@@ -275,7 +286,8 @@ class FitResult:
 
     parameters: all, by name. records: the arrays of each record. warnings, notes: in words.
     adequacy, measured, contact, mapping, law, residuals, solver, ...: sections of the report, as
-        docs/contract.md lists them; result.to_dict() is the same as the program's JSON.
+        docs/contract.md lists them; result.to_dict() is the same as the program's JSON. A further
+        parameter, result.force_offset, is result.parameters["force_offset"] to a type checker.
     """
 
     def __init__(self, fitted: Union[_mindahl.Fitted, _StoredFit]) -> None:
@@ -333,18 +345,36 @@ class FitResult:
     def __deepcopy__(self, memo: Any) -> FitResult:
         return FitResult(self._fitted)
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        parameters = self._report.get("parameters") or {}
-        if name in parameters:
-            return self.parameters[name]
-        if name in self._report:
-            return _wrapped(self._report[name], f"result.{name}")
-        if not parameters:
-            raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
-        raise AttributeError(f"the fit has no '{name}': it has the parameters "
-                             f"{', '.join(parameters)} and {', '.join(self._report)}")
+    schema: str
+    version: str
+    model: str
+    initial_state: str
+    confidence: float
+    input: _sections.Input
+    correlation: AnySection
+    residuals: _sections.Residuals
+    solver: _sections.Solver
+    adequacy: _sections.Adequacy
+    measured: _sections.Measured
+    law: _sections.Law
+    contact: AnySection
+    mapping: _sections.Mapping
+    terms: _sections.Terms
+    next: Optional[_sections.NextStep]
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            parameters = self._report.get("parameters") or {}
+            if name in parameters:
+                return self.parameters[name]
+            if name in self._report:
+                return _wrapped(self._report[name], f"result.{name}")
+            if not parameters:
+                raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
+            raise AttributeError(f"the fit has no '{name}': it has the parameters "
+                                 f"{', '.join(parameters)} and {', '.join(self._report)}")
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self._report, *(self._report.get("parameters") or {})})

@@ -9,12 +9,12 @@ import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from html import escape
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, cast
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import Uncertain, contact_options, count, path_text, several
+from ._arguments import Uncertain, contact_options, count, in_executor, path_text, several
 from ._fit import Asked, Range, request_of
 from ._records import RecordArguments, is_path, records_of
 from ._result import FitWarning, Table
@@ -109,7 +109,7 @@ def track(
     force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
-    **known: Optional[Uncertain],
+    executor: Any = None, **known: Optional[Uncertain],
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
@@ -127,9 +127,13 @@ def track(
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
         rows that were skipped.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
+    executor: where the test is tracked instead of here, as of batch(): what it gives back is pickled.
     Other threads run while it fits.
     """
     given = dict(locals())
+    if executor is not None:
+        words = {name: value for name, value in given.items() if name not in ("executor", "known")}
+        return cast(CycleTable, in_executor(executor, _track_one, [{**words, **known}])[0])
     fit = request_of(given)
     fit.contact = contact_options(normal_load=normal_load, **known)
     request = _mindahl.TrackRequest()
@@ -154,6 +158,10 @@ def track(
     for doubt in (*arguments.assumed, *doubts):
         warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
     return CycleTable(columns, units, test)
+
+
+def _track_one(words: dict[str, Any]) -> CycleTable:
+    return track(**words)
 
 
 def _files_of(source: Any) -> Optional[Sequence[str]]:

@@ -44,7 +44,7 @@ struct Answer {
 /// @param ask  is given what takes warnings
 template <typename Ask>
 Answer AnswerOf(Ask ask) {
-  const py::gil_scoped_release others_may_run;
+  const Running running;
   Answer answer;
   const auto made = ask([&](std::string_view warning) { answer.warnings.emplace_back(warning); });
   answer.json = ToJson(made);

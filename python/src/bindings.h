@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/core/interruption.h"
+
 /// The extension module _mindahl: the library's own functions with NumPy arrays for spans. What is
 /// Pythonic - keywords, frames, results with attributes - is python/mindahl/*.py.
 namespace mindahl::python {
@@ -20,6 +22,24 @@ std::span<const double> SpanOf(const Array& array, const char* what);
 
 /// A read-only array of numbers where they are, which keeps their owner alive.
 pybind11::array ViewOf(const std::vector<double>& values, const pybind11::handle& owner);
+
+/// Thrown where Ctrl-C ended a fit: Python's error is set already.
+struct Interrupted {};
+
+/// While it lives, other threads of Python run, and Ctrl-C ends the fits of this one.
+class Running {
+ public:
+  Running() : ask_(&Ask) {}
+
+ private:
+  static void Ask() {
+    const pybind11::gil_scoped_acquire own;
+    if (PyErr_CheckSignals() != 0) throw Interrupted();
+  }
+
+  pybind11::gil_scoped_release others_may_run_;
+  Interruptible ask_;
+};
 
 /// The command line's option names as Python has them: "--rig-stiffness" is "rig_stiffness".
 std::string WithKeywords(const std::string& message);

@@ -50,6 +50,7 @@ void AddErrors(py::module_& module) {
       PyErr_SetString(input_error, WithKeywords(error.what()).c_str());
     } catch (const InvalidArgument& error) {
       PyErr_SetString(PyExc_ValueError, WithKeywords(error.what()).c_str());
+    } catch (const Interrupted&) {  // NOLINT(bugprone-empty-catch): KeyboardInterrupt is set
     } catch (const std::logic_error& error) {
       PyErr_SetString(PyExc_RuntimeError, error.what());
     }

@@ -30,7 +30,7 @@ struct Fitted {
 };
 
 std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
-  const py::gil_scoped_release others_may_run;
+  const Running running;
   request.files.clear();
   std::vector<io::RecordFile> files;
   std::vector<std::string> notes;

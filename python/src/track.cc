@@ -44,6 +44,7 @@ Tracked Track(const TrackRequest& request, const std::vector<NamedRecord>& recor
   const auto warn = [&](std::string_view text) { tracked.warnings.emplace_back(text); };
   std::optional<request::TrackRun> run;
   const auto take = [&](std::span<const CycleFit> fits) {
+    AskWhetherToGoOn();
     tracked.fits.insert(tracked.fits.end(), fits.begin(), fits.end());
     for (const CycleFit& fit : fits) {
       run->test().Add(fit);
@@ -51,9 +52,10 @@ Tracked Track(const TrackRequest& request, const std::vector<NamedRecord>& recor
       tracked.accumulated_energy.push_back(run->test().energy.total());
     }
   };
-  run.emplace(request,
-              request::TrackEvents{
-                  .fits = take, .note = warn, .warn = warn, .begins = {}, .piece_is_read = {}});
+  run.emplace(request, request::TrackEvents{
+                           .fits = take, .note = warn, .warn = warn, .piece_is_read = [](auto...) {
+                             AskWhetherToGoOn();
+                           }});
   run->Read(records);
   run->Finish();
   tracked.test = std::move(run->test());
@@ -148,7 +150,7 @@ void AddTrack(py::module_& module) {
       [](const TrackRequest& request, const std::vector<NamedRecord>& records) {
         Tracked tracked;
         {
-          const py::gil_scoped_release others_may_run;
+          const Running running;
           tracked = Track(request, records);
         }
         return TrackedColumns(std::move(tracked));

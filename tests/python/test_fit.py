@@ -3,6 +3,7 @@
 import html
 import inspect
 import re
+import subprocess
 import sys
 import threading
 import time
@@ -493,3 +494,25 @@ def test_a_loop_of_an_imposed_force_is_fitted_by_its_displacement():
     # Either difference rounds once, of displacements ten times as large as a residual.
     np.testing.assert_allclose(record.fitted_displacement - record.displacement, record.residual,
                                atol=1e-15 * np.ptp(record.displacement))
+
+
+def test_ctrl_c_ends_a_fit_at_once(tmp_path):
+    script = tmp_path / "long.py"
+    script.write_text("""
+import os, signal, sys, threading, time
+import numpy as np
+import mindahl
+_, x = mindahl.excitation(amplitude=3e-6, cycles=200, samples_per_cycle=2000)
+force = mindahl.simulate(x, sigma=4e7, slip_force=40.0)
+force += np.random.default_rng(1).normal(0, 0.1, force.size)
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+begin = time.monotonic()
+try:
+    for _ in range(100):
+        mindahl.fit(x, force, terms="auto")
+except KeyboardInterrupt:
+    print(time.monotonic() - begin)
+""")
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    waited = float(run.stdout)
+    assert 0.9 < waited < 4.0, waited  # a fit takes many seconds

@@ -1,5 +1,7 @@
 """Records from MAT, HDF5 and Excel files, each made by the library that reads it, from xarray and pint;
 a result from its JSON. A library that is not installed is skipped."""
+import io
+
 import numpy as np
 import pytest
 
@@ -35,6 +37,12 @@ def test_mat_files_are_read_by_name_in_structs_and_matrices(tmp_path):
     scipy_io.savemat(path, {"name": "empty"})
     with pytest.raises(ValueError, match="holds no vector of numbers"):
         mindahl.read_mat(path)
+    # By the order of their names the force would be the displacement.
+    scipy_io.savemat(path, {"run": {"a": FORCE, "b": X}})
+    with pytest.raises(ValueError, match="no name says which is the displacement"):
+        mindahl.read_mat(path)
+    scipy_io.savemat(path, {"run": {"time": TIME, "x": X, "F": FORCE}})
+    is_the_record(mindahl.read_mat(path))
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
@@ -53,8 +61,28 @@ def test_hdf5_files_are_read_with_the_units_of_their_attributes(tmp_path):
                                displacement="run 1/displacement", force="run 1/force")
     is_the_record(record, tolerance=UNIT)
     assert record.columns["displacement"]["unit"] == "um"
+    # By the last part of their names; "F" comes before "x".
+    is_the_record(mindahl.read_hdf5(path, within="run 2"))
+    is_the_record(mindahl.read_hdf5(path, within="run 1"), tolerance=UNIT)
+    is_the_record(mindahl.read_hdf5(path, within="run 2", displacement="x", force="F"))
     is_the_record(mindahl.read_hdf5(path, within="run 2", time="run 2.time",
                                     displacement="run 2.x", force="run 2.F"))
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_dictionary_of_arrays_and_an_open_file_are_records(tmp_path):
+    expected = mindahl.fit(X, FORCE, time=TIME)
+    columns = {"F [N]": FORCE, "x [m]": X, "t [s]": TIME}
+    assert mindahl.fit(columns).sigma.value == expected.sigma.value
+    assert mindahl.fit(columns, displacement=2, force="F").sigma.value == expected.sigma.value
+    path = tmp_path / "loop.csv"
+    path.write_text("\n".join([",".join(columns), *(f"{force!r},{x!r},{time!r}" for force, x, time in zip(
+        FORCE.tolist(), X.tolist(), TIME.tolist()))]))
+    for mode in ("r", "rb"):
+        with open(path, mode) as file:
+            assert mindahl.fit(file).sigma.value == expected.sigma.value
+    with pytest.raises(mindahl.InputError, match="record"):
+        mindahl.fit(io.StringIO("x,F\n1,no\n"))
 
 
 def test_excel_sheets_are_read_by_the_rules_of_csv_files(tmp_path):

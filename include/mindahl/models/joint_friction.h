@@ -73,6 +73,10 @@ class JointState {
   /// Returns to z = 0 at the displacement of the start.
   void Reset() { state_.Reset(); }
 
+  /// As of ContactState.
+  [[nodiscard]] std::vector<double> Memory() const { return state_.Memory(); }
+  void Remember(std::span<const double> memory) { state_.Remember(memory); }
+
  private:
   [[nodiscard]] double ForceOf(double state, double load) const;
 
