@@ -66,6 +66,7 @@ class BuildByCMake(build_ext):
         if len(libraries) != 1:
             raise RuntimeError(f"{package}/mindahl holds {len(libraries)} extensions: build it anew")
         shutil.copy2(libraries[0], target)
+        shutil.copy2(package / "mindahl" / "_sections.pyi", target.parent)
         bundle(target, target.parent)
 
     def build_package(self):
@@ -75,7 +76,7 @@ class BuildByCMake(build_ext):
              "-DMINDAHL_BUILD_PYTHON=ON", "-DMINDAHL_BUILD_TESTS=OFF", "-DMINDAHL_BUILD_EXAMPLES=OFF",
              "-DMINDAHL_INSTALL=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=12",
              f"-DMINDAHL_PYTHON={sys.executable}"], check=True)
-        subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python", "--parallel"],
+        subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python_package", "--parallel"],
                        check=True)
         return build / "python" / "package"
 

@@ -41,7 +41,7 @@ for group in "$@"; do
     --workflow) packages+=(snakemake) ;;
     --readers)
       packages+=(
-        python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
+        python3-scipy python3-h5py python3-pint python3-xarray
         python3-nbclient python3-nbformat python3-ipykernel python3-emcee
       )
       ;;

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import datetime
 import inspect
 import os
 import re
-import tempfile
 from collections.abc import Iterator, Mapping
 from typing import Any, Optional, Union
 
@@ -16,7 +13,7 @@ import numpy as np
 from . import _mindahl
 from ._arguments import array, path_text
 from ._mindahl import Record
-from ._records import read_csv, record_options
+from ._records import read_csv, reading
 
 Path = Union[str, os.PathLike[str]]
 Columns = dict[str, Any]
@@ -71,45 +68,6 @@ def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Re
     return _record(path, columns, within, options)
 
 
-def read_excel(path: Path, *, sheet: Optional[str] = None, **options: Any) -> Record:
-    """Reads a record from a sheet of an Excel workbook (xlsx) by openpyxl.
-
-    The sheet is read as a CSV file of its cells is: preamble, header, units and columns are found by
-    the same rules. Formulas have the values that Excel stored.
-    sheet: its name; by default the first.
-    options: displacement, force, time, units and the others of read_csv().
-    Raises ImportError without openpyxl, InputError naming row and column.
-    """
-    import openpyxl
-
-    book = openpyxl.load_workbook(path_text(path), read_only=True, data_only=True)
-    try:
-        if sheet is not None and sheet not in book.sheetnames:
-            raise ValueError(f"{path_text(path)}: has no sheet {sheet!r}: it has "
-                             f"{', '.join(book.sheetnames)}")
-        cells = book[sheet] if sheet is not None else book.worksheets[0]
-        with tempfile.TemporaryDirectory() as folder:
-            # So that messages name the workbook.
-            name = os.path.join(folder, os.path.basename(path_text(path)))
-            with open(name, "w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                for row in cells.iter_rows(values_only=True):
-                    writer.writerow([_cell_text(cell) for cell in row])
-            return read_csv(name, **options)
-    finally:
-        book.close()
-
-
-def _cell_text(cell: Any) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, float):
-        return repr(cell)
-    if isinstance(cell, datetime.datetime):
-        return cell.isoformat(sep=" ")
-    return str(cell)
-
-
 def _vectors(variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """The numeric vectors in variables, in structs, matrices and records of them."""
     for name, value in variables.items():
@@ -154,7 +112,7 @@ def _record(path: Path, columns: Columns, within: Optional[str],
     record = _mindahl.record_of_columns(
         path_text(path), list(headers.values()),
         [array(name, chosen[name], keep_missing=True) for name in headers],
-        record_options(bound.arguments))
+        reading(bound.arguments, list(map(str, bound.arguments["covariates"]))))
     # Of a text the columns have an order, which some go by; variables have none.
     if any("in their order" in note for note in record.notes):
         raise ValueError(f"{path_text(path)}: no name says which is the displacement and which the force: "

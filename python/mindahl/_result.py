@@ -7,10 +7,10 @@ import io
 import json
 import os
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class Section(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         return _wrapped(self._values[name], f"{self._path}.{name}")
 
-    if not TYPE_CHECKING:  # type checkers know the sections of a fit by _sections.pyi
+    if not TYPE_CHECKING:  # type checkers know the sections of a fit by cmake/sections.py
         def __getattr__(self, name: str) -> Any:
             if name.startswith("_"):
                 raise AttributeError(name)
@@ -85,40 +85,45 @@ class AnySection(Section):
         def __getattr__(self, name: str) -> Any: ...
 
 
-class Report(AnySection):
-    """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it.
+class Told:
+    """What a command of the program answered: its JSON and its text.
 
     established: did the program end with exit status 0?
     """
 
-    _tables: tuple[str, ...] = ()
-
-    def __init__(self, answer: _mindahl.Answer, path: str, tables: tuple[str, ...] = ()) -> None:
-        super().__init__(json.loads(answer.json), path)
-        self._answer = (answer.json, answer.text, answer.established)
-        self._tables = tables
-
-    @property
-    def established(self) -> bool:
-        return self._answer[2]
+    _document: str
+    _text: str
+    established: bool
 
     def to_dict(self) -> dict[str, Any]:
         """What the program writes as JSON, as a dict of one's own."""
-        return copy.deepcopy(dict(self._values))
+        return dict(json.loads(self._document))
 
     def to_json(self) -> str:
         """The same as text, byte for byte as the program writes it."""
-        return self._answer[0]
+        return self._document
 
     def text(self) -> str:
         """What the program prints."""
-        return self._answer[1]
+        return self._text
 
     def __str__(self) -> str:
-        return self.text()
+        return self._text
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text())}</pre>"
+        return f"<pre>{escape(self._text)}</pre>"
+
+
+class Report(Told, AnySection):
+    """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it."""
+
+    _tables: tuple[str, ...] = ()
+
+    def __init__(self, document: str, text: str, established: bool, path: str,
+                 tables: tuple[str, ...] = ()) -> None:
+        super().__init__(json.loads(document), path)
+        self._document, self._text, self.established = document, text, established
+        self._tables = tables
 
     def to_pandas(self, table: Optional[str] = None) -> Any:
         """A table of the report as a pandas DataFrame; members of members have names such as
@@ -254,33 +259,6 @@ class Covariance(NamedTuple):
     names: tuple[str, ...]
 
 
-class _StoredFit:
-    """A fit of which the JSON is left, and what else was kept."""
-
-    def __init__(self, document: str, text: str = "", page: str = "", notes: Sequence[str] = (),
-                 units: tuple[str, str] = ("m", "N"),
-                 records: Sequence[dict[str, Any]] = ()) -> None:
-        self._document, self._page = document, page
-        self.notes, self.units, self.records = notes, units, records
-        parameters = FitResult(self).parameters
-        self.failed = not parameters
-        self._text = text or "\n".join(map(str, parameters.values())) or "the fit failed"
-
-    def json(self) -> str:
-        return self._document
-
-    def text(self) -> str:
-        return self._text
-
-    def page(self) -> str:
-        return self._page or f"<!DOCTYPE html>\n<title>mindahl</title>\n<pre>{escape(self._text)}</pre>\n"
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(name if name.startswith("_") else
-                             f"a result that was read from JSON has no {name}: it has no records; "
-                             "fit them again")
-
-
 class FitResult:
     """A fit: sigma, alpha, slip_force and every section of the report as attributes.
 
@@ -290,9 +268,10 @@ class FitResult:
         parameter, result.force_offset, is result.parameters["force_offset"] to a type checker.
     """
 
-    def __init__(self, fitted: Union[_mindahl.Fitted, _StoredFit]) -> None:
-        self._fitted = cast(_mindahl.Fitted, fitted)
-        self._report: dict[str, Any] = json.loads(fitted.json())
+    def __init__(self, kept: Mapping[str, Any], fitted: Optional[_mindahl.Fitted] = None) -> None:
+        self._kept = dict(kept)
+        self._fitted = fitted
+        self._report: dict[str, Any] = json.loads(kept["document"])
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
@@ -304,7 +283,7 @@ class FitResult:
         """
         with open(path, "rb") as file:
             content = file.read()
-        kept: dict[str, Any] = {}
+        kept: dict[str, Any] = {"text": "", "notes": (), "units": ("m", "N"), "records": ()}
         try:
             if content.startswith(b"PK"):
                 with np.load(io.BytesIO(content)) as arrays:
@@ -312,55 +291,52 @@ class FitResult:
                     for k, record in enumerate(kept["records"]):
                         record.update({name: arrays[f"{name}_{k}"] for name, value in record.items()
                                        if name != "name" and value is not None})
-            text = kept.pop("document") if kept else content.decode()
-            document = json.loads(text)
+            else:
+                kept["document"] = content.decode()
+            document = json.loads(kept["document"])
         except (KeyError, ValueError, zipfile.BadZipFile):
             document = None
         if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/2":
             raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
-        return cls(_StoredFit(text, **kept))
+        return cls(kept)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes JSON, text, page and arrays to one file, of NumPy's format npz, for load()."""
-        kept: dict[str, Any] = {**self._kept(), "page": self.page()}
-        arrays = {f"{name}_{k}": value for k, record in enumerate(kept["records"])
+        records = self._kept["records"]
+        arrays = {f"{name}_{k}": value for k, record in enumerate(records)
                   for name, value in record.items() if isinstance(value, np.ndarray)}
-        kept["records"] = [{name: "array" if isinstance(value, np.ndarray) else value
-                            for name, value in record.items()} for record in kept["records"]]
+        kept = {**self._kept, "page": self.page(), "records": [
+            {name: "array" if isinstance(value, np.ndarray) else value
+             for name, value in record.items()} for record in records]}
         with open(path, "wb") as file:
             np.savez_compressed(file, kept=np.frombuffer(json.dumps(kept).encode(), np.uint8),
                                 **arrays)
 
-    def _kept(self) -> dict[str, Any]:
-        fitted = self._fitted
-        return {"document": fitted.json(), "text": fitted.text(), "notes": list(fitted.notes),
-                "units": tuple(fitted.units), "records": list(fitted.records)}
-
     def __reduce__(self) -> tuple[Any, ...]:
-        return _result_of, (self._kept(),)
+        return FitResult, (self._kept,)
 
     def __copy__(self) -> FitResult:
-        return FitResult(self._fitted)  # which nothing changes
+        return FitResult(self._kept, self._fitted)  # which nothing changes
 
     def __deepcopy__(self, memo: Any) -> FitResult:
-        return FitResult(self._fitted)
+        return copy.copy(self)
 
     schema: str
     version: str
     model: str
     initial_state: str
     confidence: float
-    input: _sections.Input
+    input: _sections.input
     correlation: AnySection
-    residuals: _sections.Residuals
-    solver: _sections.Solver
-    adequacy: _sections.Adequacy
-    measured: _sections.Measured
-    law: _sections.Law
+    residuals: _sections.residuals
+    solver: _sections.solver
+    adequacy: _sections.adequacy
+    measured: _sections.measured
+    law: _sections.law
     contact: AnySection
-    mapping: _sections.Mapping
-    terms: _sections.Terms
-    next: Optional[_sections.NextStep]
+    mapping: _sections.mapping
+    terms: _sections.terms
+    next: Optional[_sections.next]
 
     if not TYPE_CHECKING:
         def __getattr__(self, name: str) -> Any:
@@ -420,12 +396,12 @@ class FitResult:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed of the record, such as a unit that it does not name."""
-        return tuple(self._fitted.notes)
+        return tuple(self._kept["notes"])
 
     @property
     def records(self) -> tuple[FittedRecord, ...]:
         """Each record with its fit; a record whose load goes in steps is one for each load."""
-        return tuple(FittedRecord(**arrays) for arrays in self._fitted.records)
+        return tuple(FittedRecord(**arrays) for arrays in self._kept["records"])
 
     @property
     def fitted_force(self) -> Any:
@@ -453,7 +429,7 @@ class FitResult:
 
     def to_json(self) -> str:
         """The same as text, byte for byte as the program writes it."""
-        return self._fitted.json()
+        return str(self._kept["document"])
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one row a parameter. Raises ImportError without pandas."""
@@ -464,17 +440,19 @@ class FitResult:
 
     def residuals_csv(self) -> str:
         """What `mindahl fit --residuals` writes."""
+        if self._fitted is None:
+            raise ValueError("a result that was read or pickled has no residuals of its own: fit its records again")
         return self._fitted.residuals_csv()
 
     def text(self) -> str:
         """What `mindahl fit` prints."""
-        return self._fitted.text()
+        return self._kept["text"] or "\n".join(map(str, self.parameters.values())) or "the fit failed"
 
     def __str__(self) -> str:
         return self.text()
 
     def __repr__(self) -> str:
-        if self._fitted.failed:
+        if not self.parameters:
             return f"<mindahl.FitResult: {self.text().strip()}>"
         values = ", ".join(self._short(name) for name in ("sigma", "alpha", "slip_force"))
         verdict = self.adequacy.verdict or "adequacy not decided"
@@ -513,7 +491,7 @@ class FitResult:
         others = [name for name, value in values.items() if value]
         if others:
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
-        from ._contact import simulate
+        from ._commands import simulate
 
         return offset + simulate(array("displacement", displacement) - origin,
                                  model=self._report["model"], **own)
@@ -528,13 +506,16 @@ class FitResult:
         Raises ValueError for a fit that failed, was read or was pickled, and for one with a robust loss,
             noise of the displacement or turning points between samples.
         """
-        if isinstance(self._fitted, _StoredFit):
+        if self._fitted is None:
             raise ValueError("a result that was read or pickled has no likelihood: fit its records again")
         return LogLikelihood(_mindahl.Likelihood(self._fitted), self.parameters)
 
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""
-        return self._fitted.page()
+        if self._fitted is not None:
+            return self._fitted.page()
+        return self._kept.get("page") or (
+            f"<!DOCTYPE html>\n<title>mindahl</title>\n<pre>{escape(self.text())}</pre>\n")
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, so that its style and a notebook's do not mix."""
@@ -551,8 +532,4 @@ class FitResult:
         """
         from ._plot import draw
 
-        return draw(self.records, self._fitted.units, ax)
-
-
-def _result_of(kept: dict[str, Any]) -> FitResult:
-    return FitResult(_StoredFit(**kept))
+        return draw(self.records, self._kept["units"], ax)

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import copy
-import json
-import os
+import csv
+import io
 import warnings
 from collections.abc import Mapping, Sequence
-from functools import cached_property
-from html import escape
 from typing import Any, Optional, Union, cast
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import Uncertain, contact_options, count, in_executor, path_text, several
-from ._fit import Asked, Range, request_of
-from ._records import RecordArguments, is_path, records_of
-from ._result import FitWarning, Table
+from ._arguments import Uncertain, in_executor, several, words
+from ._commands import Answer, ask
+from ._fit import Asked, Range
+from ._records import OF_FILES, ROLES, UNITS, RecordArguments, is_path, records_of
+from ._result import FitWarning, Table, Told
 
 
-class CycleTable(Table):
+class CycleTable(Told, Table):
     """The answer of track(): one row a cycle, a NumPy array a column; unknown values are NaN.
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
@@ -30,65 +28,31 @@ class CycleTable(Table):
         "measured", with that of the fits before them, "replaced", or not at all, "left_out".
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
         "first", "last", "settled_at", "steps" and "trends".
+    established: did any fit converge?
     """
 
-    def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str],
-                 test: _mindahl.TrackedTest) -> None:
-        self._columns = {name: np.asarray(values) for name, values in columns.items()}
-        self.units = dict(units)
-        self._test: Optional[_mindahl.TrackedTest] = test
-        self._established = test.established
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_described": self._described, "_test": None}
-
-    @cached_property
-    def _described(self) -> tuple[str, str, list[str]]:
-        assert self._test is not None  # of a pickled table the description is there
-        return self._test.describe()
-
-    @cached_property
-    def _document(self) -> dict[str, Any]:
-        return dict(json.loads(self.to_json()))
-
-    def to_dict(self) -> dict[str, Any]:
-        """What `mindahl track --json` writes; its "output" is None."""
-        return copy.deepcopy(self._document)
-
-    def to_json(self) -> str:
-        """The same as text, byte for byte."""
-        return self._described[0]
-
-    def text(self) -> str:
-        """What `mindahl track` prints."""
-        return self._described[1]
-
-    def __str__(self) -> str:
-        return self.text()
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text())}</pre>"
-
-    @property
-    def established(self) -> bool:
-        """Did any fit converge?"""
-        return self._established
-
-    @property
-    def energy_counts(self) -> dict[str, int]:
-        return dict(self._document["energy_counts"])
-
-    @property
-    def headline(self) -> str:
-        return str(self._document["headline"])
-
-    @property
-    def quantities(self) -> dict[str, dict[str, Any]]:
-        return copy.deepcopy(dict(self._document["quantities"]))
-
-    @property
-    def changes(self) -> tuple[str, ...]:
-        return tuple(self._described[2])
+    def __init__(self, answer: Answer, table: str) -> None:
+        self._document = answer.document.replace('"output": "output"', '"output": null')
+        self._text, self.established = answer.text.replace(" in output", "", 1), answer.established
+        document = self.to_dict()
+        self.headline: str = document["headline"]
+        self.energy_counts: dict[str, int] = document["energy_counts"]
+        self.quantities: dict[str, dict[str, Any]] = document["quantities"]
+        _, _, changes = self._text.partition("\nChanges beyond chance:\n")
+        self.changes = tuple(line.strip() for line in changes.splitlines())
+        header, *rows = csv.reader(io.StringIO(table))
+        self.units: dict[str, str] = {}
+        self._columns = {}
+        for name, cells in zip(header, zip(*rows) if rows else [()] * len(header)):
+            name, _, unit = name.partition(" [")
+            if unit:
+                self.units[name] = unit[:-1]
+            if name in ("cycle", "first_line", "samples"):
+                self._columns[name] = np.array(cells, dtype=np.int64)
+            elif name in ("slip_regime", "flags"):
+                self._columns[name] = np.array(cells, dtype=str)
+            elif name != "checksum":
+                self._columns[name] = np.array([float(cell or "nan") for cell in cells])
 
     def __repr__(self) -> str:
         return f"<mindahl.CycleTable: {len(self['cycle'])} rows of {', '.join(self._columns)}>"
@@ -132,43 +96,25 @@ def track(
     """
     given = dict(locals())
     if executor is not None:
-        words = {name: value for name, value in given.items() if name not in ("executor", "known")}
-        return cast(CycleTable, in_executor(executor, _track_one, [{**words, **known}])[0])
-    fit = request_of(given)
-    fit.contact = contact_options(normal_load=normal_load, **known)
-    request = _mindahl.TrackRequest()
-    request.average = count("average", average, 1)
-    request.every = count("every", every, 1)
-    request.threads = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
+        passed = {name: value for name, value in given.items() if name not in ("executor", "known")}
+        return cast(CycleTable, in_executor(executor, _track_one, [{**passed, **known}])[0])
+    own = ("source", "force", "executor", "known", *ROLES, *UNITS, *OF_FILES)
+    asked = words({**{name: value for name, value in given.items() if name not in own}, **known,
+                   "normal_load": normal_load})
     arguments = RecordArguments(given)
-    files = _files_of(source)
-    if files is None:
+    sources = several(source) or [source]
+    if all(map(is_path, sources)):
+        arguments.roles["force"] = force
+        asked += arguments.words()
+    else:
         if broken_rows == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
-        request.fit = fit
-        found = _mindahl.track(request, records_of(source, force, arguments))
-    else:
-        arguments.roles["force"] = force
-        fit.columns = arguments.columns()
-        fit.files = list(files)
-        request.fit = fit
-        request.skips_broken_rows = broken_rows == "skip"
-        found = _mindahl.track(request, [])
-    columns, units, doubts, test = found
-    for doubt in (*arguments.assumed, *doubts):
-        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    return CycleTable(columns, units, test)
+        sources = records_of(source, force, arguments)
+        for doubt in arguments.assumed:
+            warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
+    answer, (table,) = ask("track", asked, [("", each) for each in sources], ["output"])
+    return CycleTable(answer, table)
 
 
-def _track_one(words: dict[str, Any]) -> CycleTable:
-    return track(**words)
-
-
-def _files_of(source: Any) -> Optional[Sequence[str]]:
-    """The paths, where all sources are files."""
-    if is_path(source):
-        return [path_text(source)]
-    elements = several(source)
-    if elements and all(is_path(element) for element in elements):
-        return [path_text(element) for element in elements]
-    return None
+def _track_one(keywords: dict[str, Any]) -> CycleTable:
+    return track(**keywords)

@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "mindahl/core/interruption.h"
+#include "mindahl/io/record_reader.h"
 
 /// The extension module _mindahl: the library's own functions with NumPy arrays for spans. What is
 /// Pythonic - keywords, frames, results with attributes - is python/mindahl/*.py.
 namespace mindahl::python {
+
+using io::NamedRecord;
 
 /// float64, contiguous; what is not is converted before it comes here.
 using Array = pybind11::array_t<double, pybind11::array::c_style>;
@@ -20,8 +23,9 @@ using Array = pybind11::array_t<double, pybind11::array::c_style>;
 /// @throws InvalidArgument unless it has one dimension
 std::span<const double> SpanOf(const Array& array, const char* what);
 
-/// A read-only array of numbers where they are, which keeps their owner alive.
-pybind11::array ViewOf(const std::vector<double>& values, const pybind11::handle& owner);
+/// A read-only array of numbers where they are, which keeps their owner alive; None where there are
+/// none.
+pybind11::object ViewOf(const std::vector<double>& values, const pybind11::handle& owner);
 
 /// Thrown where Ctrl-C ended a fit: Python's error is set already.
 struct Interrupted {};
@@ -47,8 +51,6 @@ std::string WithKeywords(const std::string& message);
 void AddErrors(pybind11::module_& module);
 void AddRecords(pybind11::module_& module);
 void AddFit(pybind11::module_& module);
-void AddTrack(pybind11::module_& module);
-void AddAnswers(pybind11::module_& module);
 void AddModels(pybind11::module_& module);
 void AddProgram(pybind11::module_& module);
 

@@ -114,17 +114,10 @@ void AddPickling(py::class_<Made<State>>& added) {
             [](Made<State>& state, const std::vector<double>& memory) { state.Remember(memory); });
   added.def("__reduce__", [](const py::object& self) {
     const auto& state = self.cast<const Made<State>&>();
-    const py::object restored = py::module_::import("mindahl._mindahl").attr("restored");
+    const py::object restored = py::module_::import("mindahl._commands").attr("restored");
     return py::make_tuple(restored,
                           py::make_tuple(py::type::of(self), state.arguments, state.Memory()));
   });
-}
-
-py::object Restored(const py::type& type, const py::dict& arguments,
-                    const std::vector<double>& memory) {
-  py::object state = type(**arguments);
-  state.attr("_remember")(memory);
-  return state;
 }
 
 Made<ContactState> MakeState(double sigma, double slip_force, std::optional<double> alpha,
@@ -153,7 +146,6 @@ Made<JointState> MakeJoint(double sigma, double slip_force, double alpha, double
 }  // namespace
 
 void AddModels(py::module_& module) {
-  module.def("restored", &Restored);
   module.def(
       "excitation",
       [](const std::string& waveform, double amplitude, double cycles,

@@ -17,7 +17,6 @@ import pytest
 import mindahl
 from conftest import DATA, program, program_json
 from mindahl import _mindahl
-from mindahl._records import columns_of
 
 matplotlib.use("Agg")
 SPHERE = DATA / "mindlin_sphere_on_plane.csv"
@@ -283,18 +282,18 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"initial_state": "new"}, "initial_state: 'new' is unknown: must be one of auto, virgin, steady"),
     ({"offsets": "maybe"}, "offsets: 'maybe' is unknown: must be one of on, off"),
     ({"fix": {"gamma": 1}}, "gamma"),
-    ({"fix": "alpha=1"}, "must be a dict"),
-    ({"fix": {"alpha": "x"}}, r"fix\['alpha'\] = 'x' is invalid: must be a number"),
+    ({"fix": {"alpha": "x"}}, "fix: 'x' is not a number: write NAME=VALUE"),
     ({"rig_stiffness": -1}, r"rig_stiffness \[N/m\] = -1 is invalid"),
     ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "rig_stiffness and fix rig_stiffness"),
     ({"force_noise": 0}, r"force_noise \[N\] = 0 is invalid"),
     ({"cycles": (3, 2)}, "cycles: '3:2' is empty"),
-    ({"cycles": 3}, "must be a pair"),
+    ({"cycles": 3}, "cycles: '3' is incomplete: write LO:HI"),
+    ({"cycles": (1, 2, 3)}, "must be a number or a pair"),
     ({"normal_load": -5}, r"normal_load \[N\] = -5 is invalid"),
     ({"normal_load": [1, 2]}, "2 loads for 1 file"),
-    ({"normal_load": (50, -1)}, "the standard uncertainty -1.0 is invalid"),
+    ({"normal_load": (50, -1)}, "the standard uncertainty in '50±-1' is -1: must be finite and >= 0"),
     ({"poisson_1": 0.7}, r"poisson_1 \[-\] = 0.7 is invalid"),
-    ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid: must be 'refuse' or 'skip'"),
+    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown: must be one of refuse, skip"),
     ({"sample_rate": -1}, "sample_rate -1: must be finite and > 0 Hz"),
     ({"covariate": "pressure"}, "pressure"),
     ({"displacement_unit": "furlong"}, "furlong"),
@@ -349,7 +348,7 @@ def test_a_prior_is_the_program_s(tmp_path):
     assert (result.sigma.value - value) / error == pytest.approx(0.5, abs=0.05)
     with pytest.raises(mindahl.InputError, match="prior: lag is not fitted"):
         mindahl.fit(path, prior={"lag": (1e-3, 1e-4)})
-    with pytest.raises(ValueError, match="must be a pair"):
+    with pytest.raises(ValueError, match="has no standard uncertainty"):
         mindahl.fit(path, prior={"sigma": 1e7})
 
 
@@ -444,9 +443,9 @@ def test_other_threads_run_while_it_fits(sphere):
     """No thread hands over by itself here: another one counts only where the fit lets go."""
     _, displacement, force = sphere
     many = np.tile(np.arange(len(force)), 20)
-    request = _mindahl.FitRequest()
+    request = _mindahl.FitRequest([])
     record = _mindahl.record_of_columns(
-        "record", ["x [m]", "F [N]"], [displacement[many], force[many]], columns_of(*8 * [None]))
+        "record", ["x [m]", "F [N]"], [displacement[many], force[many]], request)
     counted = [0]
     may_end = threading.Event()
 

@@ -129,9 +129,9 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"average": 0}, "average = 0 is invalid"),
+    ({"average": 0}, "average: '0' is invalid"),
     ({"average": 1000}, "average=1000: "),
-    ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
+    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown"),
     ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
 ])
 def test_track_refuses_what_the_program_refuses(long_record, keywords, message):

@@ -11,10 +11,11 @@ trap 'rm -rf "$scratch"' EXIT
 pip=("$python" -m pip --python "$scratch/venv/bin/python" install --quiet --no-index --no-deps
   --no-build-isolation)
 if [ "${4:-}" = sdist ]; then
-  mkdir "$scratch/sources"
+  mkdir -p "$scratch/sources/docs"
   cd "$source"
   cp -R CMakeLists.txt LICENSE MANIFEST.in README.md pyproject.toml setup.py cmake include src python \
     "$scratch/sources"
+  cp -R docs/schema "$scratch/sources/docs"
   cd "$scratch/sources"
   "$python" setup.py --quiet sdist --dist-dir "$scratch/sdist"
   "${pip[@]}" "$scratch"/sdist/mindahl-*.tar.gz
