@@ -49,7 +49,7 @@ else()
   run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
   run(${CMAKE_COMMAND} --install ${SCRATCH}/build --prefix ${SCRATCH}/prefix)
   set(not_needed "")
-  foreach(package fmt ZLIB Threads Boost nlohmann_json CLI11)
+  foreach(package fmt ZLIB Boost nlohmann_json CLI11)
     list(APPEND not_needed -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
   run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${SCRATCH}/user ${configure} ${not_needed}
