@@ -155,9 +155,14 @@ def is_frame(value: Any) -> bool:
     return hasattr(value, "columns") and hasattr(value, "__getitem__") and hasattr(value, "iloc")
 
 
+def is_pair(value: Any) -> bool:
+    """The arrays (displacement, force)."""
+    return isinstance(value, tuple) and len(value) == 2 and all(map(is_array, value))
+
+
 def several(value: Any) -> Optional[list[Any]]:
     """The elements of a list or tuple of sources; None of one source."""
-    if isinstance(value, (list, tuple)) and not is_array(value):
+    if isinstance(value, (list, tuple)) and not is_array(value) and not is_pair(value):
         return list(value)
     return None
 

@@ -13,7 +13,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import count, in_executor, is_frame, path_text
+from ._arguments import count, in_executor, path_text
 from ._fit import fit, prepared, request_and_arguments
 from ._records import is_path
 from ._result import FitWarning, Report, Table, Told
@@ -29,7 +29,7 @@ class BatchTable(Told, Table):
     def __init__(self, entries: list[_mindahl.BatchEntry]) -> None:
         columns, self._csv, self._document, self._text, self.established = _mindahl.batch(entries)
         self._columns = {name: _column(cells) for name, cells in columns.items()}
-        self.report = Report(self._document, self._text, self.established, "batch", ("files", "repeats"))
+        self.report = Report(self._document, self._text, self.established, "batch")
         self.faults = {name: fault for name, fault, *_ in entries if fault}
 
     def to_csv(self) -> str:
@@ -104,10 +104,8 @@ def _fit_one(task: Task) -> _mindahl.BatchEntry:
     source, name, strictness, given = task
     if is_path(source):
         name = path_text(source)
-    is_pair = isinstance(source, (tuple, list)) and len(source) == 2 and not is_frame(source)
-    source, force = source if is_pair else (source, given["force"])
     try:
-        records, request, _ = prepared({**given, "source": source, "force": force})
+        records, request, _ = prepared({**given, "source": source})
         if len(records) != 1:
             raise ValueError(f"{name}: {len(records)} records: each is a source of its own")
         return _mindahl.fit_one(records[0], request, strictness)

@@ -1,5 +1,5 @@
-"""Other commands of the program: contact(), convert(), plan(), sweep(), tradeoff() and validate(); and
-the functions of the library excitation() and simulate()."""
+"""Other commands of the program: contact(), convert(), plan() and command(); and the functions of the
+library excitation() and simulate()."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Optional, Union
 
+import numpy as np
+
 from . import _mindahl
-from ._arguments import (Floats, Uncertain, array, column_text, count, is_array, number, optional_number,
+from ._arguments import (Floats, Uncertain, array, number, optional_number,
                          path_text, words)
 from ._mindahl import Record
 from ._records import RecordArguments, columns_by_name, is_path, records_of
@@ -38,18 +40,25 @@ def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] =
             name = option or ("record" if len(files) == 1 else f"record {k + 1}")
             path = path_text(given) if is_path(given) else _written(f"{folder}/{name}", given)
             asked.append(f"--{option}={path}" if option else path)
-        status, out, err = _mindahl.run_command(["mindahl", command, *asked])
         # What is written for this call has a name, and no folder.
-        out, err = (text.replace(f"{folder}/", "") for text in (out, err))
-        said = re.findall(r"mindahl(?: \w+)?: ([^\r\n]*)", err)
-        if status not in (0, 3):
-            refusal = re.sub("; see mindahl .*", "", said[-1]) if said else err
-            raise _mindahl.InputError(_mindahl.with_keywords(refusal))
+        out, said, is_done = _run(command, asked, f"{folder}/")
         for message in said:
             if message.startswith(("note: ", "warning: ")):
                 warnings.warn(_mindahl.with_keywords(message.partition(": ")[2]), FitWarning, stacklevel=3)
         document, *texts = [_content(f"{folder}/{name}").replace(f"{folder}/", "") for name in written]
-        return Answer(document, out, status == 0), texts
+        return Answer(document, out, is_done), texts
+
+
+def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, list[str], bool]:
+    """What a command prints, its messages, and whether its status is 0."""
+    status, out, err = _mindahl.run_command(["mindahl", command, *options])
+    if folder:
+        out, err = (text.replace(folder, "") for text in (out, err))
+    said = re.findall(r"mindahl(?: \w+)?: ([^\r\n]*)", err)
+    if status not in (0, 3):
+        refusal = re.sub("; see mindahl .*", "", said[-1]) if said else err
+        raise _mindahl.InputError(_mindahl.with_keywords(refusal))
+    return out, said, status == 0
 
 
 def _written(path: str, source: Any) -> str:
@@ -62,7 +71,8 @@ def _written(path: str, source: Any) -> str:
     with open(path, "w", encoding="utf-8") as file:
         file.write(",".join(name for name, _ in source) + "\n")
         file.writelines(",".join(row) + "\n"
-                        for row in zip(*(map(repr, values.tolist()) for _, values in source)))
+                        for row in zip(*(map(repr, np.asarray(values, dtype=np.float64).tolist())
+                                         for _, values in source)))
     return path
 
 
@@ -101,7 +111,7 @@ def contact(
         .standard_error, .unit.
     Raises InputError naming what is missing, ValueError for a value out of range.
     """
-    return Report(*ask("contact", words(locals()))[0], "contact", ("contact", "parameters"))
+    return Report(*ask("contact", words(locals()))[0], "contact")
 
 
 def convert(
@@ -131,30 +141,27 @@ def convert(
     has_lines = to not in ("lammps", "liggghts", "yade") or normal_load is not None
     answer, lines = ask("convert", words(given), [] if fit is None else [("", fit)],
                         ["input-lines"] if has_lines else [])
-    conversion = Conversion(*answer, "conversion", ("parameters", "elements"))
+    conversion = Conversion(*answer, "conversion")
     conversion.input_lines = lines[0].splitlines() if lines else None
     return conversion
 
 
 def excitation(
     waveform: str = "sine", *, amplitude: float, cycles: float = 1.0, samples_per_cycle: int = 200,
-    frequency: float = 1.0, growth: float = 10.0, seed: int = 1,
+    frequency: float = 1.0, growth: Optional[float] = None, seed: int = 1,
 ) -> tuple[Floats, Floats]:
     """Time [s] and imposed displacement [m], as `mindahl simulate --waveform` makes them.
 
     waveform: "sine", "triangle", "growing-sine", "random", "nested".
     amplitude: [m], > 0, the largest. cycles: > 0, multiples of 1/samples_per_cycle.
     samples_per_cycle: from 4; a multiple of 4 puts samples on the extremes. frequency: [Hz], > 0.
-    growth: of a growing sine, last over first envelope, >= 1. seed: of a random waveform.
+    growth: of a growing sine, last over first envelope, >= 1; default 10. seed: of a random waveform.
     Returns two arrays of one length, from 0 at time 0.
-    Raises InputError for an unknown waveform, ValueError for a value out of range.
+    Raises InputError (a ValueError) for an unknown waveform or a value out of range.
     """
-    return _mindahl.excitation(
-        waveform=waveform, amplitude=number("amplitude", amplitude),
-        cycles=number("cycles", cycles),
-        samples_per_cycle=count("samples_per_cycle", samples_per_cycle, 4),
-        frequency=number("frequency", frequency), growth=number("growth", growth),
-        seed=count("seed", seed, 0))
+    told = _run("simulate", [*words(locals()), "--sigma=1", "--slip-force=1"])[0]
+    rows = np.array([line.split(",")[:2] for line in told.splitlines()[1:]], dtype=np.float64)
+    return rows[:, 0].copy(), rows[:, 1].copy()
 
 
 def simulate(
@@ -190,9 +197,7 @@ def _one_record(source: Any) -> Any:
     if is_path(source):
         return source
     arguments = RecordArguments({})
-    is_pair = isinstance(source, (tuple, list)) and len(source) == 2 and all(map(is_array, source))
-    source, force = source if is_pair else (source, None)
-    records = records_of(source, force, arguments)
+    records = records_of(source, None, arguments)
     if len(records) != 1:
         raise ValueError(f"record: {len(records)} records: give one")
     for note in arguments.assumed:
@@ -231,78 +236,30 @@ def plan(
     given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
     given.update(amplitude=_several(amplitude), load_ratio=_several(load_ratio))
     files = [] if record is None else [("record", _one_record(record))]
-    return Report(*ask("plan", words({**given, **contact}), files)[0], "plan", ("loops", "reached"))
+    return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
 
 
 def _several(values: Any) -> Any:
     return list(values) if isinstance(values, tuple) else values
 
 
-def tradeoff(
-    displacement: Any = None, *, excitation: Union[None, str, Sequence[str]] = None,
-    path_unit: Optional[str] = None, sigma: Optional[float] = None, alpha: Optional[float] = None,
-    slip_force: Optional[float] = None, tolerance: Union[float, str] = 0.01,
-    **contact: Optional[Uncertain],
-) -> Report:
-    """Error against cost of every model and method, and the cheapest within a tolerance.
+def command(name: str, *files: Any, **options: Any) -> Report:
+    """Any command of the program, with its options as keywords: command("validate", cases=5).
 
-    excitation: "micro", "macro", "growing", "random", "nested", one or several; by default all.
-    displacement: an array [m] instead, or a file whose first column it is, in path_unit.
-    sigma [N/m], alpha [-] (1/3), slip_force Tc [N], or friction, normal_load, ... of contact(); by
-        default the contact of Peyret et al. (2017).
-    tolerance: largest error of the force over its peak, and of the dissipated energy, 0.01 or "1%".
-    Returns the sections of `mindahl tradeoff --json`; .to_pandas() has a row a point. Costs are by
-        what a method does along the motion, and times of this run.
-    Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
+    files: what the command takes without an option: paths, or Records, data frames and dictionaries of
+        arrays, {"x [um]": ..., "F [N]": ...}, in the place of a file.
+    options: as `mindahl NAME --help-all` has them, with underscores, numbers in SI units. One that
+        takes a path takes all of these.
+    Returns the sections of the JSON that the command writes.
+    Raises InputError (a ValueError) where the program refuses.
     """
-    given = {name: value for name, value in locals().items() if name not in ("displacement", "contact")}
-    path = displacement if displacement is None or is_path(displacement) else [
-        ("displacement [m]", array("displacement", displacement))]
-    answer, _ = ask("tradeoff", words({**given, **contact}), [] if path is None else [("path", path)])
-    return Report(*answer, "tradeoff", ("excitations",))
+    given = [("", each) for each in files] + list(options.items())
+    tables = [(option, columns_by_name(each) or each) for option, each in given if _is_file(option, each)]
+    rest = {option: each for option, each in options.items() if not _is_file(option, each)}
+    return Report(*ask(name, words(rest), tables)[0], name)
 
 
-def validate(cases: int = 500, seed: int = 1) -> Report:
-    """Tests the mapping: fits Mindlin loops of many contacts and compares sigma, alpha and Tc.
-
-    cases: contacts to draw, each fitted at every noise level. seed: of the random numbers.
-    Returns the sections of `mindahl validate --json`; .passed, and .to_pandas() with a row an
-        amplitude and noise level, .to_pandas("dahl_rows"), .to_pandas("coverage").
-    Cost: some 10 ms a contact. Other threads run meanwhile.
-    """
-    return Report(*ask("validate", words(locals()))[0], "validation", ("rows", "dahl_rows", "coverage"))
-
-
-def sweep(
-    source: Any = None, *, kind: str = "secant", displacement: Any = None, force: Any = None,
-    response: Any = None, displacement_unit: Optional[str] = None,
-    force_unit: Optional[str] = None, response_unit: Optional[str] = None,
-    encoding: str = "", model: str = "mindlin-dahl",
-    fix: Optional[Mapping[str, float]] = None, confidence: float = 0.95,
-) -> Report:
-    """Fits sigma, alpha and Tc to stiffnesses or compliances over the amplitude, as `mindahl fit --sweep`.
-
-    The sweep, one of
-        sweep(path), sweep(frame): columns recognised by name, or named by force or displacement, of
-            which the amplitudes are, and response.
-        sweep(force=amplitudes, response=stiffnesses): arrays, [N] or displacement [m], and [N/m],
-            or in force_unit, displacement_unit and response_unit; "m/N" and the like are compliances.
-    kind: "secant", of the loop from end to end, or "tangent", of a small oscillation at a force.
-    model: "mindlin-dahl", "mindlin" or "jenkins". fix: parameter to value. confidence: of intervals.
-    Returns the sections of `mindahl fit --sweep --json`; .to_pandas() has a row a parameter.
-    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
-    """
-    roles = {"displacement": (displacement, displacement_unit, "m"), "force": (force, force_unit, "N"),
-             "response": (response, response_unit, "N/m")}
-    if source is None:
-        source = [(f"{role} [{unit or si}]", array(role, values))
-                  for role, (values, unit, si) in roles.items() if values is not None]
-        if len(source) != 2 or response is None:
-            raise ValueError("a sweep of arrays is of response and one of force and displacement")
-        chosen = {name.partition(" ")[0]: str(k + 1) for k, (name, _) in enumerate(source)}
-    else:
-        chosen = {role: column_text(role, value, unit) for role, (value, unit, _) in roles.items()}
-        source = source if is_path(source) else columns_by_name(source)
-    options = words({**chosen, "encoding": encoding, "model": model, "fix": fix,
-                     "confidence": confidence, "sweep": kind})
-    return Report(*ask("fit", options, [("", source)])[0], "sweep", ("parameters",))
+def _is_file(option: str, given: Any) -> bool:
+    columns = [] if isinstance(given, Record) else columns_by_name(given) or []
+    return not option or isinstance(given, Record) or any(  # and not parameters with their bounds
+        not isinstance(values, tuple) for _, values in columns)

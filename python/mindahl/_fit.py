@@ -54,7 +54,8 @@ def fit(
             displacement, force, time and normal_load_column choose others by name or number.
         fit({"x [um]": ..., "F": ...}): arrays by the names of columns, as in a frame.
         fit("loop.csv"), fit(file), fit(read_csv(...)): a file, one that is open, or a record.
-        A list of any of these: one joint fit of the same contact, arrays in lists of one length.
+        A list of any of these, of arrays as pairs (displacement, force): one joint fit of the same
+            contact.
             A column is "Fx", 5, "5 [mm]", or a sum, "cell1+cell2".
     encoding: of files, as iconv names it. sample_rate: [Hz], where there is no time. with_file:
         another file of the same test, whose columns follow. broken_rows: of files, "refuse" or

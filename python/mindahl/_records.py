@@ -11,8 +11,8 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_text, is_array, is_frame, is_quantity, path_text, several,
-                         with_unit, words)
+from ._arguments import (array, column_text, is_array, is_frame, is_pair, is_quantity, path_text,
+                         several, with_unit, words)
 from ._mindahl import Record
 
 Column = Union[str, int]
@@ -183,38 +183,18 @@ def records_of(source: Any, force: Any, arguments: RecordArguments,
                              "record or a file")
     if force is not None:
         roles["force"] = force
+    if is_array(source):
+        return [_record_of_arrays(source, roles, arguments, covariates or {})]
     elements = several(source)
-    if elements is None and is_array(source):
-        return [_record_of_arrays(source, roles, arguments, "record", covariates or {})]
     if elements is None:
         return [_record_of(source, arguments, "record")]
     if not elements:
         raise ValueError("a record is missing: the list is empty")
-    if not all(is_array(element) for element in elements):
-        return [_record_of(element, arguments, f"record {k + 1}")
-                for k, element in enumerate(elements)]
-    records = []
-    for k, element in enumerate(elements):
-        own = {role: _element(role, value, k, len(elements)) for role, value in roles.items()
-               if role != "displacement"}
-        records.append(_record_of_arrays(
-            element, {"displacement": None, **own}, arguments, f"record {k + 1}",
-            {name: _element(name, values, k, len(elements))
-             for name, values in (covariates or {}).items()}))
-    return records
-
-
-def _element(name: str, values: Any, k: int, count: int) -> Any:
-    if values is None:
-        return None
-    elements = several(values)
-    if elements is None or len(elements) != count:
-        raise ValueError(f"{name}: must be a list of {count} arrays, one a record")
-    return elements[k]
+    return [_record_of(element, arguments, f"record {k + 1}") for k, element in enumerate(elements)]
 
 
 def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: RecordArguments,
-                      name: str, covariates: Mapping[str, Any]) -> Record:
+                      covariates: Mapping[str, Any]) -> Record:
     if roles.get("displacement") is not None:
         raise ValueError("displacement is given twice: give it once")
     if roles.get("force") is None:
@@ -223,7 +203,7 @@ def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: Re
         if isinstance(value, (str, int)):
             raise ValueError(f"{role} = {value!r} names a column, but the displacement is an array: "
                              "give an array")
-    return arguments.of_arrays({**roles, "displacement": displacement}, name, covariates)
+    return arguments.of_arrays({**roles, "displacement": displacement}, "record", covariates)
 
 
 def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
@@ -238,10 +218,14 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         return source
     if is_path(source):
         return _mindahl.read_csv(path_text(source), arguments.columns())
+    if is_pair(source):
+        return arguments.of_arrays({**arguments.roles, "displacement": source[0], "force": source[1]}, name, {})
     columns = columns_by_name(source)
     if columns is not None:
         return arguments.of_columns(columns, name)
     if hasattr(source, "read"):
         return arguments.of_file(source, name)
+    if is_array(source):
+        raise ValueError(f"{name}: force is missing: give a pair of arrays (displacement, force)")
     array(name, source)  # says why it is no array
     raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -88,7 +88,7 @@ class AnySection(Section):
 class Told:
     """What a command of the program answered: its JSON and its text.
 
-    established: did the program end with exit status 0?
+    established: did the program end with exit status 0? Of a fit: did it converge?
     """
 
     _document: str
@@ -117,30 +117,27 @@ class Told:
 class Report(Told, AnySection):
     """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it."""
 
-    _tables: tuple[str, ...] = ()
-
-    def __init__(self, document: str, text: str, established: bool, path: str,
-                 tables: tuple[str, ...] = ()) -> None:
+    def __init__(self, document: str, text: str, established: bool, path: str) -> None:
         super().__init__(json.loads(document), path)
         self._document, self._text, self.established = document, text, established
-        self._tables = tables
 
     def to_pandas(self, table: Optional[str] = None) -> Any:
         """A table of the report as a pandas DataFrame; members of members have names such as
         "parameters_alpha_value".
 
-        table: one of the lists of the report, by default its main one.
+        table: a list of the report, or a section of sections; by default the first.
         Raises ValueError for what is no table of this report, ImportError without pandas.
         """
         import pandas
 
-        name = self._tables[0] if table is None and self._tables else table
-        if name not in self._tables:
-            raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(self._tables)}")
-        rows = self._values[name]
-        if isinstance(rows, dict):  # one row a member
-            rows = [{"name": key, **row} for key, row in rows.items()]
-        elif rows and "points" in rows[0]:  # one row a point
+        tables = {name: [{"name": key, **row} for key, row in rows.items()] if isinstance(rows, dict) else rows
+                  for name, rows in self._values.items() if isinstance(rows, (dict, list)) and rows
+                  and all(isinstance(row, dict) for row in (rows.values() if isinstance(rows, dict) else rows))}
+        name = next(iter(tables), None) if table is None else table
+        if name not in tables:
+            raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(tables)}")
+        rows = tables[name]
+        if "points" in rows[0]:  # one row a point
             rows = [{"excitation": row["name"], **point} for row in rows for point in row["points"]]
         return pandas.json_normalize(rows, sep="_")
 
@@ -259,7 +256,7 @@ class Covariance(NamedTuple):
     names: tuple[str, ...]
 
 
-class FitResult:
+class FitResult(Told):
     """A fit: sigma, alpha, slip_force and every section of the report as attributes.
 
     parameters: all, by name. records: the arrays of each record. warnings, notes: in words.
@@ -271,7 +268,10 @@ class FitResult:
     def __init__(self, kept: Mapping[str, Any], fitted: Optional[_mindahl.Fitted] = None) -> None:
         self._kept = dict(kept)
         self._fitted = fitted
-        self._report: dict[str, Any] = json.loads(kept["document"])
+        self._document = kept["document"]
+        self._report: dict[str, Any] = json.loads(self._document)
+        self._text = kept["text"] or "\n".join(map(str, self.parameters.values())) or "the fit failed"
+        self.established = self.converged
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
@@ -321,6 +321,9 @@ class FitResult:
     def __deepcopy__(self, memo: Any) -> FitResult:
         return copy.copy(self)
 
+    sigma: Parameter  # tangential stiffness [N/m] at the start of every branch
+    alpha: Parameter  # shape exponent [-]
+    slip_force: Parameter  # Tc [N]
     schema: str
     version: str
     model: str
@@ -364,26 +367,6 @@ class FitResult:
                 for name, values in (self._report.get("parameters") or {}).items()}
 
     @property
-    def sigma(self) -> Parameter:
-        """Tangential stiffness [N/m] at the start of every branch."""
-        return self._parameter("sigma")
-
-    @property
-    def alpha(self) -> Parameter:
-        """Shape exponent [-]."""
-        return self._parameter("alpha")
-
-    @property
-    def slip_force(self) -> Parameter:
-        """Tc [N]."""
-        return self._parameter("slip_force")
-
-    def _parameter(self, name: str) -> Parameter:
-        if name not in self.parameters:
-            raise AttributeError(name)  # __getattr__() says why
-        return self.parameters[name]
-
-    @property
     def converged(self) -> bool:
         """Did the solver converge?"""
         return bool(self._report["solver"]["converged"])
@@ -423,14 +406,6 @@ class FitResult:
         arrays = [getattr(record, name) for record in self.records]
         return arrays[0] if len(arrays) == 1 else arrays
 
-    def to_dict(self) -> dict[str, Any]:
-        """What `mindahl fit --json` writes (schema mindahl.fit/2), as a dict of one's own."""
-        return copy.deepcopy(self._report)
-
-    def to_json(self) -> str:
-        """The same as text, byte for byte as the program writes it."""
-        return str(self._kept["document"])
-
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one row a parameter. Raises ImportError without pandas."""
         import pandas
@@ -443,13 +418,6 @@ class FitResult:
         if self._fitted is None:
             raise ValueError("a result that was read or pickled has no residuals of its own: fit its records again")
         return self._fitted.residuals_csv()
-
-    def text(self) -> str:
-        """What `mindahl fit` prints."""
-        return self._kept["text"] or "\n".join(map(str, self.parameters.values())) or "the fit failed"
-
-    def __str__(self) -> str:
-        return self.text()
 
     def __repr__(self) -> str:
         if not self.parameters:

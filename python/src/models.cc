@@ -10,7 +10,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
-#include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
@@ -85,22 +84,6 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   return force;
 }
 
-/// Times [s] and displacements [m].
-std::pair<py::array_t<double>, py::array_t<double>> Excite(const std::string& waveform,
-                                                           models::ExcitationOptions options) {
-  RequireOneOf("--waveform", waveform, models::WaveformNames());
-  options.waveform = *models::FindWaveform(waveform);
-  models::Excitation made;
-  {
-    const py::gil_scoped_release others_may_run;
-    made = models::MakeExcitation(options);
-  }
-  const auto copy = [](const std::vector<double>& values) {
-    return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-  };
-  return {copy(made.time), copy(made.displacement)};
-}
-
 /// A state with the arguments that it was made of: it is pickled and copied by these and its
 /// memory.
 template <typename State>
@@ -146,19 +129,6 @@ Made<JointState> MakeJoint(double sigma, double slip_force, double alpha, double
 }  // namespace
 
 void AddModels(py::module_& module) {
-  module.def(
-      "excitation",
-      [](const std::string& waveform, double amplitude, double cycles,
-         std::size_t samples_per_cycle, double frequency, double growth, std::uint64_t seed) {
-        return Excite(waveform, {.amplitude = amplitude,
-                                 .cycles = cycles,
-                                 .samples_per_cycle = samples_per_cycle,
-                                 .frequency = frequency,
-                                 .growth = growth,
-                                 .seed = seed});
-      },
-      py::kw_only(), py::arg("waveform"), py::arg("amplitude"), py::arg("cycles"),
-      py::arg("samples_per_cycle"), py::arg("frequency"), py::arg("growth"), py::arg("seed"));
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"),
              py::arg("asymmetry"), py::arg("load"), py::arg("reference_load"));

@@ -74,7 +74,10 @@ def test_a_fit_of_a_file_prints_the_program_s_text():
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
 def test_a_load_series_is_one_joint_fit_of_lists_of_arrays():
     displacement, force, seconds = zip(*(arrays_of(path) for path in SERIES))
-    result = mindahl.fit(list(displacement), list(force), time=list(seconds), normal_load=LOADS)
+    result = mindahl.fit([{"displacement [m]": x, "force [N]": f, "time [s]": t}
+                          for x, f, t in zip(displacement, force, seconds)], normal_load=LOADS)
+    pairs = mindahl.fit(list(zip(displacement, force)), normal_load=LOADS)
+    assert pairs.sigma.value == result.sigma.value
     expected = program_json("fit", *SERIES, "--normal-load", ",".join(map(str, LOADS)))
     assert without_files(result.to_dict()) == without_files(expected)
     assert result.load_exponent.identifiability == "identifiable"
@@ -259,7 +262,7 @@ def test_arrays_outlive_their_result(sphere):
 
 @pytest.mark.parametrize("arguments, message", [
     (([0, 1, 2], [0, 1]), r"force \[N\] has 2 samples and displacement \[m\] 3"),
-    (([[0, 1], [1, 0]], None), "must be a list|force is missing"),
+    (([[0, 1], [1, 0]], None), "force is missing: give a pair"),
     ((np.zeros((3, 2)), np.zeros(3)), r"displacement has the shape \(3, 2\)"),
     (([0.0, 1.0, np.nan], [0.0, 1.0, 2.0]), r"displacement\[2\] = nan is invalid: must be finite"),
     (([0.0, 1.0, 2.0], [0.0, np.inf, 2.0]), r"force\[1\] = inf is invalid: must be finite"),
