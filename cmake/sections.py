@@ -33,7 +33,7 @@ def main():
         return name
 
     for name, node in schema["properties"].items():
-        if node.get("type") == "object" or "anyOf" in node:
+        if node.get("type") in ("object", "array") or "anyOf" in node:
             type_of(node, name)
     with open(sys.argv[2], "w", encoding="utf-8") as file:
         file.write("from typing import Optional\n\nfrom ._result import AnySection, Section\n")

@@ -19,7 +19,7 @@ from ._fit import fit
 from ._mindahl import ContactState, InputError, JointState, Record, __version__
 from ._readers import read_hdf5, read_mat
 from ._records import read_csv
-from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Message, Parameter,
+from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Parameter,
                       Report, Section)
 from ._track import CycleTable, track
 
@@ -28,7 +28,7 @@ for _public in (ContactState, InputError, JointState, Record):
 
 __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
-    "FittedRecord", "InputError", "JointState", "LogLikelihood", "Message", "Parameter", "Record",
+    "FittedRecord", "InputError", "JointState", "LogLikelihood", "Parameter", "Record",
     "Report", "Section", "__version__", "batch", "command", "contact", "convert", "excitation", "fit",
     "plan", "read_csv", "read_hdf5", "read_mat", "simulate", "track",
 ]

@@ -36,9 +36,6 @@ class BatchTable(Told, Table):
         """What `mindahl batch --output` writes."""
         return self._csv
 
-    def __repr__(self) -> str:
-        return f"<mindahl.BatchTable: {len(self['file'])} rows of {', '.join(self._columns)}>"
-
     def _repr_html_(self) -> str:
         rows = [list(self._columns), *zip(*self._columns.values())]
         cells = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>"

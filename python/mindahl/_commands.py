@@ -15,7 +15,7 @@ from . import _mindahl
 from ._arguments import (Floats, Uncertain, array, number, optional_number,
                          path_text, words)
 from ._mindahl import Record
-from ._records import RecordArguments, columns_by_name, is_path, records_of
+from ._records import RecordArguments, columns_by_name, is_path, records_of, si_columns
 from ._result import FitWarning, Report
 
 
@@ -64,10 +64,7 @@ def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, l
 def _written(path: str, source: Any) -> str:
     """A CSV file of columns or of a record, of as many digits as they have."""
     if isinstance(source, Record):
-        length, force = ("rad", "N m") if source.is_torsional else ("m", "N")
-        source = [(f"{name} [{unit}]", values) for name, unit, values in (
-            ("displacement", length, source.displacement), ("force", force, source.force),
-            ("time", "s", source.time), ("normal load", force, source.normal_load)) if values is not None]
+        source = list(si_columns(source).values())
     with open(path, "w", encoding="utf-8") as file:
         file.write(",".join(name for name, _ in source) + "\n")
         file.writelines(",".join(row) + "\n"

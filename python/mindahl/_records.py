@@ -135,23 +135,26 @@ class RecordArguments:
                              self.columns(roles))
 
 
+def si_columns(record: Record) -> dict[str, tuple[str, Any]]:
+    """The columns of a record by their roles, with header."""
+    length, force = ("rad", "N m") if record.is_torsional else ("m", "N")
+    found = {"displacement": (f"displacement [{length}]", record.displacement),
+             "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
+             "normal_load_column": (f"normal load [{force}]", record.normal_load)}
+    return {role: column for role, column in found.items() if column[1] is not None}
+
+
 def _record_again(name: str, names: list[str], arrays: list[Any], roles: dict[str, int],
                   covariates: list[str]) -> Record:
     return _mindahl.record_of_columns(name, names, arrays, reading(roles, covariates))
 
 
 def _reduced(record: Record) -> Any:
-    """A record for pickle and copy: its arrays, called by what they are; its notes are said already."""
-    length, force = ("rad", "N m") if record.is_torsional else ("m", "N")
-    found = {"displacement": (f"displacement [{length}]", record.displacement),
-             "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
-             "normal_load_column": (f"normal load [{force}]", record.normal_load)}
-    given = {role: column for role, column in found.items() if column[1] is not None}
-    others = record.covariates
-    return _record_again, (record.name, [*(name for name, _ in given.values()), *others],
-                           [np.array(values) for values in (
-                               *(values for _, values in given.values()), *others.values())],
-                           {role: k + 1 for k, role in enumerate(given)}, list(others))
+    """A record for pickle and copy; its notes are said already."""
+    columns, others = si_columns(record), record.covariates
+    names, arrays = zip(*columns.values(), *others.items())
+    return _record_again, (record.name, list(names), [np.array(values) for values in arrays],
+                           {role: k + 1 for k, role in enumerate(columns)}, list(others))
 
 
 copyreg.pickle(Record, _reduced)

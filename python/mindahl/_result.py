@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import copy
-import io
 import json
 import os
-import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
@@ -39,6 +37,10 @@ class Table(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._columns)
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self._columns.values()), ()))
+        return f"<mindahl.{type(self).__name__}: {rows} rows of {', '.join(self._columns)}>"
 
     def to_pandas(self) -> Any:
         """A pandas DataFrame of the columns. Raises ImportError without pandas."""
@@ -198,14 +200,6 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Message:
-    """A finding in words, with its stable code: docs/contract.md."""
-
-    code: str
-    message: str
-
-
-@dataclass(frozen=True)
 class FittedRecord:
     """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays are read-only.
 
@@ -277,7 +271,7 @@ class FitResult(Told):
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
         """Reads a result that save() wrote, or `mindahl fit --json` or to_json().
 
-        One of save() is complete but for log_likelihood() and residuals_csv(); JSON has parameters,
+        One of save() is complete but for log_likelihood() and residuals_csv(); the other has parameters,
         sections and warnings, and neither records nor figures.
         Raises ValueError for another document.
         """
@@ -285,32 +279,21 @@ class FitResult(Told):
             content = file.read()
         kept: dict[str, Any] = {"text": "", "notes": (), "units": ("m", "N"), "records": ()}
         try:
-            if content.startswith(b"PK"):
-                with np.load(io.BytesIO(content)) as arrays:
-                    kept = json.loads(arrays["kept"].tobytes())
-                    for k, record in enumerate(kept["records"]):
-                        record.update({name: arrays[f"{name}_{k}"] for name, value in record.items()
-                                       if name != "name" and value is not None})
-            else:
-                kept["document"] = content.decode()
-            document = json.loads(kept["document"])
-        except (KeyError, ValueError, zipfile.BadZipFile):
-            document = None
-        if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/2":
+            read = json.loads(content)
+            kept.update(read if "document" in read else {"document": content.decode()})
+            is_fit = json.loads(kept["document"])["schema"] == "mindahl.fit/2"
+        except (KeyError, TypeError, ValueError):
+            is_fit = False
+        if not is_fit:
             raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
+        kept["records"] = [{name: np.array(value) if isinstance(value, list) else value
+                            for name, value in record.items()} for record in kept["records"]]
         return cls(kept)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes JSON, text, page and arrays to one file, of NumPy's format npz, for load()."""
-        records = self._kept["records"]
-        arrays = {f"{name}_{k}": value for k, record in enumerate(records)
-                  for name, value in record.items() if isinstance(value, np.ndarray)}
-        kept = {**self._kept, "page": self.page(), "records": [
-            {name: "array" if isinstance(value, np.ndarray) else value
-             for name, value in record.items()} for record in records]}
-        with open(path, "wb") as file:
-            np.savez_compressed(file, kept=np.frombuffer(json.dumps(kept).encode(), np.uint8),
-                                **arrays)
+        """Writes JSON, text, page and arrays to one file of JSON, for load()."""
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({**self._kept, "page": self.page()}, file, default=lambda values: values.tolist())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return FitResult, (self._kept,)
@@ -340,6 +323,8 @@ class FitResult(Told):
     mapping: _sections.mapping
     terms: _sections.terms
     next: Optional[_sections.next]
+    warnings: tuple[_sections.warnings, ...]  # what a person should act on, with stable codes
+    nulls: tuple[_sections.nulls, ...]
 
     if not TYPE_CHECKING:
         def __getattr__(self, name: str) -> Any:
@@ -370,11 +355,6 @@ class FitResult(Told):
     def converged(self) -> bool:
         """Did the solver converge?"""
         return bool(self._report["solver"]["converged"])
-
-    @property
-    def warnings(self) -> tuple[Message, ...]:
-        """What a person should act on."""
-        return tuple(Message(item["code"], item["message"]) for item in self._report["warnings"])
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -422,16 +402,8 @@ class FitResult(Told):
     def __repr__(self) -> str:
         if not self.parameters:
             return f"<mindahl.FitResult: {self.text().strip()}>"
-        values = ", ".join(self._short(name) for name in ("sigma", "alpha", "slip_force"))
-        verdict = self.adequacy.verdict or "adequacy not decided"
-        return f"<mindahl.FitResult: {values}; {verdict}>"
-
-    def _short(self, name: str) -> str:
-        parameter = self.parameters[name]
-        if not parameter.is_known:
-            return f"{name} {parameter.identifiability.replace('_', ' ')}"
-        unit = "" if parameter.unit == "-" else f" {parameter.unit}"
-        return f"{name} = {parameter.value:.6g}{unit}"
+        values = "; ".join(str(self.parameters[name]) for name in ("sigma", "alpha", "slip_force"))
+        return f"<mindahl.FitResult: {values}; {self.adequacy.verdict or 'adequacy not decided'}>"
 
     @property
     def covariance(self) -> Covariance:

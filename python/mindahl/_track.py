@@ -5,15 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import warnings
-from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union, cast
+from typing import Any, Optional, cast
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import Uncertain, in_executor, several, words
+from ._arguments import in_executor, several, words
 from ._commands import Answer, ask
-from ._fit import Asked, Range
 from ._records import OF_FILES, ROLES, UNITS, RecordArguments, is_path, records_of
 from ._result import FitWarning, Table, Told
 
@@ -54,60 +52,39 @@ class CycleTable(Told, Table):
             elif name != "checksum":
                 self._columns[name] = np.array([float(cell or "nan") for cell in cells])
 
-    def __repr__(self) -> str:
-        return f"<mindahl.CycleTable: {len(self['cycle'])} rows of {', '.join(self._columns)}>"
 
-
-def track(
-    source: Any = None, force: Any = None, *, displacement: Any = None, time: Any = None,
-    normal_load: Optional[Uncertain] = None, normal_load_column: Any = None,
-    displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
-    time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
-    encoding: str = "", sample_rate: Optional[float] = None, join: bool = False,
-    model: str = "auto", initial_state: str = "auto", force_sign: str = "auto",
-    offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
-    terms: Union[str, Sequence[str]] = "none",
-    fix: Optional[Mapping[str, float]] = None,
-    start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
-    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", confidence: float = 0.95,
-    force_noise: Optional[float] = None,
-    displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
-    average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
-    executor: Any = None, **known: Optional[Uncertain],
-) -> CycleTable:
+def track(source: Any = None, force: Any = None, *, average: int = 1, every: int = 1,
+          threads: Optional[int] = None, executor: Any = None, **keywords: Any) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
-    source, force, displacement, time, normal_load_column, units, encoding, sample_rate: as of
-        fit(). A file is read piece by piece, in constant memory; a list of sources
-        is one test in this order, and no cycle extends over two sources unless join is
-        True.
-    normal_load: [N] of all cycles; by default the column's mean over each. With compliance, or
-        youngs_modulus_1, poisson_1 and those of body 2, as of fit(), it has the contact radius.
+    source, force: as of fit(). A file is read piece by piece, in constant memory; a list of sources is
+        one test in this order, and no cycle extends over two sources unless join is True.
     average: number of consecutive cycles that are fitted together. every: fits only every n-th.
-    broken_rows: of files, "refuse" or "skip". threads: number of workers; default one per core.
-    terms: as in fit(); "auto" chooses by the first cycles of the first source, for all cycles.
-    The others: as of fit(), but that covariates are not for single cycles.
+    threads: number of workers; default one per core. executor: where the test is tracked instead of
+        here, as of batch(): what it gives back is pickled.
+    keywords: of fit(), but for single cycles' covariates, trim and selections. terms: "auto" chooses by
+        the first cycles of the first source, for all. normal_load: [N] of all cycles; by default the
+        column's mean over each; with compliance, or youngs_modulus_1 and the others, it has the
+        contact radius.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
         rows that were skipped.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
-    executor: where the test is tracked instead of here, as of batch(): what it gives back is pickled.
     Other threads run while it fits.
     """
-    given = dict(locals())
     if executor is not None:
-        passed = {name: value for name, value in given.items() if name not in ("executor", "known")}
-        return cast(CycleTable, in_executor(executor, _track_one, [{**passed, **known}])[0])
-    own = ("source", "force", "executor", "known", *ROLES, *UNITS, *OF_FILES)
-    asked = words({**{name: value for name, value in given.items() if name not in own}, **known,
-                   "normal_load": normal_load})
-    arguments = RecordArguments(given)
+        passed = {"source": source, "force": force, "average": average, "every": every, "threads": threads}
+        return cast(CycleTable, in_executor(executor, _track_one, [{**passed, **keywords}])[0])
+    of_records = (*ROLES, *UNITS, *OF_FILES)
+    asked = words({"average": average, "every": every, "threads": threads, **{
+        name: value for name, value in keywords.items() if name not in of_records}})
+    arguments = RecordArguments(keywords)
     sources = several(source) or [source]
     if all(map(is_path, sources)):
         arguments.roles["force"] = force
         asked += arguments.words()
     else:
-        if broken_rows == "skip":
+        if keywords.get("broken_rows") == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
         sources = records_of(source, force, arguments)
         for doubt in arguments.assumed:

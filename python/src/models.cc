@@ -14,6 +14,7 @@
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
+#include "mindahl/request/contact_request.h"
 
 namespace mindahl::python {
 
@@ -33,19 +34,11 @@ const FrictionModel& RequireModel(const std::string& name) {
   return *models::FindFrictionModel(name);
 }
 
-/// The law as the model uses it.
-/// @param alpha  empty: the model's own, or 1/3 where it leaves α free
+/// The law as the model uses it, whose own α, or 1/3, it has where there is none.
 BranchLaw LawOf(const FrictionModel& model, double sigma, std::optional<double> alpha,
                 double slip_force) {
-  if (alpha && model.shape_exponent && *alpha != *model.shape_exponent) {
-    throw InputError("--alpha contradicts --model " + std::string(model.name) +
-                     ", which prescribes it: use --model mindlin-dahl");
-  }
-  BranchLaw law{.tangential_stiffness = sigma, .slip_force = slip_force};
-  if (model.shape_exponent) law.shape_exponent = *model.shape_exponent;
-  if (alpha) law.shape_exponent = *alpha;
-  Validate(law);
-  return law;
+  return request::ResolveLaw({.sigma = sigma, .alpha = alpha, .slip_force = slip_force}, model.name,
+                             model.shape_exponent);
 }
 
 models::SeriesSpring RigOf(std::optional<double> stiffness) {

@@ -430,8 +430,8 @@ def test_a_short_form_has_no_number_of_what_is_not_identified():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mindahl.FitWarning)
         far = mindahl.fit(DATA / "far_from_slip.csv")
-    assert "alpha not identifiable" in repr(far)
-    assert "slip_force bounded below" in repr(far)
+    assert "alpha: not identifiable" in repr(far)
+    assert "slip_force > 3.2" in repr(far) and "bounded below" in repr(far)
     assert "sigma = 4.84" in repr(far)
 
 
