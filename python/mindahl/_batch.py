@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import threading
 import warnings
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -78,7 +79,9 @@ def batch(
     strictness = ("adequate" if strict else "none") if isinstance(strict, bool) else strict
     if strictness not in ("none", "adequate", "doubtful"):
         raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
-    tasks = [(source, f"record {k + 1}", strictness, given) for k, source in enumerate(sources)]
+    stop = threading.Event()
+    tasks = [(source, f"record {k + 1}", strictness, given, None if executor is not None else stop.is_set)
+             for k, source in enumerate(sources)]
     if executor is not None:
         entries = in_executor(executor, _fit_one, tasks)
     else:
@@ -87,24 +90,25 @@ def batch(
         try:
             entries = list(pool.map(_fit_one, tasks))
         finally:
-            pool.shutdown(cancel_futures=True)  # Ctrl-C waits for no further fit
+            stop.set()  # of fits that Ctrl-C left
+            pool.shutdown(cancel_futures=True)
     for name, fault, _, notes, *_ in entries:
         for message in (*notes, *([f"{name}: {fault}"] if fault else [])):
             warnings.warn(_mindahl.with_keywords(message), FitWarning, stacklevel=2)
     return BatchTable(entries)
 
 
-Task = tuple[Any, str, str, dict[str, Any]]
+Task = tuple[Any, str, str, dict[str, Any], Any]
 
 
 def _fit_one(task: Task) -> _mindahl.BatchEntry:
-    source, name, strictness, given = task
+    source, name, strictness, given, stops = task
     if is_path(source):
         name = path_text(source)
     try:
         records, request, _ = prepared({**given, "source": source})
         if len(records) != 1:
             raise ValueError(f"{name}: {len(records)} records: each is a source of its own")
-        return _mindahl.fit_one(records[0], request, strictness)
+        return _mindahl.fit_one(records[0], request, strictness, stops)
     except ValueError as error:
         return name, str(error), False, [], "", ""

@@ -241,7 +241,7 @@ def _several(values: Any) -> Any:
 
 
 def command(name: str, *files: Any, **options: Any) -> Report:
-    """Any command of the program, with its options as keywords: command("validate", cases=5).
+    """Any command of the program that writes JSON, with its options as keywords: command("validate", cases=5).
 
     files: what the command takes without an option: paths, or Records, data frames and dictionaries of
         arrays, {"x [um]": ..., "F [N]": ...}, in the place of a file.

@@ -69,11 +69,18 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
   return entries;
 }
 
+/// @param stops  asked now and then whether the fit is to end; None: never
 py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
-                 const std::string& strict) {
+                 const std::string& strict, const py::object& stops) {
   BatchEntry entry;
   {
     const py::gil_scoped_release others_may_run;
+    const Interruptible asked([&stops] {
+      const py::gil_scoped_acquire own;
+      if (stops.is_none() || !stops().cast<bool>()) return;
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      throw Interrupted();
+    });
     const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
                                   : strict == "doubtful" ? Strictness::kDoubtful
                                                          : Strictness::kNone;
@@ -104,7 +111,8 @@ py::tuple BatchOf(const std::vector<py::tuple>& states) {
 void AddProgram(py::module_& module) {
   module.def("run_program", &RunProgram, py::arg("words"));
   module.def("run_command", &RunCommand, py::arg("words"));
-  module.def("fit_one", &FitOne, py::arg("record"), py::arg("request"), py::arg("strict"));
+  module.def("fit_one", &FitOne, py::arg("record"), py::arg("request"), py::arg("strict"),
+             py::arg("stops"));
   module.def("batch", &BatchOf, py::arg("entries"));
 }
 
