@@ -21,7 +21,7 @@ part ./scripts/clang.sh
 part ./scripts/fuzz.sh --seconds 600
 part ./scripts/packages.sh
 part ./scripts/ceres.sh build/ceres
-part env CMAKE_PREFIX_PATH="$PWD/build/ceres" \
+part env COMPLETE=1 CMAKE_PREFIX_PATH="$PWD/build/ceres" \
   tests/python/wheel.sh /usr/bin/python3 "$PWD/build/ci" "$PWD" sdist
 part cmake --build build/ci --target coverage
 part cmake --build build/ci --target reliability

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A wheel made offline installs into an environment of its own, and fits there what the program fits.
-#   wheel.sh PYTHON BUILD_DIRECTORY SOURCE_DIRECTORY [sdist]
+#   wheel.sh PYTHON BUILD_DIRECTORY SOURCE_DIRECTORY [sdist]      COMPLETE=1: all must be in it
 # sdist: what pip builds of a distribution of the sources, instead of the build tree's package.
 set -euo pipefail
 python="$1" build="$2" source="$3"
@@ -30,7 +30,7 @@ site="$(echo "$scratch"/venv/lib/python3*/site-packages)"
 mapfile -t bundled < <(find "$site/mindahl/libs" -type f -printf '%f\n' 2>/dev/null)
 outside="$(env -u LD_LIBRARY_PATH ldd "$site"/mindahl/_mindahl*.so | awk '/=>/ {print $1, $3}' | grep -v " $scratch/" |
   grep -Ev '^(linux-vdso|ld-linux[^ ]*|lib(c|m|dl|rt|pthread|util|gcc_s|stdc\+\+))\.so' || true)"
-if ((${#bundled[@]})) && [ -n "$outside" ]; then
+if ((${#bundled[@]} || ${COMPLETE:-0})) && [ -n "$outside" ]; then
   echo "wheel: needs libraries that are not in it: $outside" >&2
   exit 1
 fi
