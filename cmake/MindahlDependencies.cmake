@@ -5,16 +5,22 @@ find_package(fmt 9 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(Threads REQUIRED)
-find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 find_package(ZLIB 1.2 REQUIRED)
 
-# CLI11 is header-only and Debian ships its package config.
-find_package(CLI11 2.1 REQUIRED)
+# libmd and, where the C library has none, libiconv are linked by their names.
+find_path(LIBMD_INCLUDE_DIR sha2.h REQUIRED)
+find_library(LIBMD_LIBRARY md REQUIRED)
+find_package(Iconv REQUIRED)
 
-# toml++ is used by its headers alone.
-find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
-add_library(tomlplusplus::headers INTERFACE IMPORTED)
-target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
+if(MINDAHL_BUILD_PROGRAM)
+  # CLI11 is header-only and Debian ships its package config.
+  find_package(CLI11 2.1 REQUIRED)
+
+  # toml++ is used by its headers alone.
+  find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+  add_library(tomlplusplus::headers INTERFACE IMPORTED)
+  target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
+endif()
 
 # Mustache is a header without a package config.
 find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)

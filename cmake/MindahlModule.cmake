@@ -34,7 +34,8 @@ endif()
 separate_arguments(cold_options UNIX_COMMAND "${MINDAHL_COLD_COMPILE_OPTIONS}")
 
 # mindahl_add_module(NAME [COLD] SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])
-# One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h.
+# One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h. What
+# these declare is visible in a shared library that it becomes part of, and nothing else.
 # COLD: no part of the time that it takes to run is spent in it.
 # PRECOMPILE: headers of others that take most of the time to compile its sources.
 # What is all headers is asked of nobody who links the library.
@@ -46,16 +47,38 @@ function(mindahl_add_module name)
   add_library(mindahl::${name} ALIAS mindahl_${name})
   target_compile_features(mindahl_${name} PUBLIC cxx_std_20)
   set_target_properties(mindahl_${name} PROPERTIES
-    EXPORT_NAME ${name} CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    EXPORT_NAME ${name} CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(mindahl_${name}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/mindahl/${name}/*.h)
+  # It takes long to compile, and states its visibility itself.
+  list(FILTER headers EXCLUDE REGEX "/ceres_problem[.]h$")
+  set(visible "")
+  if(headers)
+    list(TRANSFORM headers REPLACE ".*/include/(mindahl/.+)" "#include \"\\1\"\n")
+    list(JOIN headers "" headers)
+    set(visible ${CMAKE_CURRENT_BINARY_DIR}/generated/visible/${name}.h)
+    file(CONFIGURE OUTPUT ${visible} @ONLY CONTENT
+      "#pragma GCC visibility push(default)\n@headers@#pragma GCC visibility pop\n")
+  endif()
   set(private_libraries "")
+  set(needs "")
+  foreach(library IN LISTS MODULE_PUBLIC MODULE_PRIVATE)
+    if(library MATCHES "^mindahl::(.*)")
+      get_property(others GLOBAL PROPERTY MINDAHL_NEEDS_${CMAKE_MATCH_1})
+      list(APPEND needs ${others})
+    elseif(NOT library IN_LIST header_only)
+      list(APPEND needs ${library})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES needs)
+  # What others than the project's that are linked with the module, by itself or what it uses.
+  set_property(GLOBAL PROPERTY MINDAHL_NEEDS_${name} ${needs})
   foreach(library IN LISTS MODULE_PRIVATE)
     if(library IN_LIST header_only)
       set(library $<BUILD_INTERFACE:${library}>)
-    elseif(NOT library MATCHES "^mindahl::" AND NOT name STREQUAL "cli")
-      set_property(GLOBAL APPEND PROPERTY MINDAHL_LINKED ${library})
     endif()
     list(APPEND private_libraries ${library})
   endforeach()
@@ -68,6 +91,8 @@ function(mindahl_add_module name)
   set_property(GLOBAL APPEND PROPERTY MINDAHL_MODULES ${name})
   # Joined sources parse them once: to precompile them costs more.
   if(MINDAHL_PRECOMPILE_HEADERS AND MODULE_PRECOMPILE AND NOT CMAKE_UNITY_BUILD)
-    target_precompile_headers(mindahl_${name} PRIVATE ${MODULE_PRECOMPILE})
+    target_precompile_headers(mindahl_${name} PRIVATE ${visible} ${MODULE_PRECOMPILE})
+  elseif(visible)
+    target_compile_options(mindahl_${name} PRIVATE "SHELL:-include ${visible}")
   endif()
 endfunction()

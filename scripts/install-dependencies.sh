@@ -14,7 +14,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libceres-dev libeigen3-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libkainjow-mustache-dev
-  zlib1g-dev libboost-dev libssl-dev
+  zlib1g-dev libboost-dev libmd-dev
   librsvg2-bin jq python3 help2man
 )
 node_packages=()
@@ -39,7 +39,7 @@ for group in "$@"; do
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --readers)
       packages+=(
-        python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
+        python3-scipy python3-h5py python3-pint python3-xarray
         python3-nbclient python3-nbformat python3-ipykernel python3-emcee
       )
       ;;

@@ -2,7 +2,7 @@
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
 # their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; how
 # often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
-# another seed every night; the Debian packages, used on a clean root.
+# another seed every night; the Debian packages, used on a clean root; a wheel that is complete.
 # Some hours on two cores. Every part runs, whatever became of those before.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -20,6 +20,9 @@ part ./scripts/tidy.sh --thorough
 part ./scripts/clang.sh
 part ./scripts/fuzz.sh --seconds 600
 part ./scripts/packages.sh
+part ./scripts/ceres.sh build/ceres
+part env COMPLETE=1 CMAKE_PREFIX_PATH="$PWD/build/ceres" \
+  tests/python/wheel.sh /usr/bin/python3 "$PWD/build/ci" "$PWD" sdist
 part cmake --build build/ci --target coverage
 part cmake --build build/ci --target reliability
 seed=$(date +%Y%m%d)

@@ -15,8 +15,7 @@ mkdir -p "$output"
 # setuptools writes beside its sources: into a copy.
 sources="$(mktemp -d)"
 trap 'rm -rf "$sources"' EXIT
-cp CMakeLists.txt "$sources"
-cp -R python "$sources"
+cp -R CMakeLists.txt pyproject.toml setup.py README.md LICENSE python "$sources"
 MINDAHL_PYTHON_BUILD_DIR="$package" "$python" -m pip wheel --quiet --no-index --no-deps \
-  --no-build-isolation --wheel-dir "$output" "$sources/python"
+  --no-build-isolation --wheel-dir "$output" "$sources"
 ls "$output"/mindahl-*.whl

@@ -5,22 +5,21 @@
     result.sigma.value, result.slip_force.interval, result.adequacy.verdict
     print(result)
 
-fit() fits a record or several, sweep() stiffnesses over an amplitude, track() every cycle of a long one, batch() many files each on its own;
-plan() predicts the errors of a measurement, contact() the force from materials, validate() tests the
-mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
-tradeoff() compares models and methods, convert() writes it as another law;
-read_csv() reads a record as the program does, read_mat(), read_hdf5() and read_excel() those of
-other programs; FitResult.load() reads a saved result. docs/python.md has them with examples.
+fit() fits a record or several, track() every cycle of a long one, batch() many files each on its own; plan()
+predicts the errors of a measurement, contact() the force from materials, convert() writes a contact as
+another law; command() runs any command of the program. simulate() and ContactState compute the force of
+a contact, along excitation() or any motion; read_csv() reads a record as the program does, read_mat()
+and read_hdf5() those of other programs; FitResult.load() reads a saved result. docs/python.md has them with
+examples.
 """
 
 from ._batch import BatchTable, batch
-from ._contact import Conversion, contact, convert, excitation, simulate
-from ._design import plan, tradeoff, validate
-from ._fit import fit, sweep
+from ._commands import Conversion, command, contact, convert, excitation, plan, simulate
+from ._fit import fit
 from ._mindahl import ContactState, InputError, JointState, Record, __version__
-from ._readers import read_excel, read_hdf5, read_mat
+from ._readers import read_hdf5, read_mat
 from ._records import read_csv
-from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Message, Parameter,
+from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Parameter,
                       Report, Section)
 from ._track import CycleTable, track
 
@@ -29,8 +28,7 @@ for _public in (ContactState, InputError, JointState, Record):
 
 __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
-    "FittedRecord", "InputError", "JointState", "LogLikelihood", "Message", "Parameter", "Record",
-    "Report", "Section", "__version__", "batch", "contact", "convert", "excitation", "fit",
-    "plan", "read_csv", "read_excel", "read_hdf5", "read_mat", "simulate", "sweep",
-    "tradeoff", "track", "validate",
+    "FittedRecord", "InputError", "JointState", "LogLikelihood", "Parameter", "Record",
+    "Report", "Section", "__version__", "batch", "command", "contact", "convert", "excitation", "fit",
+    "plan", "read_csv", "read_hdf5", "read_mat", "simulate", "track",
 ]

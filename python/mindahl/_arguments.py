@@ -1,21 +1,23 @@
-"""What a user gives, as the library takes it: numbers, names, ranges and arrays."""
+"""What a user gives, as the library takes it: numbers and arrays, and keywords as the program's options."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from numbers import Number
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _mindahl
-
 Floats = NDArray[np.float64]
 
 Uncertain = Union[float, tuple[float, float]]
 """A number, or a pair of it and one standard uncertainty, both in its unit."""
+
+_FLAGS = ("join", "compare")
+_RANGES = ("cycles", "samples", "time_window", "load_window", "bound")
+_OPTIONS = {"with_file": "with"}
 
 
 def number(name: str, value: Any) -> float:
@@ -42,71 +44,39 @@ def count(name: str, value: Any, least: int) -> int:
     return whole
 
 
-def uncertain(name: str, value: Any) -> _mindahl.UncertainValue:
-    """A number, or (number, standard uncertainty)."""
-    if not isinstance(value, tuple):
-        return _mindahl.UncertainValue(number(name, value))
-    if len(value) != 2:
-        raise ValueError(f"{name} = {value!r} is invalid: must be a number or (number, uncertainty)")
-    error = number(name, value[1])
-    if not (np.isfinite(error) and error >= 0):
-        raise ValueError(f"{name}: the standard uncertainty {error!r} is invalid: must be finite and >= 0")
-    return _mindahl.UncertainValue(number(name, value[0]), error)
+def words(given: Mapping[str, Any]) -> list[str]:
+    """The options that keywords are: fix={"alpha": 0} is --fix=alpha=0; what is None is left out."""
+    found = []
+    for name, value in given.items():
+        option = "--" + _OPTIONS.get(name, name.rstrip("_").replace("_", "-"))
+        if value is None or isinstance(value, str) and not value:
+            continue
+        if name in _FLAGS:
+            found += [option] if value else []
+        elif isinstance(value, Mapping):
+            found += [f"{option}={key}={_text(f'{name}[{key!r}]', each, name)}"
+                      for key, each in value.items()]
+        elif isinstance(value, list) and name == "normal_load":  # one a record
+            found.append(f"{option}={','.join(_text(name, each, name) for each in value)}")
+        elif isinstance(value, (list, np.ndarray)) or (
+                isinstance(value, tuple) and any(isinstance(each, str) for each in value)):
+            found += [f"{option}={_text(name, each, name)}" for each in value]
+        else:
+            found.append(f"{option}={_text(name, value, name)}")
+    return found
 
 
-def pair(name: str, value: Any) -> tuple[Any, Any]:
-    """(low, high), of whatever kind."""
-    if not isinstance(value, Sequence) or isinstance(value, (str, bytes)) or len(value) != 2:
-        raise ValueError(f"{name} = {value!r} is invalid: must be a pair (low, high)")
-    return value[0], value[1]
-
-
-def interval(name: str, value: Any) -> Optional[tuple[float, float]]:
-    if value is None:
-        return None
-    low, high = pair(name, value)
-    return number(name, low), number(name, high)
-
-
-def counts(name: str, value: Any) -> Optional[tuple[int, int]]:
-    """Whole numbers from 1 on."""
-    if value is None:
-        return None
-    low, high = pair(name, value)
-    return count(name, low, 1), count(name, high, 1)
-
-
-def fitted_or_number(name: str, value: Any) -> Optional[float]:
-    """None of "fit"."""
-    return None if isinstance(value, str) and value == "fit" else number(name, value)
-
-
-def on_off(name: str, value: Union[bool, str]) -> str:
+def _text(name: str, value: Any, keyword: str) -> str:
+    """A number, a name, (low, high) or (number, standard uncertainty)."""
     if isinstance(value, (bool, np.bool_)):
         return "on" if value else "off"
-    if isinstance(value, str):
-        return value
-    raise ValueError(f"{name} = {value!r} is invalid: must be True or False")
-
-
-def mapping(name: str, values: Optional[Mapping[str, Any]], what: str) -> Mapping[str, Any]:
-    if values is not None and not isinstance(values, Mapping):
-        raise ValueError(f"{name} = {values!r} is invalid: must be a dict of parameters and {what}")
-    return values or {}
-
-
-def assignments(name: str, values: Optional[Mapping[str, Any]]) -> dict[str, float]:
-    return {parameter: number(f"{name}[{parameter!r}]", value)
-            for parameter, value in mapping(name, values, "numbers").items()}
-
-
-def priors_of(values: Optional[Mapping[str, Any]]) -> dict[str, _mindahl.UncertainValue]:
-    """Parameter to (value, standard uncertainty)."""
-    priors = {}
-    for parameter, value in mapping("prior", values, "(value, uncertainty)").items():
-        middle, error = pair(f"prior[{parameter!r}]", value)
-        priors[parameter] = uncertain(f"prior[{parameter!r}]", (middle, error))
-    return priors
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, (tuple, list)):
+        if len(value) != 2:
+            raise ValueError(f"{name} = {value!r} is invalid: must be a number or a pair")
+        return (":" if keyword in _RANGES else "±").join(_text(name, each, "") for each in value)
+    return str(value.__index__()) if hasattr(value, "__index__") else repr(number(name, value))
 
 
 def column_text(name: str, value: Any, unit: Optional[str] = None) -> str:
@@ -185,66 +155,22 @@ def is_frame(value: Any) -> bool:
     return hasattr(value, "columns") and hasattr(value, "__getitem__") and hasattr(value, "iloc")
 
 
+def is_pair(value: Any) -> bool:
+    """The arrays (displacement, force)."""
+    return isinstance(value, tuple) and len(value) == 2 and all(map(is_array, value))
+
+
 def several(value: Any) -> Optional[list[Any]]:
     """The elements of a list or tuple of sources; None of one source."""
-    if isinstance(value, (list, tuple)) and not is_array(value):
+    if isinstance(value, (list, tuple)) and not is_array(value) and not is_pair(value):
         return list(value)
     return None
 
 
-def known_contact(
-    *,
-    youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
-    radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
-    poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
-    contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
-    normal_load: Optional[Uncertain] = None,
-) -> _mindahl.KnownContact:
-    def known(name: str, value: Any) -> Optional[_mindahl.UncertainValue]:
-        return None if value is None else uncertain(name, value)
-
-    contact = _mindahl.ContactOptions().known
-    body_1, body_2 = contact.body_1, contact.body_2
-    body_1.youngs_modulus = known("youngs_modulus_1", youngs_modulus_1)
-    body_1.poisson = known("poisson_1", poisson_1)
-    body_1.radius = known("radius_1", radius_1)
-    body_2.youngs_modulus = known("youngs_modulus_2", youngs_modulus_2)
-    body_2.poisson = known("poisson_2", poisson_2)
-    body_2.radius = known("radius_2", radius_2)
-    contact.contact_radius = known("contact_radius", contact_radius)
-    contact.compliance = known("compliance", compliance)
-    contact.normal_load = known("normal_load", normal_load)
-    return contact
-
-
-def names_of(values: Union[None, str, Iterable[str]]) -> list[str]:
-    """One name, or several."""
-    if values is None:
-        return []
-    return [values] if isinstance(values, str) else list(values)
-
-
-def contact_options(friction: Optional[Uncertain] = None, **known: Optional[Uncertain]) -> _mindahl.ContactOptions:
-    """friction and what known_contact() takes."""
-    options = _mindahl.ContactOptions()
-    options.known = known_contact(**known)
-    options.friction = None if friction is None else uncertain("friction", friction)
-    return options
-
-
-def law_of(sigma: Optional[float], alpha: Optional[float], slip_force: Optional[float],
-           contact: Mapping[str, Optional[Uncertain]]) -> _mindahl.LawRequest:
-    law = _mindahl.LawRequest()
-    law.sigma = optional_number("sigma", sigma)
-    law.alpha = optional_number("alpha", alpha)
-    law.slip_force = optional_number("slip_force", slip_force)
-    law.contact = contact_options(**contact)
-    return law
-
-
-def numbers(name: str, values: Any) -> list[float]:
-    """A number, or several."""
-    if values is None:
-        return []
-    given = [values] if isinstance(values, (Number, np.generic)) else values
-    return [float(value) for value in array(name, given)]
+def in_executor(executor: Any, function: Callable[[Any], Any], tasks: Sequence[Any]) -> list[Any]:
+    """What an executor makes of each task: concurrent.futures, or dask.distributed's Client."""
+    if hasattr(executor, "submit"):
+        return [future.result() for future in [executor.submit(function, task) for task in tasks]]
+    if hasattr(executor, "map"):
+        return list(executor.map(function, tasks))
+    raise ValueError(f"executor: a {type(executor).__name__} has neither submit() nor map()")

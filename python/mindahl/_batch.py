@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import inspect
-import json
 import os
+import threading
 import warnings
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,55 +14,28 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import count, is_frame, path_text
+from ._arguments import count, in_executor, path_text
 from ._fit import fit, prepared, request_and_arguments
 from ._records import is_path
-from ._result import FitWarning, Report, Table
+from ._result import FitWarning, Report, Table, Told
 
 
-class BatchTable(Table):
+class BatchTable(Told, Table):
     """The answer of batch(): one row a source, an array a column; unknown values are NaN or None.
 
     report: sections of `mindahl batch --json`, `files` with the fit of each, and `repeats`.
+    faults: why a source has no fit or is not established, by its name.
     """
 
     def __init__(self, entries: list[_mindahl.BatchEntry]) -> None:
-        self._entries = entries
-        self._columns = {name: _column(cells)
-                         for name, cells in _mindahl.batch_columns(entries).items()}
-        self.report = Report(_mindahl.batch_answer(entries), "batch", ("files", "repeats"))
-
-    @property
-    def established(self) -> bool:
-        """Was every source fitted, and established where `strict` asks for it?"""
-        return self.report.established
-
-    @property
-    def faults(self) -> dict[str, str]:
-        """Why a source has no fit or is not established, by its name."""
-        return {entry.name: entry.fault for entry in self._entries if entry.fault}
+        columns, self._csv, self._document, self._text, self.established = _mindahl.batch(entries)
+        self._columns = {name: _column(cells) for name, cells in columns.items()}
+        self.report = Report(self._document, self._text, self.established, "batch")
+        self.faults = {name: fault for name, fault, *_ in entries if fault}
 
     def to_csv(self) -> str:
         """What `mindahl batch --output` writes."""
-        return _mindahl.batch_csv(self._entries)
-
-    def to_dict(self) -> dict[str, Any]:
-        """What `mindahl batch --json` writes; its "output" is None."""
-        return self.report.to_dict()
-
-    def to_json(self) -> str:
-        """The same as text, byte for byte."""
-        return self.report.to_json()
-
-    def text(self) -> str:
-        """What `mindahl batch` prints."""
-        return self.report.text()
-
-    def __str__(self) -> str:
-        return self.text()
-
-    def __repr__(self) -> str:
-        return f"<mindahl.BatchTable: {len(self._entries)} rows of {', '.join(self._columns)}>"
+        return self._csv
 
     def _repr_html_(self) -> str:
         rows = [list(self._columns), *zip(*self._columns.values())]
@@ -102,45 +75,40 @@ def batch(
     bound = inspect.signature(fit).bind_partial(**keywords)  # TypeError for what fit() has not
     bound.apply_defaults()
     given = dict(bound.arguments)
-    _mindahl.check_request(request_and_arguments(given)[0])
+    request_and_arguments(given)[0].check()
     strictness = ("adequate" if strict else "none") if isinstance(strict, bool) else strict
     if strictness not in ("none", "adequate", "doubtful"):
         raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
-    tasks = [(source, f"record {k + 1}", strictness, given) for k, source in enumerate(sources)]
+    stop = threading.Event()
+    tasks = [(source, f"record {k + 1}", strictness, given, None if executor is not None else stop.is_set)
+             for k, source in enumerate(sources)]
     if executor is not None:
-        entries = _in_executor(executor, tasks)
+        entries = in_executor(executor, _fit_one, tasks)
     else:
         workers = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
-        with ThreadPoolExecutor(workers) as pool:
+        pool = ThreadPoolExecutor(workers)
+        try:
             entries = list(pool.map(_fit_one, tasks))
-    for entry in entries:
-        faults = [f"{entry.name}: {entry.fault}"] if entry.fault else []
-        for message in (*entry.notes, *faults):
+        finally:
+            stop.set()  # of fits that Ctrl-C left
+            pool.shutdown(cancel_futures=True)
+    for name, fault, _, notes, *_ in entries:
+        for message in (*notes, *([f"{name}: {fault}"] if fault else [])):
             warnings.warn(_mindahl.with_keywords(message), FitWarning, stacklevel=2)
     return BatchTable(entries)
 
 
-Task = tuple[Any, str, str, dict[str, Any]]
-
-
-def _in_executor(executor: Any, tasks: list[Task]) -> list[_mindahl.BatchEntry]:
-    if hasattr(executor, "submit"):
-        return [future.result() for future in [executor.submit(_fit_one, task) for task in tasks]]
-    if hasattr(executor, "map"):
-        return list(executor.map(_fit_one, tasks))
-    raise ValueError(f"executor: a {type(executor).__name__} has neither submit() nor map()")
+Task = tuple[Any, str, str, dict[str, Any], Any]
 
 
 def _fit_one(task: Task) -> _mindahl.BatchEntry:
-    source, name, strictness, given = task
+    source, name, strictness, given, stops = task
     if is_path(source):
         name = path_text(source)
-    is_pair = isinstance(source, (tuple, list)) and len(source) == 2 and not is_frame(source)
-    source, force = source if is_pair else (source, given["force"])
     try:
-        records, request, _ = prepared({**given, "source": source, "force": force})
+        records, request, _ = prepared({**given, "source": source})
         if len(records) != 1:
             raise ValueError(f"{name}: {len(records)} records: each is a source of its own")
-        return _mindahl.fit_one(records[0], request, strictness)
+        return _mindahl.fit_one(records[0], request, strictness, stops)
     except ValueError as error:
-        return _mindahl.faulty_entry(name, str(error))
+        return name, str(error), False, [], "", ""

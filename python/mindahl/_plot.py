@@ -11,7 +11,14 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
         raise ValueError("the result has no records, as one that was read from JSON: fit them again")
     if any(record.fitted_force is None for record in records):
         raise ValueError("the fit failed: there is no curve to draw")
-    axes = _axes(ax)
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.subplots(2, 1, sharex=True, layout="constrained",
+                             gridspec_kw={"height_ratios": [3, 1]})[1]
+    axes = [ax] if hasattr(ax, "plot") else list(ax)
+    if len(axes) > 2 or not all(hasattr(axis, "plot") for axis in axes):
+        raise ValueError("ax must be one of matplotlib's Axes, or two")
     for k, record in enumerate(records):
         name = "" if len(records) == 1 else f" {record.name}"
         points = axes[0].plot(record.displacement, record.force, ".", markersize=3,
@@ -31,19 +38,4 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
         axes[1].axhline(0.0, linewidth=0.8, color="black")
         of_displacement = any(record.fitted_displacement is not None for record in records)
         axes[1].set_ylabel(f"residual [{units[0 if of_displacement else 1]}]")
-    return ax if ax is not None else axes
-
-
-def _axes(ax: Any) -> Any:
-    if ax is None:
-        from matplotlib import pyplot
-
-        _, axes = pyplot.subplots(2, 1, sharex=True, layout="constrained",
-                                  gridspec_kw={"height_ratios": [3, 1]})
-        return [*axes]
-    if hasattr(ax, "plot"):
-        return [ax]
-    axes = list(ax)
-    if len(axes) != 2 or not all(hasattr(axis, "plot") for axis in axes):
-        raise ValueError("ax must be one of matplotlib's Axes, or two")
-    return axes
+    return ax

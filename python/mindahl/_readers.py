@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import datetime
 import inspect
 import os
-import tempfile
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Optional, Union
 
@@ -15,7 +13,7 @@ import numpy as np
 from . import _mindahl
 from ._arguments import array, path_text
 from ._mindahl import Record
-from ._records import read_csv, record_options
+from ._records import read_csv, reading
 
 Path = Union[str, os.PathLike[str]]
 Columns = dict[str, Any]
@@ -26,8 +24,8 @@ def read_mat(path: Path, *, within: Optional[str] = None, **options: Any) -> Rec
 
     Every numeric vector of the file is a column, called by its variable, "test.x" in a struct; of a
     matrix the columns, called "data_1", "data_2", .... Those of the length that most have make the
-    table.
-    within: only variables whose name begins so.
+    table, each by the last part of its name, "x", where that is its alone.
+    within: only variables of this struct.
     options: displacement, force, time, units and the others of read_csv().
     Raises ImportError without scipy, ValueError for a file of version 7.3, which is HDF5.
     """
@@ -47,10 +45,11 @@ def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Re
 
     Every numeric dataset of one dimension is a column, called by its path without the first slash,
     with the unit of its attribute "units", "unit" or "Unit"; of two dimensions the columns, of a
-    compound one the fields. Those of the length that most have make the table.
-    within: only datasets whose path begins so.
+    compound one the fields. Those of the length that most have make the table, each by the last
+    part of its path, where that is its alone.
+    within: only datasets of this group.
     options: displacement, force, time, units and the others of read_csv().
-    Raises ImportError without h5py.
+    Raises ImportError without h5py, ValueError where no name says which is displacement, which force.
     """
     import h5py
 
@@ -67,45 +66,6 @@ def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Re
     with h5py.File(path_text(path), "r") as file:
         file.visititems(visit)
     return _record(path, columns, within, options)
-
-
-def read_excel(path: Path, *, sheet: Optional[str] = None, **options: Any) -> Record:
-    """Reads a record from a sheet of an Excel workbook (xlsx) by openpyxl.
-
-    The sheet is read as a CSV file of its cells is: preamble, header, units and columns are found by
-    the same rules. Formulas have the values that Excel stored.
-    sheet: its name; by default the first.
-    options: displacement, force, time, units and the others of read_csv().
-    Raises ImportError without openpyxl, InputError naming row and column.
-    """
-    import openpyxl
-
-    book = openpyxl.load_workbook(path_text(path), read_only=True, data_only=True)
-    try:
-        if sheet is not None and sheet not in book.sheetnames:
-            raise ValueError(f"{path_text(path)}: has no sheet {sheet!r}: it has "
-                             f"{', '.join(book.sheetnames)}")
-        cells = book[sheet] if sheet is not None else book.worksheets[0]
-        with tempfile.TemporaryDirectory() as folder:
-            # So that messages name the workbook.
-            name = os.path.join(folder, os.path.basename(path_text(path)))
-            with open(name, "w", newline="", encoding="utf-8") as file:
-                writer = csv.writer(file)
-                for row in cells.iter_rows(values_only=True):
-                    writer.writerow([_cell_text(cell) for cell in row])
-            return read_csv(name, **options)
-    finally:
-        book.close()
-
-
-def _cell_text(cell: Any) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, float):
-        return repr(cell)
-    if isinstance(cell, datetime.datetime):
-        return cell.isoformat(sep=" ")
-    return str(cell)
 
 
 def _vectors(variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -132,17 +92,29 @@ def _vectors(variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def _record(path: Path, columns: Columns, within: Optional[str],
             options: Mapping[str, Any]) -> Record:
     chosen = {name: values for name, values in columns.items()
-              if within is None or name.startswith(within)}
+              if within is None or re.match(re.escape(within.rstrip("/.")) + r"([/. ]|$)", name)}
     lengths = [len(values) for values in chosen.values() if len(values) > 1]
     if not lengths:
         raise ValueError(f"{path_text(path)}: holds no vector of numbers"
-                         + ("" if within is None else f" whose name begins with {within!r}")
+                         + ("" if within is None else f" within {within!r}")
                          + f": it has {', '.join(columns) or 'none'}")
     length = max(set(lengths), key=lambda size: (lengths.count(size), size))
-    table = {name: values for name, values in chosen.items() if len(values) == length}
-    bound = inspect.signature(read_csv).bind(path, **options)  # TypeError for what it has not
+    # A column is called by the last part of its name, where no other has that.
+    last = {name: re.sub(r"^[^\[]*[/.](?=[^/.])", "", name)
+            for name, values in chosen.items() if len(values) == length}
+    headers = {name: short if list(last.values()).count(short) == 1 else name
+               for name, short in last.items()}
+    asked = {name.partition(" [")[0]: header.partition(" [")[0] for name, header in headers.items()}
+    given = {role: asked.get(value, value) if isinstance(value, str) else value
+             for role, value in options.items()}
+    bound = inspect.signature(read_csv).bind(path, **given)  # TypeError for what it has not
     bound.apply_defaults()
-    return _mindahl.record_of_columns(
-        path_text(path), list(table),
-        [array(name, values, keep_missing=True) for name, values in table.items()],
-        record_options(bound.arguments))
+    record = _mindahl.record_of_columns(
+        path_text(path), list(headers.values()),
+        [array(name, chosen[name], keep_missing=True) for name in headers],
+        reading(bound.arguments, list(map(str, bound.arguments["covariates"]))))
+    # Of a text the columns have an order, which some go by; variables have none.
+    if any("in their order" in note for note in record.notes):
+        raise ValueError(f"{path_text(path)}: no name says which is the displacement and which the force: "
+                         f"give displacement and force, of {', '.join(headers)}")
+    return record

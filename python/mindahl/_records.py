@@ -4,49 +4,35 @@ from __future__ import annotations
 
 import copyreg
 import os
+import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_text, is_array, is_frame, is_quantity, optional_number,
-                         path_text, several, with_unit)
+from ._arguments import (array, column_text, is_array, is_frame, is_pair, is_quantity, path_text,
+                         several, with_unit, words)
 from ._mindahl import Record
 
 Column = Union[str, int]
 Path = Union[str, os.PathLike[str]]
-# Units in which a quantity is read, by its role.
-UNITS = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",),
-         "normal_load_column": ("N",)}
-UNIT_KEYWORDS = ("displacement_unit", "force_unit", "time_unit", "normal_load_unit")
-FILE_KEYWORDS = ("encoding", "sample_rate", "with_file", "broken_rows")
+Columns = list[tuple[str, Any]]
+ROLES = ("displacement", "force", "time", "normal_load_column")
+# Units in which a quantity is read.
+SI = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",), "normal_load_column": ("N",)}
+UNITS = ("displacement_unit", "force_unit", "time_unit", "normal_load_unit")
+OF_FILES = ("encoding", "sample_rate", "with_file", "broken_rows", "max_memory")
 
 
-def columns_of(
-    displacement: Optional[Column], force: Optional[Column], time: Optional[Column],
-    normal_load_column: Optional[Column], displacement_unit: Optional[str],
-    force_unit: Optional[str], time_unit: Optional[str], normal_load_unit: Optional[str],
-    covariates: Sequence[str] = (), encoding: str = "", sample_rate: Optional[float] = None,
-    with_file: Optional[Path] = None, broken_rows: str = "refuse",
-) -> _mindahl.RecordColumns:
-    columns = _mindahl.RecordColumns(
-        column_text("displacement", displacement, displacement_unit),
-        column_text("force", force, force_unit), column_text("time", time, time_unit),
-        column_text("normal_load_column", normal_load_column, normal_load_unit), list(covariates),
-        encoding)
-    columns.sample_rate = optional_number("sample_rate", sample_rate)
-    columns.with_file = "" if with_file is None else path_text(with_file)
-    if broken_rows not in ("refuse", "skip"):
-        raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
-    columns.skip_broken_rows = broken_rows == "skip"
-    return columns
+def column_words(given: Mapping[str, Any], covariates: Any = None) -> list[str]:
+    """The options that say how columns are read."""
+    columns = {role: column_text(role, given.get(role), given.get(unit)) for role, unit in zip(ROLES, UNITS)}
+    return words({**columns, **{name: given.get(name) for name in OF_FILES}, "covariate": covariates})
 
 
-def record_options(given: Mapping[str, Any]) -> _mindahl.RecordColumns:
-    """What the arguments of read_csv() say of the columns."""
-    return columns_of(**{name: given[name] for name in (
-        *UNITS, *UNIT_KEYWORDS, "covariates", *FILE_KEYWORDS)})
+def reading(given: Mapping[str, Any], covariates: Any = None) -> _mindahl.FitRequest:
+    return _mindahl.FitRequest(column_words(given, covariates))
 
 
 def read_csv(
@@ -73,29 +59,31 @@ def read_csv(
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """
-    return _mindahl.read_csv(path_text(path), record_options(locals()))
+    given = dict(locals())
+    return _mindahl.read_csv(path_text(path), reading(given, list(map(str, covariates))))
 
 
 class RecordArguments:
     """How the arguments of fit() and track() that say what a record is are to be read."""
 
-    def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = (),
-                 max_memory: Optional[int] = None) -> None:
-        self.roles: dict[str, Any] = {**{role: given.get(role) for role in UNITS}, "force": None}
-        self.units: dict[str, Any] = {name: given.get(name) for name in UNIT_KEYWORDS}
+    def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = ()) -> None:
+        self.roles: dict[str, Any] = {**{role: given.get(role) for role in ROLES}, "force": None}
+        self.units: dict[str, Any] = {name: given.get(name) for name in UNITS}
         self.covariates = list(covariates)
-        self.of_files = {name: given[name] for name in FILE_KEYWORDS if name in given}
-        self.max_memory = max_memory
-        """Of the files that are still to be read, all together."""
+        self.of_files = {name: given.get(name) for name in OF_FILES}
         self.assumed: list[str] = []
         """Of the columns and units of files and frames that were read, a sentence each."""
 
-    def columns(self) -> _mindahl.RecordColumns:
+    def words(self, roles: Optional[Mapping[str, Any]] = None) -> list[str]:
+        """How columns are read: those of `roles`, or those that were given by name or number."""
         for role, value in self.roles.items():
-            if value is not None and not isinstance(value, (str, int, np.integer)):
+            if roles is None and value is not None and not isinstance(value, (str, int, np.integer)):
                 raise ValueError(f"{role}: must be the name or the number of a column here, where "
                                  "the columns are in a file or a frame")
-        return columns_of(**self.roles, **self.units, covariates=self.covariates, **self.of_files)
+        return column_words({**(roles or self.roles), **self.units, **self.of_files}, self.covariates)
+
+    def columns(self, roles: Optional[Mapping[str, Any]] = None) -> _mindahl.FitRequest:
+        return _mindahl.FitRequest(self.words(roles))
 
     def refuse_choices(self, what: str) -> None:
         given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
@@ -103,83 +91,84 @@ class RecordArguments:
             raise ValueError(f"{given[0]} has no effect on {what}: leave it out")
 
     def of_table(self, name: str, names: Sequence[str], arrays: Sequence[Any],
-                 columns: _mindahl.RecordColumns) -> Record:
-        if columns.with_file:
+                 request: _mindahl.FitRequest) -> Record:
+        if self.of_files["with_file"] is not None:
             raise ValueError("with_file has no effect on what is no file: leave it out")
-        return _mindahl.record_of_columns(name, names, arrays, columns)
+        return _mindahl.record_of_columns(name, names, arrays, request)
 
-    def of_frame(self, frame: Any, name: str) -> Record:
-        names = [str(column) for column in frame.columns]
-        arrays = [array(name, frame.iloc[:, k].to_numpy(), keep_missing=True)
-                  for k, name in enumerate(names)]
-        return self.of_table(name, names, arrays, self.columns())
+    def of_columns(self, columns: Columns, name: str) -> Record:
+        return self.of_table(name, [column for column, _ in columns],
+                             [array(column, values, keep_missing=True) for column, values in columns],
+                             self.columns())
 
-    def of_dataset(self, dataset: Any, name: str) -> Record:
-        """A Dataset of xarray: its variables and coordinates of one dimension, with their units."""
-        names, arrays = [], []
-        for column, values in {**dataset.coords, **dataset.data_vars}.items():
-            if values.ndim == 1 and np.asarray(values).dtype.kind in "fiu":
-                unit = values.attrs.get("units")
-                names.append(f"{column} [{unit}]" if unit else str(column))
-                arrays.append(array(str(column), values, keep_missing=True))
-        if len({len(values) for values in arrays}) > 1:
-            raise ValueError(f"{name}: its variables have {', '.join(map(str, dataset.sizes))} for "
-                             "dimensions: select those of one")
-        return self.of_table(name, names, arrays, self.columns())
+    def of_file(self, file: Any, name: str) -> Record:
+        """What a file object holds, read as a file of its name is."""
+        content = file.read()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, os.path.basename(str(getattr(file, "name", name))) or name)
+            with open(path, "wb") as copy:
+                copy.write(content.encode() if isinstance(content, str) else content)
+            return _mindahl.read_csv(path, self.columns())
 
     def of_arrays(self, columns: Mapping[str, Any], name: str,
                   covariates: Mapping[str, Any]) -> Record:
+        # In SI units, unless one is stated; an angle and a torque have units of their own.
+        torsional = any(self.units[unit] is not None for unit in ("displacement_unit", "force_unit"))
         names, arrays = [], []
-        choices: dict[str, Any] = {}
-        headers = {"displacement": "displacement", "force": "force", "time": "time",
-                   "normal_load_column": "normal load"}
-        torsional = any(self.units[f"{role}_unit"] is not None for role in ("displacement", "force"))
-        for role, header in headers.items():
-            choices[role] = None
-            if columns.get(role) is None:
+        for role, given in columns.items():
+            if given is None:
                 continue
-            unit = {"time": " [s]", "normal_load_column": " [N]"}.get(
-                role, "" if torsional else {"displacement": " [m]", "force": " [N]"}.get(role, ""))
-            values, stated = with_unit(role, columns[role], UNITS[role])
-            if stated is not None:
-                unit = f" [{stated}]"
-                if is_quantity(columns[role]) and self.units.get(f"{role}_unit") is not None:
-                    raise ValueError(f"{role}_unit: {role} has a unit of its own: leave it out")
-            names.append(header + unit)
+            values, stated = with_unit(role, given, SI[role])
+            if stated and is_quantity(given) and self.units.get(f"{role}_unit") is not None:
+                raise ValueError(f"{role}_unit: {role} has a unit of its own: leave it out")
+            unit = stated or ("" if torsional and len(SI[role]) > 1 else SI[role][0])
+            names.append(role.replace("normal_load_column", "normal load") + (f" [{unit}]" if unit else ""))
             arrays.append(array(role, values))
-            choices[role] = len(names)
-        for covariate, values in covariates.items():
-            names.append(covariate)
-            arrays.append(array(covariate, values))
+        roles = {role: k + 1 for k, role in enumerate(role for role in columns if columns[role] is not None)}
+        names += covariates
+        arrays += [array(covariate, values) for covariate, values in covariates.items()]
         for header, values in zip(names, arrays):
             if len(values) != len(arrays[0]):
                 raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
                                  f"{len(arrays[0])}: give as many of both")
-        return self.of_table(name, names, arrays, columns_of(
-            **choices, **self.units, covariates=self.covariates, **self.of_files))
+        return self.of_table(name, names, arrays,
+                             self.columns(roles))
 
 
-def _record_again(name: str, names: list[str], arrays: list[Any], roles: dict[str, int],
-                  covariates: list[str]) -> Record:
-    choices: dict[str, Any] = {**dict.fromkeys((*UNITS, *UNIT_KEYWORDS)), **roles}
-    return _mindahl.record_of_columns(name, names, arrays, columns_of(**choices, covariates=covariates))
-
-
-def _reduced(record: Record) -> Any:
-    """A record for pickle and copy: its arrays, called by what they are; its notes are said already."""
+def si_columns(record: Record) -> dict[str, tuple[str, Any]]:
+    """The columns of a record by their roles, with header."""
     length, force = ("rad", "N m") if record.is_torsional else ("m", "N")
     found = {"displacement": (f"displacement [{length}]", record.displacement),
              "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
              "normal_load_column": (f"normal load [{force}]", record.normal_load)}
-    given = {role: column for role, column in found.items() if column[1] is not None}
-    others = record.covariates
-    return _record_again, (record.name, [*(name for name, _ in given.values()), *others],
-                           [np.array(values) for values in (
-                               *(values for _, values in given.values()), *others.values())],
-                           {role: k + 1 for k, role in enumerate(given)}, list(others))
+    return {role: column for role, column in found.items() if column[1] is not None}
+
+
+def _record_again(name: str, names: list[str], arrays: list[Any], roles: dict[str, int],
+                  covariates: list[str]) -> Record:
+    return _mindahl.record_of_columns(name, names, arrays, reading(roles, covariates))
+
+
+def _reduced(record: Record) -> Any:
+    """A record for pickle and copy; its notes are said already."""
+    columns, others = si_columns(record), record.covariates
+    names, arrays = zip(*columns.values(), *others.items())
+    return _record_again, (record.name, list(names), [np.array(values) for values in arrays],
+                           {role: k + 1 for k, role in enumerate(columns)}, list(others))
 
 
 copyreg.pickle(Record, _reduced)
+
+
+def columns_by_name(source: Any) -> Optional[Columns]:
+    """The columns of a data frame, or of a dictionary: {"x [um]": ..., "F": ...}."""
+    if is_frame(source):
+        return [(str(name), source.iloc[:, k].to_numpy()) for k, name in enumerate(source.columns)]
+    if isinstance(source, Mapping):
+        found = {**getattr(source, "coords", {}), **source}  # as xarray's Dataset has them
+        named = [(name, *with_unit(str(name), values, ())) for name, values in found.items() if np.ndim(values)]
+        return [(f"{name} [{unit}]" if unit else str(name), values) for name, values, unit in named]
+    return None
 
 
 def is_path(value: Any) -> bool:
@@ -197,38 +186,18 @@ def records_of(source: Any, force: Any, arguments: RecordArguments,
                              "record or a file")
     if force is not None:
         roles["force"] = force
+    if is_array(source):
+        return [_record_of_arrays(source, roles, arguments, covariates or {})]
     elements = several(source)
-    if elements is None and is_array(source):
-        return [_record_of_arrays(source, roles, arguments, "record", covariates or {})]
     if elements is None:
         return [_record_of(source, arguments, "record")]
     if not elements:
         raise ValueError("a record is missing: the list is empty")
-    if not all(is_array(element) for element in elements):
-        return [_record_of(element, arguments, f"record {k + 1}")
-                for k, element in enumerate(elements)]
-    records = []
-    for k, element in enumerate(elements):
-        own = {role: _element(role, value, k, len(elements)) for role, value in roles.items()
-               if role != "displacement"}
-        records.append(_record_of_arrays(
-            element, {"displacement": None, **own}, arguments, f"record {k + 1}",
-            {name: _element(name, values, k, len(elements))
-             for name, values in (covariates or {}).items()}))
-    return records
-
-
-def _element(name: str, values: Any, k: int, count: int) -> Any:
-    if values is None:
-        return None
-    elements = several(values)
-    if elements is None or len(elements) != count:
-        raise ValueError(f"{name}: must be a list of {count} arrays, one a record")
-    return elements[k]
+    return [_record_of(element, arguments, f"record {k + 1}") for k, element in enumerate(elements)]
 
 
 def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: RecordArguments,
-                      name: str, covariates: Mapping[str, Any]) -> Record:
+                      covariates: Mapping[str, Any]) -> Record:
     if roles.get("displacement") is not None:
         raise ValueError("displacement is given twice: give it once")
     if roles.get("force") is None:
@@ -237,7 +206,7 @@ def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: Re
         if isinstance(value, (str, int)):
             raise ValueError(f"{role} = {value!r} names a column, but the displacement is an array: "
                              "give an array")
-    return arguments.of_arrays({**roles, "displacement": displacement}, name, covariates)
+    return arguments.of_arrays({**roles, "displacement": displacement}, "record", covariates)
 
 
 def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
@@ -251,10 +220,15 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         arguments.refuse_choices("a record that is read already")
         return source
     if is_path(source):
-        return _mindahl.read_csv(path_text(source), arguments.columns(), arguments.max_memory)
-    if is_frame(source):
-        return arguments.of_frame(source, name)
-    if hasattr(source, "data_vars"):
-        return arguments.of_dataset(source, name)
+        return _mindahl.read_csv(path_text(source), arguments.columns())
+    if is_pair(source):
+        return arguments.of_arrays({**arguments.roles, "displacement": source[0], "force": source[1]}, name, {})
+    columns = columns_by_name(source)
+    if columns is not None:
+        return arguments.of_columns(columns, name)
+    if hasattr(source, "read"):
+        return arguments.of_file(source, name)
+    if is_array(source):
+        raise ValueError(f"{name}: force is missing: give a pair of arrays (displacement, force)")
     array(name, source)  # says why it is no array
     raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import copy
-import io
 import json
 import os
-import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Any, NamedTuple, Optional, Union, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _mindahl
 from ._arguments import Floats, array
+
+if TYPE_CHECKING:
+    from . import _sections
 
 
 class FitWarning(UserWarning):
@@ -37,6 +38,10 @@ class Table(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._columns)
 
+    def __repr__(self) -> str:
+        rows = len(next(iter(self._columns.values()), ()))
+        return f"<mindahl.{type(self).__name__}: {rows} rows of {', '.join(self._columns)}>"
+
     def to_pandas(self) -> Any:
         """A pandas DataFrame of the columns. Raises ImportError without pandas."""
         import pandas
@@ -54,12 +59,13 @@ class Section(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         return _wrapped(self._values[name], f"{self._path}.{name}")
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        if name not in self._values:
-            raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
-        return self[name]
+    if not TYPE_CHECKING:  # type checkers know the sections of a fit by cmake/sections.py
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            if name not in self._values:
+                raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
+            return self[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
@@ -74,57 +80,66 @@ class Section(Mapping[str, Any]):
         return f"{self._path}: {dict(self._values)!r}"
 
 
-class Report(Section):
-    """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it.
+class AnySection(Section):
+    """A section whose items are not known to type checkers."""
 
-    established: did the program end with exit status 0?
+    if TYPE_CHECKING:
+        def __getattr__(self, name: str) -> Any: ...
+
+
+class Told:
+    """What a command of the program answered: its JSON and its text.
+
+    established: did the program end with exit status 0? Of a fit: did it converge?
     """
 
-    _tables: tuple[str, ...] = ()
-
-    def __init__(self, answer: _mindahl.Answer, path: str, tables: tuple[str, ...] = ()) -> None:
-        super().__init__(json.loads(answer.json), path)
-        self._answer = (answer.json, answer.text, answer.established)
-        self._tables = tables
-
-    @property
-    def established(self) -> bool:
-        return self._answer[2]
+    _document: str
+    _text: str
+    established: bool
 
     def to_dict(self) -> dict[str, Any]:
         """What the program writes as JSON, as a dict of one's own."""
-        return copy.deepcopy(dict(self._values))
+        return dict(json.loads(self._document))
 
     def to_json(self) -> str:
         """The same as text, byte for byte as the program writes it."""
-        return self._answer[0]
+        return self._document
 
     def text(self) -> str:
         """What the program prints."""
-        return self._answer[1]
+        return self._text
 
     def __str__(self) -> str:
-        return self.text()
+        return self._text
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text())}</pre>"
+        return f"<pre>{escape(self._text)}</pre>"
+
+
+class Report(Told, AnySection):
+    """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it."""
+
+    def __init__(self, document: str, text: str, established: bool, path: str) -> None:
+        super().__init__(json.loads(document), path)
+        self._document, self._text, self.established = document, text, established
 
     def to_pandas(self, table: Optional[str] = None) -> Any:
         """A table of the report as a pandas DataFrame; members of members have names such as
         "parameters_alpha_value".
 
-        table: one of the lists of the report, by default its main one.
+        table: a list of the report, or a section of sections; by default the first.
         Raises ValueError for what is no table of this report, ImportError without pandas.
         """
         import pandas
 
-        name = self._tables[0] if table is None and self._tables else table
-        if name not in self._tables:
-            raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(self._tables)}")
-        rows = self._values[name]
-        if isinstance(rows, dict):  # one row a member
-            rows = [{"name": key, **row} for key, row in rows.items()]
-        elif rows and "points" in rows[0]:  # one row a point
+        tables = {name: [{"name": key, **row} for key, row in rows.items()] if isinstance(rows, dict) else rows
+                  for name, rows in self._values.items() if isinstance(rows, (dict, list)) and rows
+                  and all(isinstance(row, dict) for row in (rows.values() if isinstance(rows, dict) else rows))}
+        name = next(iter(tables), None) if table is None else table
+        if name not in tables:
+            raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(tables)}")
+        rows = tables[name]
+        if "points" in rows[0]:  # one row a point
             rows = [{"excitation": row["name"], **point} for row in rows for point in row["points"]]
         return pandas.json_normalize(rows, sep="_")
 
@@ -185,14 +200,6 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Message:
-    """A finding in words, with its stable code: docs/contract.md."""
-
-    code: str
-    message: str
-
-
-@dataclass(frozen=True)
 class FittedRecord:
     """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays are read-only.
 
@@ -243,108 +250,95 @@ class Covariance(NamedTuple):
     names: tuple[str, ...]
 
 
-class _StoredFit:
-    """A fit of which the JSON is left, and what else was kept."""
-
-    def __init__(self, document: str, text: str = "", page: str = "", notes: Sequence[str] = (),
-                 units: tuple[str, str] = ("m", "N"),
-                 records: Sequence[dict[str, Any]] = ()) -> None:
-        self._document, self._page = document, page
-        self.notes, self.units, self.records = notes, units, records
-        parameters = FitResult(self).parameters
-        self.failed = not parameters
-        self._text = text or "\n".join(map(str, parameters.values())) or "the fit failed"
-
-    def json(self) -> str:
-        return self._document
-
-    def text(self) -> str:
-        return self._text
-
-    def page(self) -> str:
-        return self._page or f"<!DOCTYPE html>\n<title>mindahl</title>\n<pre>{escape(self._text)}</pre>\n"
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(name if name.startswith("_") else
-                             f"a result that was read from JSON has no {name}: it has no records; "
-                             "fit them again")
-
-
-class FitResult:
+class FitResult(Told):
     """A fit: sigma, alpha, slip_force and every section of the report as attributes.
 
     parameters: all, by name. records: the arrays of each record. warnings, notes: in words.
     adequacy, measured, contact, mapping, law, residuals, solver, ...: sections of the report, as
-        docs/contract.md lists them; result.to_dict() is the same as the program's JSON.
+        docs/contract.md lists them; result.to_dict() is the same as the program's JSON. A further
+        parameter, result.force_offset, is result.parameters["force_offset"] to a type checker.
     """
 
-    def __init__(self, fitted: Union[_mindahl.Fitted, _StoredFit]) -> None:
-        self._fitted = cast(_mindahl.Fitted, fitted)
-        self._report: dict[str, Any] = json.loads(fitted.json())
+    def __init__(self, kept: Mapping[str, Any], fitted: Optional[_mindahl.Fitted] = None) -> None:
+        self._kept = dict(kept)
+        self._fitted = fitted
+        self._document = kept["document"]
+        self._report: dict[str, Any] = json.loads(self._document)
+        self._text = kept["text"] or "\n".join(map(str, self.parameters.values())) or "the fit failed"
+        self.established = self.converged
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
         """Reads a result that save() wrote, or `mindahl fit --json` or to_json().
 
-        One of save() is complete but for log_likelihood() and residuals_csv(); JSON has parameters,
+        One of save() is complete but for log_likelihood() and residuals_csv(); the other has parameters,
         sections and warnings, and neither records nor figures.
         Raises ValueError for another document.
         """
         with open(path, "rb") as file:
             content = file.read()
-        kept: dict[str, Any] = {}
+        kept: dict[str, Any] = {"text": "", "notes": (), "units": ("m", "N"), "records": ()}
         try:
-            if content.startswith(b"PK"):
-                with np.load(io.BytesIO(content)) as arrays:
-                    kept = json.loads(arrays["kept"].tobytes())
-                    for k, record in enumerate(kept["records"]):
-                        record.update({name: arrays[f"{name}_{k}"] for name, value in record.items()
-                                       if name != "name" and value is not None})
-            text = kept.pop("document") if kept else content.decode()
-            document = json.loads(text)
-        except (KeyError, ValueError, zipfile.BadZipFile):
-            document = None
-        if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/2":
+            read = json.loads(content)
+            kept.update(read if "document" in read else {"document": content.decode()})
+            is_fit = json.loads(kept["document"])["schema"] == "mindahl.fit/2"
+        except (KeyError, TypeError, ValueError):
+            is_fit = False
+        if not is_fit:
             raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/2")
-        return cls(_StoredFit(text, **kept))
+        kept["records"] = [{name: np.array(value) if isinstance(value, list) else value
+                            for name, value in record.items()} for record in kept["records"]]
+        return cls(kept)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes JSON, text, page and arrays to one file, of NumPy's format npz, for load()."""
-        kept: dict[str, Any] = {**self._kept(), "page": self.page()}
-        arrays = {f"{name}_{k}": value for k, record in enumerate(kept["records"])
-                  for name, value in record.items() if isinstance(value, np.ndarray)}
-        kept["records"] = [{name: "array" if isinstance(value, np.ndarray) else value
-                            for name, value in record.items()} for record in kept["records"]]
-        with open(path, "wb") as file:
-            np.savez_compressed(file, kept=np.frombuffer(json.dumps(kept).encode(), np.uint8),
-                                **arrays)
-
-    def _kept(self) -> dict[str, Any]:
-        fitted = self._fitted
-        return {"document": fitted.json(), "text": fitted.text(), "notes": list(fitted.notes),
-                "units": tuple(fitted.units), "records": list(fitted.records)}
+        """Writes JSON, text, page and arrays to one file of JSON, for load()."""
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({**self._kept, "page": self.page()}, file, default=lambda values: values.tolist())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _result_of, (self._kept(),)
+        return FitResult, (self._kept,)
 
     def __copy__(self) -> FitResult:
-        return FitResult(self._fitted)  # which nothing changes
+        return FitResult(self._kept, self._fitted)  # which nothing changes
 
     def __deepcopy__(self, memo: Any) -> FitResult:
-        return FitResult(self._fitted)
+        return copy.copy(self)
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        parameters = self._report.get("parameters") or {}
-        if name in parameters:
-            return self.parameters[name]
-        if name in self._report:
-            return _wrapped(self._report[name], f"result.{name}")
-        if not parameters:
-            raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
-        raise AttributeError(f"the fit has no '{name}': it has the parameters "
-                             f"{', '.join(parameters)} and {', '.join(self._report)}")
+    sigma: Parameter  # tangential stiffness [N/m] at the start of every branch
+    alpha: Parameter  # shape exponent [-]
+    slip_force: Parameter  # Tc [N]
+    schema: str
+    version: str
+    model: str
+    initial_state: str
+    confidence: float
+    input: _sections.input
+    correlation: AnySection
+    residuals: _sections.residuals
+    solver: _sections.solver
+    adequacy: _sections.adequacy
+    measured: _sections.measured
+    law: _sections.law
+    contact: AnySection
+    mapping: _sections.mapping
+    terms: _sections.terms
+    next: Optional[_sections.next]
+    warnings: tuple[_sections.warnings, ...]  # what a person should act on, with stable codes
+    nulls: tuple[_sections.nulls, ...]
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            parameters = self._report.get("parameters") or {}
+            if name in parameters:
+                return self.parameters[name]
+            if name in self._report:
+                return _wrapped(self._report[name], f"result.{name}")
+            if not parameters:
+                raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
+            raise AttributeError(f"the fit has no '{name}': it has the parameters "
+                                 f"{', '.join(parameters)} and {', '.join(self._report)}")
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self._report, *(self._report.get("parameters") or {})})
@@ -358,44 +352,19 @@ class FitResult:
                 for name, values in (self._report.get("parameters") or {}).items()}
 
     @property
-    def sigma(self) -> Parameter:
-        """Tangential stiffness [N/m] at the start of every branch."""
-        return self._parameter("sigma")
-
-    @property
-    def alpha(self) -> Parameter:
-        """Shape exponent [-]."""
-        return self._parameter("alpha")
-
-    @property
-    def slip_force(self) -> Parameter:
-        """Tc [N]."""
-        return self._parameter("slip_force")
-
-    def _parameter(self, name: str) -> Parameter:
-        if name not in self.parameters:
-            raise AttributeError(name)  # __getattr__() says why
-        return self.parameters[name]
-
-    @property
     def converged(self) -> bool:
         """Did the solver converge?"""
         return bool(self._report["solver"]["converged"])
 
     @property
-    def warnings(self) -> tuple[Message, ...]:
-        """What a person should act on."""
-        return tuple(Message(item["code"], item["message"]) for item in self._report["warnings"])
-
-    @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed of the record, such as a unit that it does not name."""
-        return tuple(self._fitted.notes)
+        return tuple(self._kept["notes"])
 
     @property
     def records(self) -> tuple[FittedRecord, ...]:
         """Each record with its fit; a record whose load goes in steps is one for each load."""
-        return tuple(FittedRecord(**arrays) for arrays in self._fitted.records)
+        return tuple(FittedRecord(**arrays) for arrays in self._kept["records"])
 
     @property
     def fitted_force(self) -> Any:
@@ -417,14 +386,6 @@ class FitResult:
         arrays = [getattr(record, name) for record in self.records]
         return arrays[0] if len(arrays) == 1 else arrays
 
-    def to_dict(self) -> dict[str, Any]:
-        """What `mindahl fit --json` writes (schema mindahl.fit/2), as a dict of one's own."""
-        return copy.deepcopy(self._report)
-
-    def to_json(self) -> str:
-        """The same as text, byte for byte as the program writes it."""
-        return self._fitted.json()
-
     def to_pandas(self) -> Any:
         """A pandas DataFrame with one row a parameter. Raises ImportError without pandas."""
         import pandas
@@ -434,28 +395,15 @@ class FitResult:
 
     def residuals_csv(self) -> str:
         """What `mindahl fit --residuals` writes."""
+        if self._fitted is None:
+            raise ValueError("a result that was read or pickled has no residuals of its own: fit its records again")
         return self._fitted.residuals_csv()
 
-    def text(self) -> str:
-        """What `mindahl fit` prints."""
-        return self._fitted.text()
-
-    def __str__(self) -> str:
-        return self.text()
-
     def __repr__(self) -> str:
-        if self._fitted.failed:
+        if not self.parameters:
             return f"<mindahl.FitResult: {self.text().strip()}>"
-        values = ", ".join(self._short(name) for name in ("sigma", "alpha", "slip_force"))
-        verdict = self.adequacy.verdict or "adequacy not decided"
-        return f"<mindahl.FitResult: {values}; {verdict}>"
-
-    def _short(self, name: str) -> str:
-        parameter = self.parameters[name]
-        if not parameter.is_known:
-            return f"{name} {parameter.identifiability.replace('_', ' ')}"
-        unit = "" if parameter.unit == "-" else f" {parameter.unit}"
-        return f"{name} = {parameter.value:.6g}{unit}"
+        values = "; ".join(str(self.parameters[name]) for name in ("sigma", "alpha", "slip_force"))
+        return f"<mindahl.FitResult: {values}; {self.adequacy.verdict or 'adequacy not decided'}>"
 
     @property
     def covariance(self) -> Covariance:
@@ -483,7 +431,7 @@ class FitResult:
         others = [name for name, value in values.items() if value]
         if others:
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
-        from ._contact import simulate
+        from ._commands import simulate
 
         return offset + simulate(array("displacement", displacement) - origin,
                                  model=self._report["model"], **own)
@@ -498,13 +446,16 @@ class FitResult:
         Raises ValueError for a fit that failed, was read or was pickled, and for one with a robust loss,
             noise of the displacement or turning points between samples.
         """
-        if isinstance(self._fitted, _StoredFit):
+        if self._fitted is None:
             raise ValueError("a result that was read or pickled has no likelihood: fit its records again")
         return LogLikelihood(_mindahl.Likelihood(self._fitted), self.parameters)
 
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""
-        return self._fitted.page()
+        if self._fitted is not None:
+            return self._fitted.page()
+        return self._kept.get("page") or (
+            f"<!DOCTYPE html>\n<title>mindahl</title>\n<pre>{escape(self.text())}</pre>\n")
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, so that its style and a notebook's do not mix."""
@@ -521,8 +472,4 @@ class FitResult:
         """
         from ._plot import draw
 
-        return draw(self.records, self._fitted.units, ax)
-
-
-def _result_of(kept: dict[str, Any]) -> FitResult:
-    return FitResult(_StoredFit(**kept))
+        return draw(self.records, self._kept["units"], ax)

@@ -14,7 +14,8 @@ std::span<const double> SpanOf(const Array& array, const char* what) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-py::array ViewOf(const std::vector<double>& values, const py::handle& owner) {
+py::object ViewOf(const std::vector<double>& values, const py::handle& owner) {
+  if (values.empty()) return py::none();
   py::array_t<double> view({static_cast<py::ssize_t>(values.size())}, values.data(), owner);
   view.attr("setflags")(py::arg("write") = false);
   return view;

@@ -1,5 +1,7 @@
-#include <cctype>
+#include <algorithm>
 #include <exception>
+#include <regex>
+#include <string>
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
@@ -9,34 +11,20 @@ namespace mindahl::python {
 namespace py = pybind11;
 
 std::string WithKeywords(const std::string& message) {
-  const auto is_alphanumeric = [&](std::size_t i) {
-    return i < message.size() && std::isalnum(static_cast<unsigned char>(message[i])) != 0;
-  };
+  // "--rig-stiffness 3" is "rig_stiffness=3".
+  static const std::regex option("(^|[^A-Za-z0-9])--([A-Za-z0-9]+(-[A-Za-z0-9]+)*)( (?=[0-9]))?");
   std::string text;
-  std::size_t i = 0;
-  while (i < message.size()) {
-    const bool is_option = message.compare(i, 2, "--") == 0 && is_alphanumeric(i + 2) &&
-                           (i == 0 || !is_alphanumeric(i - 1));
-    if (!is_option) {
-      text += message[i++];
-      continue;
-    }
-    std::string word;
-    for (i += 2;
-         is_alphanumeric(i) || (i < message.size() && message[i] == '-' && is_alphanumeric(i + 1));
-         ++i) {
-      word += message[i] == '-' ? '_' : message[i];
-    }
-    text += word;
-    if (word == "from" || word == "with" || word == "lambda") text += '_';  // words of Python
-    const bool has_number = i + 1 < message.size() && message[i] == ' ' &&
-                            std::isdigit(static_cast<unsigned char>(message[i + 1])) != 0;
-    if (has_number) {
-      text += '=';
-      ++i;
-    }
+  auto rest = message.begin();
+  for (std::sregex_iterator found(message.begin(), message.end(), option);
+       found != std::sregex_iterator(); ++found) {
+    std::string word = found->str(2);
+    std::ranges::replace(word, '-', '_');
+    if (word == "from" || word == "with" || word == "lambda") word += '_';  // words of Python
+    text.append(rest, (*found)[0].first);
+    text += found->str(1) + word + ((*found)[4].matched ? "=" : "");
+    rest = (*found)[0].second;
   }
-  return text;
+  return text.append(rest, message.end());
 }
 
 void AddErrors(py::module_& module) {
@@ -50,6 +38,7 @@ void AddErrors(py::module_& module) {
       PyErr_SetString(input_error, WithKeywords(error.what()).c_str());
     } catch (const InvalidArgument& error) {
       PyErr_SetString(PyExc_ValueError, WithKeywords(error.what()).c_str());
+    } catch (const Interrupted&) {  // NOLINT(bugprone-empty-catch): KeyboardInterrupt is set
     } catch (const std::logic_error& error) {
       PyErr_SetString(PyExc_RuntimeError, error.what());
     }

@@ -10,15 +10,16 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
-#include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
+#include "mindahl/request/contact_request.h"
 
 namespace mindahl::python {
 
 namespace py = pybind11;
+using namespace py::literals;  // NOLINT(google-build-using-namespace)
 using models::BranchLaw;
 using models::ContactState;
 using models::FrictionModel;
@@ -33,19 +34,11 @@ const FrictionModel& RequireModel(const std::string& name) {
   return *models::FindFrictionModel(name);
 }
 
-/// The law as the model uses it.
-/// @param alpha  empty: the model's own, or 1/3 where it leaves α free
+/// The law as the model uses it, whose own α, or 1/3, it has where there is none.
 BranchLaw LawOf(const FrictionModel& model, double sigma, std::optional<double> alpha,
                 double slip_force) {
-  if (alpha && model.shape_exponent && *alpha != *model.shape_exponent) {
-    throw InputError("--alpha contradicts --model " + std::string(model.name) +
-                     ", which prescribes it: use --model mindlin-dahl");
-  }
-  BranchLaw law{.tangential_stiffness = sigma, .slip_force = slip_force};
-  if (model.shape_exponent) law.shape_exponent = *model.shape_exponent;
-  if (alpha) law.shape_exponent = *alpha;
-  Validate(law);
-  return law;
+  return request::ResolveLaw({.sigma = sigma, .alpha = alpha, .slip_force = slip_force}, model.name,
+                             model.shape_exponent);
 }
 
 models::SeriesSpring RigOf(std::optional<double> stiffness) {
@@ -84,59 +77,56 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   return force;
 }
 
-/// Times [s] and displacements [m].
-std::pair<py::array_t<double>, py::array_t<double>> Excite(const std::string& waveform,
-                                                           models::ExcitationOptions options) {
-  RequireOneOf("--waveform", waveform, models::WaveformNames());
-  options.waveform = *models::FindWaveform(waveform);
-  models::Excitation made;
-  {
-    const py::gil_scoped_release others_may_run;
-    made = models::MakeExcitation(options);
-  }
-  const auto copy = [](const std::vector<double>& values) {
-    return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-  };
-  return {copy(made.time), copy(made.displacement)};
+/// A state with the arguments that it was made of: it is pickled and copied by these and its
+/// memory.
+template <typename State>
+struct Made : State {
+  py::dict arguments;
+};
+
+template <typename State>
+void AddPickling(py::class_<Made<State>>& added) {
+  added.def("_remember",
+            [](Made<State>& state, const std::vector<double>& memory) { state.Remember(memory); });
+  added.def("__reduce__", [](const py::object& self) {
+    const auto& state = self.cast<const Made<State>&>();
+    const py::object restored = py::module_::import("mindahl._commands").attr("restored");
+    return py::make_tuple(restored,
+                          py::make_tuple(py::type::of(self), state.arguments, state.Memory()));
+  });
 }
 
-ContactState MakeState(double sigma, double slip_force, std::optional<double> alpha,
-                       const std::string& model_name, double unloaded_displacement,
-                       std::optional<double> rig_stiffness) {
+Made<ContactState> MakeState(double sigma, double slip_force, std::optional<double> alpha,
+                             const std::string& model_name, double unloaded_displacement,
+                             std::optional<double> rig_stiffness) {
   const FrictionModel& model = RequireModel(model_name);
-  return ContactState(
-      model, LawOf(model, sigma, alpha, slip_force),
-      {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)});
+  return {
+      ContactState(model, LawOf(model, sigma, alpha, slip_force),
+                   {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)}),
+      py::dict("sigma"_a = sigma, "slip_force"_a = slip_force, "alpha"_a = alpha,
+               "model"_a = model_name, "unloaded_displacement"_a = unloaded_displacement,
+               "rig_stiffness"_a = rig_stiffness)};
 }
 
-JointState MakeJoint(double sigma, double slip_force, double alpha, double asymmetry,
-                     double reference_load, double unloaded_displacement) {
-  return JointState({.law = LawOf(RequireModel("dahl"), sigma, alpha, slip_force),
-                     .reference_load = reference_load,
-                     .asymmetry = asymmetry},
-                    unloaded_displacement);
+Made<JointState> MakeJoint(double sigma, double slip_force, double alpha, double asymmetry,
+                           double reference_load, double unloaded_displacement) {
+  return {JointState({.law = LawOf(RequireModel("dahl"), sigma, alpha, slip_force),
+                      .reference_load = reference_load,
+                      .asymmetry = asymmetry},
+                     unloaded_displacement),
+          py::dict("sigma"_a = sigma, "slip_force"_a = slip_force, "alpha"_a = alpha,
+                   "asymmetry"_a = asymmetry, "reference_load"_a = reference_load,
+                   "unloaded_displacement"_a = unloaded_displacement)};
 }
 
 }  // namespace
 
 void AddModels(py::module_& module) {
-  module.def(
-      "excitation",
-      [](const std::string& waveform, double amplitude, double cycles,
-         std::size_t samples_per_cycle, double frequency, double growth, std::uint64_t seed) {
-        return Excite(waveform, {.amplitude = amplitude,
-                                 .cycles = cycles,
-                                 .samples_per_cycle = samples_per_cycle,
-                                 .frequency = frequency,
-                                 .growth = growth,
-                                 .seed = seed});
-      },
-      py::kw_only(), py::arg("waveform"), py::arg("amplitude"), py::arg("cycles"),
-      py::arg("samples_per_cycle"), py::arg("frequency"), py::arg("growth"), py::arg("seed"));
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"),
              py::arg("asymmetry"), py::arg("load"), py::arg("reference_load"));
-  py::class_<ContactState>(module, "ContactState", R"(A contact that is moved step by step.
+  py::class_<Made<ContactState>> contact(module, "ContactState",
+                                         R"(A contact that is moved step by step.
 
 Exact for a motion that does not turn within a step, however long the step; no time enters.
 
@@ -146,7 +136,9 @@ alpha: shape exponent [-]; by default the model's own, or 1/3.
 model: "mindlin-dahl", "mindlin", "dahl" or "jenkins".
 unloaded_displacement: [m], where the force is 0 before any motion.
 rig_stiffness: of a spring [N/m] in series, by default rigid.
-Raises ValueError naming the quantity, its value and the rule.)")
+Raises ValueError naming the quantity, its value and the rule.)");
+  AddPickling(contact);
+  contact
       .def(py::init(&MakeState), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
            py::arg("alpha") = py::none(), py::arg("model") = "mindlin-dahl",
            py::arg("unloaded_displacement") = 0.0, py::arg("rig_stiffness") = py::none())
@@ -161,13 +153,9 @@ Raises ValueError naming the quantity, its value and the rule.)")
       .def_property_readonly("tangent_stiffness", &ContactState::TangentStiffness,
                              "dT/dδ [N/m] onward in the direction of the last motion")
       .def_property_readonly("remembered_extremes", &ContactState::RememberedExtremes,
-                             "the depth of nesting")
-      .def("__copy__", [](const ContactState& state) { return ContactState(state); })
-      .def(
-          "__deepcopy__",
-          [](const ContactState& state, const py::dict& /*memo*/) { return ContactState(state); },
-          py::arg("memo"));
-  py::class_<JointState>(module, "JointState", R"(Friction of a joint that is moved step by step.
+                             "the depth of nesting");
+  py::class_<Made<JointState>> joint(module, "JointState",
+                                     R"(Friction of a joint that is moved step by step.
 
 dz/dx = (sigma/slip_force)·(1 - s·z)^alpha, force = slip_force·(|N|·z + asymmetry·N·z²)/reference_load;
 exact for a motion that does not turn within a step, whatever the load does in between.
@@ -175,7 +163,9 @@ exact for a motion that does not turn within a step, whatever the load does in b
 sigma: tangential stiffness [N m/rad], > 0, and slip_force: Tc [N m], > 0, under the reference load.
 alpha: shape exponent [-]. asymmetry: in (-1, 1). reference_load: [N m], > 0.
 unloaded_displacement: [rad], where the force is 0 before any motion.
-Raises ValueError naming the quantity, its value and the rule.)")
+Raises ValueError naming the quantity, its value and the rule.)");
+  AddPickling(joint);
+  joint
       .def(py::init(&MakeJoint), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
            py::arg("alpha") = 1.0, py::arg("asymmetry") = 0.0, py::arg("reference_load") = 1.0,
            py::arg("unloaded_displacement") = 0.0)

@@ -7,7 +7,6 @@ PYBIND11_MODULE(_mindahl, module) {
   mindahl::python::AddErrors(module);
   mindahl::python::AddRecords(module);
   mindahl::python::AddFit(module);
-  mindahl::python::AddTrack(module);
-  mindahl::python::AddAnswers(module);
   mindahl::python::AddModels(module);
+  mindahl::python::AddProgram(module);
 }

@@ -2,46 +2,43 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
-#include "record.h"
+#include "mindahl/request/fit_request.h"
 
 namespace mindahl::python {
 
 namespace py = pybind11;
-using io::RecordColumns;
 
-std::vector<io::NamedColumn> ColumnsOfArrays(const std::vector<std::string>& names,
-                                             const std::vector<Array>& arrays) {
+namespace {
+
+/// Returns which columns the options of a fit choose.
+io::RecordColumns ColumnsOf(const request::FitRequest& request) {
+  io::RecordColumns columns = request.columns;
+  columns.covariates = request::CovariateColumns(request);
+  return columns;
+}
+
+NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request) {
+  const py::gil_scoped_release others_may_run;
+  io::ReadLimits limits;
+  limits.memory = request.max_memory.value_or(MemoryOfProcess());
+  return {path, io::ReadRecord(path, ColumnsOf(request), limits)};
+}
+
+NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
+                            const std::vector<Array>& arrays, const request::FitRequest& request) {
   std::vector<io::NamedColumn> table;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::span<const double> values = SpanOf(arrays.at(k), names[k].c_str());
     table.push_back({names[k], {values.begin(), values.end()}});
   }
-  return table;
-}
-
-namespace {
-
-NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns,
-                    std::optional<std::uint64_t> max_memory) {
-  const py::gil_scoped_release others_may_run;
-  io::ReadLimits limits;
-  limits.memory = max_memory.value_or(MemoryOfProcess());
-  return {path, io::ReadRecord(path, columns, limits)};
-}
-
-NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
-                            const std::vector<Array>& arrays, const RecordColumns& columns) {
-  return {name, io::RecordOf(io::TableOfColumns(ColumnsOfArrays(names, arrays), name), columns)};
-}
-
-py::object ViewUnlessEmpty(const py::object& self, const std::vector<double>& values) {
-  if (values.empty()) return py::none();
-  return ViewOf(values, self);
+  return {name, io::RecordOf(io::TableOfColumns(std::move(table), name), ColumnsOf(request))};
 }
 
 py::dict CovariatesOf(const py::object& self) {
@@ -71,28 +68,12 @@ py::dict ColumnsUsed(const NamedRecord& record) {
 
 template <auto kColumn>
 py::object RecordColumn(const py::object& self) {
-  return ViewUnlessEmpty(self, self.cast<const NamedRecord&>().file.record.*kColumn);
+  return ViewOf(self.cast<const NamedRecord&>().file.record.*kColumn, self);
 }
 
 }  // namespace
 
 void AddRecords(py::module_& module) {
-  py::class_<RecordColumns>(module, "RecordColumns")
-      .def(py::init([](std::string displacement, std::string force, std::string time,
-                       std::string normal_load, std::vector<std::string> covariates,
-                       std::string encoding) {
-             return RecordColumns{.displacement = std::move(displacement),
-                                  .force = std::move(force),
-                                  .time = std::move(time),
-                                  .normal_load = std::move(normal_load),
-                                  .covariates = std::move(covariates),
-                                  .encoding = std::move(encoding)};
-           }),
-           py::arg("displacement"), py::arg("force"), py::arg("time"), py::arg("normal_load"),
-           py::arg("covariates"), py::arg("encoding") = "")
-      .def_readwrite("sample_rate", &RecordColumns::sample_rate)
-      .def_readwrite("with_file", &RecordColumns::with)
-      .def_readwrite("skip_broken_rows", &RecordColumns::skip_broken_rows);
   py::class_<NamedRecord>(module, "Record",
                           "A hysteresis record in SI units, as it was read; arrays are read-only.")
       .def_readonly("name", &NamedRecord::name, "what messages and reports call it")
@@ -114,10 +95,9 @@ void AddRecords(py::module_& module) {
           "notes", [](const NamedRecord& record) { return record.file.notes; },
           "what was assumed, one sentence each")
       .def("__len__", [](const NamedRecord& record) { return record.file.record.size(); });
-  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("columns"),
-             py::arg("max_memory") = py::none());
+  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("request"));
   module.def("record_of_columns", &RecordOfColumns, py::arg("name"), py::arg("names"),
-             py::arg("arrays"), py::arg("columns"));
+             py::arg("arrays"), py::arg("request"));
 }
 
 }  // namespace mindahl::python

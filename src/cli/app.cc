@@ -256,6 +256,16 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
 
 }  // namespace
 
+void ReadOptions(const std::vector<std::string>& words, const std::function<void(CLI::App&)>& add) {
+  CLI::App app;
+  add(app);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(OneLine(error.what()));
+  }
+}
+
 int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   try {
     return RunAndExplain(argc, argv, out, err);

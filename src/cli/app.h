@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -28,6 +29,12 @@ inline constexpr int kNotEstablished = 3;  // not converged, not identifiable wh
 /// The command line, as main() calls it and as tests do.
 /// @returns the exit status of docs/contract.md
 int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
+
+/// Reads options without running a command, as its words would be read.
+/// @param words  "--model", "dahl", ...
+/// @param add    adds the options to an application that goes when they are read
+/// @throws InputError as a command refuses them
+void ReadOptions(const std::vector<std::string>& words, const std::function<void(CLI::App&)>& add);
 
 // Each adds one command to the application; its callback runs the command and sets the exit status.
 void AddFitCommand(CLI::App& app, Console& console);

@@ -1,7 +1,6 @@
 #include "core/platform.h"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -12,6 +11,12 @@
 #include <csignal>
 #include <cstdlib>
 #include <limits>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+extern char** environ;  // macOS has it in no header
 
 namespace mindahl {
 namespace {
@@ -72,10 +77,14 @@ std::uintmax_t MemoryLimit() {
 }
 
 std::uintmax_t PeakMemory() {
-  constexpr std::uintmax_t kKibibyte = 1024;
+#ifdef __APPLE__
+  constexpr std::uintmax_t kUnit = 1;  // [bytes]
+#else
+  constexpr std::uintmax_t kUnit = 1024;
+#endif
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uintmax_t>(usage.ru_maxrss) * kKibibyte;
+  return static_cast<std::uintmax_t>(usage.ru_maxrss) * kUnit;
 }
 
 int OpenFile(const std::string& name, Opening opening, int& file) {

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 #include <iconv.h>
-#include <openssl/evp.h>
+#include <sha2.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
@@ -271,25 +272,19 @@ std::optional<std::string> Sha256OfFile(const std::filesystem::path& path) {
   const auto close = [](std::FILE* file) { std::fclose(file); };
   const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
   if (!file) ThrowCannotRead(path.string(), std::strerror(errno));
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                        &EVP_MD_CTX_free);
-  bool works = context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+  SHA2_CTX context;
+  SHA256Init(&context);
   constexpr std::size_t kBlock = 1 << 16;
-  std::vector<char> block(kBlock);
-  for (std::size_t count = kBlock; works && count == kBlock;) {
+  std::vector<std::uint8_t> block(kBlock);
+  for (std::size_t count = kBlock; count == kBlock;) {
     count = std::fread(block.data(), 1, kBlock, file.get());
-    works = EVP_DigestUpdate(context.get(), block.data(), count) == 1;
+    SHA256Update(&context, block.data(), count);
   }
   if (std::ferror(file.get()) != 0) ThrowCannotRead(path.string(), std::strerror(errno));
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  works = works && EVP_DigestFinal_ex(context.get(), digest.data(), &size) == 1;
-  if (!works) {
-    ThrowCannotRead(path.string(),
-                    "libcrypto cannot compute its SHA-256, for lack of memory or by configuration");
-  }
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+  SHA256Final(digest.data(), &context);
   std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
+  for (const std::uint8_t byte : digest) text += fmt::format("{:02x}", byte);
   return text;
 }
 

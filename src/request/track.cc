@@ -13,6 +13,7 @@
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/interruption.h"
 #include "mindahl/core/version.h"
 #include "mindahl/report/units.h"
 #include "report/template.h"
@@ -276,6 +277,7 @@ void TrackRun::ReadFile(const std::string& file) {
     test_.samples += piece.size();
     times_.Shift(piece.time);
     tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    AskWhetherToGoOn();
     if (events_.piece_is_read) events_.piece_is_read();
     if (!stream.Next(piece)) break;
   }

@@ -30,6 +30,37 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${user} -G ${GENERATOR} -DCMAK
 run(${CMAKE_COMMAND} --build ${user} --target fit_to_json cycles_of_stream)
 run(${user}/cycles_of_stream)
 
+# The models alone are found where neither Ceres nor what files are read with is.
+file(WRITE ${user}_models/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(user LANGUAGES CXX)
+find_package(mindahl REQUIRED COMPONENTS models)
+add_executable(mass ${SOURCE_DIR}/examples/mass_on_contact.cc)
+target_link_libraries(mass PRIVATE mindahl::models)
+find_package(mindahl QUIET COMPONENTS no_such_module)
+if(mindahl_FOUND)
+  message(FATAL_ERROR \"a module is found that there is not\")
+endif()
+")
+foreach(package Ceres ZLIB Threads)
+  list(APPEND not_needed -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${user}_models -B ${user}_models/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+    -DCMAKE_PREFIX_PATH=${prefix} ${not_needed} ${flags})
+run(${CMAKE_COMMAND} --build ${user}_models/build)
+run(${user}_models/build/mass)
+
+# The page names every package that the whole library needs, beside what CMake finds with Ceres.
+file(READ ${prefix}/lib/cmake/mindahl/mindahlConfig.cmake config)
+file(READ ${SOURCE_DIR}/docs/library.md page)
+string(REGEX MATCH "mindahl_request_needs \"([^\"]*)\"" needs "${config}")
+set(needs ${CMAKE_MATCH_1} libmd)
+foreach(package IN LISTS needs)
+  string(FIND "${page}" "`${package}`" at)
+  if(at LESS 0)
+    message(FATAL_ERROR "docs/library.md does not say that the library needs ${package}")
+  endif()
+endforeach()
+
 file(GLOB_RECURSE pc ${prefix}/*/mindahl.pc)
 get_filename_component(pc_directory "${pc}" DIRECTORY)
 find_program(pkg_config pkg-config REQUIRED)

@@ -1,4 +1,4 @@
-"""plan(), tradeoff(), validate(), contact(), convert() and batch() are the program's."""
+"""plan(), contact(), convert(), batch() and what command() runs are the program's."""
 
 import csv
 import io
@@ -65,7 +65,7 @@ def without_times(text):
 
 
 def test_tradeoff_is_the_program_s_but_for_what_is_timed():
-    result = mindahl.tradeoff(excitation="micro", tolerance="5%", **LAW)
+    result = mindahl.command("tradeoff", excitation="micro", tolerance="5%", **LAW)
     expected = program("tradeoff", "--excitation", "micro", "--tolerance", "5%", *LAW_OPTIONS, "--json", "-")
     assert without_times(result.to_json()) == without_times(expected)
     assert result.excitations[0].points[0].measured_ns_per_sample > 0
@@ -83,40 +83,35 @@ def sweep_file(directory, header):
 
 
 @pytest.mark.parametrize("keywords, options", [
-    ({"kind": "tangent"}, ["tangent"]),
-    ({"kind": "secant", "fix": {"slip_force": 60.0}, "confidence": 0.9},
+    ({"sweep": "tangent"}, ["tangent"]),
+    ({"sweep": "secant", "fix": {"slip_force": 60.0}, "confidence": 0.9},
      ["secant", "--fix", "slip_force=60", "--confidence", "0.9"]),
-    ({"kind": "tangent", "model": "mindlin", "response": "stiffness",
-      "force": 1, "force_unit": "N"},
-     ["tangent", "--model", "mindlin", "--response", "stiffness",
-      "--force", "1 [N]"]),
+    ({"sweep": "tangent", "model": "mindlin", "response": "stiffness", "force": "1 [N]"},
+     ["tangent", "--model", "mindlin", "--response", "stiffness", "--force", "1 [N]"]),
 ])
-def test_sweep_is_the_program_s(tmp_path, keywords, options):
+def test_a_sweep_is_the_program_s(tmp_path, keywords, options):
     path, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
-    result = mindahl.sweep(path, **keywords)
+    result = mindahl.command("fit", path, **keywords)
     same_document(result, "fit", path, "--sweep", *options)
-    assert result.established and list(result.to_pandas()["name"]) == list(result.parameters)
-    frame = pandas.DataFrame({"force amplitude [N]": forces, "stiffness [N/um]": stiffness})
-    assert mindahl.sweep(frame, **keywords).parameters == result.parameters
-    if "response" not in keywords:
-        arrays = mindahl.sweep(force=forces, response=stiffness, response_unit="N/um", **keywords)
-        assert arrays.parameters == result.parameters
-
-
-def test_a_sweep_names_what_is_wrong(tmp_path):
-    _, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
-    with pytest.raises(ValueError, match="response and one of force and displacement"):
-        mindahl.sweep(force=forces)
-    with pytest.raises(mindahl.InputError, match="needs a Masing law"):
-        mindahl.sweep(force=forces, response=stiffness, model="dahl")
-    with pytest.raises(mindahl.InputError, match="both"):
-        mindahl.sweep(force=forces, response=stiffness, kind="both")
+    assert result.established
+    columns = {"force amplitude [N]": forces, "stiffness [N/um]": stiffness}
+    for source in (columns, pandas.DataFrame(columns)):
+        assert mindahl.command("fit", source, **keywords).parameters == result.parameters
     with pytest.raises(mindahl.InputError, match="must be > 0 in a sweep"):
-        mindahl.sweep(force=forces, response=-stiffness)
+        mindahl.command("fit", {**columns, "stiffness [N/um]": -stiffness}, **keywords)
+
+
+def test_an_option_that_takes_a_file_takes_arrays(tmp_path):
+    path = tmp_path / "path.csv"
+    path.write_text("\n".join(["x [m]", *map(repr, np.linspace(0, 2e-6, 40).tolist())]) + "\n")
+    expected = mindahl.command("tradeoff", path=path, **LAW)
+    found = mindahl.command("tradeoff", path={"x [m]": np.linspace(0, 2e-6, 40)}, **LAW)
+    assert [point.max_force_error for point in found.excitations[0].points] == [
+        point.max_force_error for point in expected.excitations[0].points]
 
 
 def test_validate_is_the_program_s():
-    result = mindahl.validate(cases=2, seed=3)
+    result = mindahl.command("validate", cases=2, seed=3)
     same_document(result, "validate", "--cases", "2", "--seed", "3")
     assert result.passed and result.established
     assert list(result.to_pandas("coverage")["parameter"][:3]) == ["sigma", "alpha", "slip_force"]
@@ -190,16 +185,16 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
 @pytest.mark.parametrize("call, message", [
     (lambda: mindahl.plan(**LAW), "force_noise missing"),
     (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "want: 'alpa' is no parameter"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), r"want\['alpha'\] = 'much'"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), "want: 'alpha=much' is no precision"),
     (lambda: mindahl.plan(**LAW, force_noise=1, initial_state="old"), "initial_state: 'old'"),
     (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
     (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' cannot be planned"),
-    (lambda: mindahl.tradeoff(excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
-    (lambda: mindahl.validate(cases=0), "cases = 0 is invalid: must be >= 1"),
+    (lambda: mindahl.command("tradeoff", excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
+    (lambda: mindahl.command("validate", cases=0), "cases: '0' is invalid: must be a whole number from 1"),
     (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
     (lambda: mindahl.batch([SPHERE], strict="very"), "strict = 'very' is invalid"),
     (lambda: mindahl.batch([SPHERE], executor=3), "executor: a int has neither"),
-    (lambda: mindahl.validate(cases=2).to_pandas("lines"), "table = 'lines' is invalid"),
+    (lambda: mindahl.command("validate", cases=2).to_pandas("lines"), "table = 'lines' is invalid"),
 ])
 def test_what_breaks_a_rule_is_refused_in_one_line(call, message):
     with pytest.raises(ValueError, match=message) as refused:

@@ -3,6 +3,7 @@
 import html
 import inspect
 import re
+import subprocess
 import sys
 import threading
 import time
@@ -16,7 +17,6 @@ import pytest
 import mindahl
 from conftest import DATA, program, program_json
 from mindahl import _mindahl
-from mindahl._records import columns_of
 
 matplotlib.use("Agg")
 SPHERE = DATA / "mindlin_sphere_on_plane.csv"
@@ -74,7 +74,10 @@ def test_a_fit_of_a_file_prints_the_program_s_text():
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
 def test_a_load_series_is_one_joint_fit_of_lists_of_arrays():
     displacement, force, seconds = zip(*(arrays_of(path) for path in SERIES))
-    result = mindahl.fit(list(displacement), list(force), time=list(seconds), normal_load=LOADS)
+    result = mindahl.fit([{"displacement [m]": x, "force [N]": f, "time [s]": t}
+                          for x, f, t in zip(displacement, force, seconds)], normal_load=LOADS)
+    pairs = mindahl.fit(list(zip(displacement, force)), normal_load=LOADS)
+    assert pairs.sigma.value == result.sigma.value
     expected = program_json("fit", *SERIES, "--normal-load", ",".join(map(str, LOADS)))
     assert without_files(result.to_dict()) == without_files(expected)
     assert result.load_exponent.identifiability == "identifiable"
@@ -259,7 +262,7 @@ def test_arrays_outlive_their_result(sphere):
 
 @pytest.mark.parametrize("arguments, message", [
     (([0, 1, 2], [0, 1]), r"force \[N\] has 2 samples and displacement \[m\] 3"),
-    (([[0, 1], [1, 0]], None), "must be a list|force is missing"),
+    (([[0, 1], [1, 0]], None), "force is missing: give a pair"),
     ((np.zeros((3, 2)), np.zeros(3)), r"displacement has the shape \(3, 2\)"),
     (([0.0, 1.0, np.nan], [0.0, 1.0, 2.0]), r"displacement\[2\] = nan is invalid: must be finite"),
     (([0.0, 1.0, 2.0], [0.0, np.inf, 2.0]), r"force\[1\] = inf is invalid: must be finite"),
@@ -282,18 +285,18 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"initial_state": "new"}, "initial_state: 'new' is unknown: must be one of auto, virgin, steady"),
     ({"offsets": "maybe"}, "offsets: 'maybe' is unknown: must be one of on, off"),
     ({"fix": {"gamma": 1}}, "gamma"),
-    ({"fix": "alpha=1"}, "must be a dict"),
-    ({"fix": {"alpha": "x"}}, r"fix\['alpha'\] = 'x' is invalid: must be a number"),
+    ({"fix": {"alpha": "x"}}, "fix: 'x' is not a number: write NAME=VALUE"),
     ({"rig_stiffness": -1}, r"rig_stiffness \[N/m\] = -1 is invalid"),
     ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "rig_stiffness and fix rig_stiffness"),
     ({"force_noise": 0}, r"force_noise \[N\] = 0 is invalid"),
     ({"cycles": (3, 2)}, "cycles: '3:2' is empty"),
-    ({"cycles": 3}, "must be a pair"),
+    ({"cycles": 3}, "cycles: '3' is incomplete: write LO:HI"),
+    ({"cycles": (1, 2, 3)}, "must be a number or a pair"),
     ({"normal_load": -5}, r"normal_load \[N\] = -5 is invalid"),
     ({"normal_load": [1, 2]}, "2 loads for 1 file"),
-    ({"normal_load": (50, -1)}, "the standard uncertainty -1.0 is invalid"),
+    ({"normal_load": (50, -1)}, "the standard uncertainty in '50±-1' is -1: must be finite and >= 0"),
     ({"poisson_1": 0.7}, r"poisson_1 \[-\] = 0.7 is invalid"),
-    ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid: must be 'refuse' or 'skip'"),
+    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown: must be one of refuse, skip"),
     ({"sample_rate": -1}, "sample_rate -1: must be finite and > 0 Hz"),
     ({"covariate": "pressure"}, "pressure"),
     ({"displacement_unit": "furlong"}, "furlong"),
@@ -348,7 +351,7 @@ def test_a_prior_is_the_program_s(tmp_path):
     assert (result.sigma.value - value) / error == pytest.approx(0.5, abs=0.05)
     with pytest.raises(mindahl.InputError, match="prior: lag is not fitted"):
         mindahl.fit(path, prior={"lag": (1e-3, 1e-4)})
-    with pytest.raises(ValueError, match="must be a pair"):
+    with pytest.raises(ValueError, match="has no standard uncertainty"):
         mindahl.fit(path, prior={"sigma": 1e7})
 
 
@@ -427,8 +430,8 @@ def test_a_short_form_has_no_number_of_what_is_not_identified():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mindahl.FitWarning)
         far = mindahl.fit(DATA / "far_from_slip.csv")
-    assert "alpha not identifiable" in repr(far)
-    assert "slip_force bounded below" in repr(far)
+    assert "alpha: not identifiable" in repr(far)
+    assert "slip_force > 3.2" in repr(far) and "bounded below" in repr(far)
     assert "sigma = 4.84" in repr(far)
 
 
@@ -443,9 +446,9 @@ def test_other_threads_run_while_it_fits(sphere):
     """No thread hands over by itself here: another one counts only where the fit lets go."""
     _, displacement, force = sphere
     many = np.tile(np.arange(len(force)), 20)
-    request = _mindahl.FitRequest()
+    request = _mindahl.FitRequest([])
     record = _mindahl.record_of_columns(
-        "record", ["x [m]", "F [N]"], [displacement[many], force[many]], columns_of(*8 * [None]))
+        "record", ["x [m]", "F [N]"], [displacement[many], force[many]], request)
     counted = [0]
     may_end = threading.Event()
 
@@ -493,3 +496,28 @@ def test_a_loop_of_an_imposed_force_is_fitted_by_its_displacement():
     # Either difference rounds once, of displacements ten times as large as a residual.
     np.testing.assert_allclose(record.fitted_displacement - record.displacement, record.residual,
                                atol=1e-15 * np.ptp(record.displacement))
+
+
+@pytest.mark.parametrize("call", [
+    "[mindahl.fit(x, force, terms='auto') for _ in range(100)]",
+    "mindahl.batch([(x, force)] * 100, terms='auto', threads=2)",
+    "[mindahl.track(x, force) for _ in range(100)]",
+    "mindahl.command('validate', cases=100000)"])
+def test_ctrl_c_ends_a_fit_at_once(tmp_path, call):
+    script = tmp_path / "long.py"
+    script.write_text(f"""
+import os, signal, threading, time
+import numpy as np
+import mindahl
+_, x = mindahl.excitation(amplitude=3e-6, cycles=100, samples_per_cycle=1000)
+force = mindahl.simulate(x, sigma=4e7, slip_force=40.0)
+force += np.random.default_rng(1).normal(0, 0.1, force.size)
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+begin = time.monotonic()
+try:
+    {call}
+except KeyboardInterrupt:
+    print(time.monotonic() - begin)
+""")
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert 0.9 < float(run.stdout) < 5.0, run.stdout  # all take much longer

@@ -129,9 +129,9 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"average": 0}, "average = 0 is invalid"),
+    ({"average": 0}, "average: '0' is invalid"),
     ({"average": 1000}, "average=1000: "),
-    ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
+    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown"),
     ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
 ])
 def test_track_refuses_what_the_program_refuses(long_record, keywords, message):
@@ -229,7 +229,7 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
     (lambda: mindahl.simulate([0, 1e-6], sigma=-1, slip_force=1), "must be finite and > 0"),
     (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="oak"), "model: 'oak' is unknown"),
     (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="mindlin", alpha=0.5),
-     "alpha contradicts model mindlin"),
+     "alpha=0.5 contradicts model mindlin"),
     (lambda: mindahl.simulate(np.zeros((2, 2)), sigma=1, slip_force=1), "shape"),
     (lambda: mindahl.simulate([0, "x"], sigma=1, slip_force=1), "dtype"),
     (lambda: mindahl.simulate([0, 1.0], sigma="stiff", slip_force=1), "sigma = 'stiff' is invalid"),

@@ -132,3 +132,29 @@ def test_a_parameter_is_a_number_where_it_is_determined():
     assert float(far.sigma) == far.sigma.value
     with pytest.raises(ValueError, match="alpha: not identifiable: the record determines no value"):
         float(far.alpha)
+
+
+@pytest.mark.parametrize("again", [lambda state: pickle.loads(pickle.dumps(state)), copy.copy,
+                                   copy.deepcopy])
+@pytest.mark.parametrize("model,rig", [("mindlin-dahl", None), ("dahl", 1e8)])
+def test_a_contact_that_is_moved_goes_on_from_where_it_was(again, model, rig):
+    state = mindahl.ContactState(sigma=4e7, slip_force=40.0, model=model, rig_stiffness=rig)
+    path = 2e-6 * np.sin(np.linspace(0, 9, 200)) * np.linspace(1, 0.3, 200)
+    for displacement in path:
+        state.move(displacement)
+    other = again(state)
+    assert other.force == state.force and other.remembered_extremes == state.remembered_extremes
+    assert [other.move(x) for x in -path] == [state.move(x) for x in -path]
+    joint = mindahl.JointState(sigma=4e3, slip_force=4.0, asymmetry=0.1)
+    joint.move(1e-3, 2.0)
+    assert again(joint).move(5e-4, 1.5) == joint.move(5e-4, 1.5)
+
+
+def test_a_test_is_tracked_in_another_process(tmp_path):
+    time, displacement = mindahl.excitation(amplitude=3e-6, cycles=5)
+    force = mindahl.simulate(displacement, sigma=4e7, slip_force=40.0)
+    here = mindahl.track(displacement, force, time=time)
+    with ProcessPoolExecutor(1) as executor:
+        there = mindahl.track(displacement, force, time=time, executor=executor)
+    np.testing.assert_array_equal(there["sigma"], here["sigma"])
+    assert there.text() == here.text()

@@ -1,5 +1,7 @@
-"""Records from MAT, HDF5 and Excel files, each made by the library that reads it, from xarray and pint;
+"""Records from MAT and HDF5 files, each made by the library that reads it, from xarray and pint;
 a result from its JSON. A library that is not installed is skipped."""
+import io
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,6 @@ FORCE = 20.0 * np.sin(2 * np.pi * TIME + 0.3)  # [N]
 
 EXACT = 0.0
 UNIT = 4e-16  # a factor that is not a power of two: two roundings
-SHEET = 1e-15  # and a workbook has numbers of 16 digits
 
 
 def is_the_record(record, tolerance=EXACT):
@@ -35,6 +36,12 @@ def test_mat_files_are_read_by_name_in_structs_and_matrices(tmp_path):
     scipy_io.savemat(path, {"name": "empty"})
     with pytest.raises(ValueError, match="holds no vector of numbers"):
         mindahl.read_mat(path)
+    # By the order of their names the force would be the displacement.
+    scipy_io.savemat(path, {"run": {"a": FORCE, "b": X}})
+    with pytest.raises(ValueError, match="no name says which is the displacement"):
+        mindahl.read_mat(path)
+    scipy_io.savemat(path, {"run": {"time": TIME, "x": X, "F": FORCE}})
+    is_the_record(mindahl.read_mat(path))
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
@@ -53,32 +60,28 @@ def test_hdf5_files_are_read_with_the_units_of_their_attributes(tmp_path):
                                displacement="run 1/displacement", force="run 1/force")
     is_the_record(record, tolerance=UNIT)
     assert record.columns["displacement"]["unit"] == "um"
+    # By the last part of their names; "F" comes before "x".
+    is_the_record(mindahl.read_hdf5(path, within="run 2"))
+    is_the_record(mindahl.read_hdf5(path, within="run 1"), tolerance=UNIT)
+    is_the_record(mindahl.read_hdf5(path, within="run 2", displacement="x", force="F"))
     is_the_record(mindahl.read_hdf5(path, within="run 2", time="run 2.time",
                                     displacement="run 2.x", force="run 2.F"))
 
 
-def test_excel_sheets_are_read_by_the_rules_of_csv_files(tmp_path):
-    openpyxl = pytest.importorskip("openpyxl")
-    path = tmp_path / "test.xlsx"
-    book = openpyxl.Workbook()
-    book.active.append(["nothing here"])
-    sheet = book.create_sheet("run 1")
-    sheet.append(["Tribometer", "serial", "x-17"])
-    sheet.append([])
-    sheet.append(["time", "position", "friction"])
-    sheet.append(["s", "um", "N"])
-    for row in zip(TIME, X * 1e6, FORCE):
-        sheet.append([float(value) for value in row])
-    book.save(path)
-    record = mindahl.read_excel(path, sheet="run 1")
-    is_the_record(record, tolerance=SHEET)
-    assert record.columns["force"]["unit"] == "N"
-    with pytest.raises(ValueError, match="has no sheet 'run 2': it has Sheet, run 1"):
-        mindahl.read_excel(path, sheet="run 2")
-    sheet["C7"] = "n/a"
-    book.save(path)
-    with pytest.raises(mindahl.InputError, match=r"test.xlsx:7:3: 'n/a' is not a number"):
-        mindahl.read_excel(path, sheet="run 1")
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_dictionary_of_arrays_and_an_open_file_are_records(tmp_path):
+    expected = mindahl.fit(X, FORCE, time=TIME)
+    columns = {"F [N]": FORCE, "x [m]": X, "t [s]": TIME}
+    assert mindahl.fit(columns).sigma.value == expected.sigma.value
+    assert mindahl.fit(columns, displacement=2, force="F").sigma.value == expected.sigma.value
+    path = tmp_path / "loop.csv"
+    path.write_text("\n".join([",".join(columns), *(f"{force!r},{x!r},{time!r}" for force, x, time in zip(
+        FORCE.tolist(), X.tolist(), TIME.tolist()))]))
+    for mode in ("r", "rb"):
+        with open(path, mode) as file:
+            assert mindahl.fit(file).sigma.value == expected.sigma.value
+    with pytest.raises(mindahl.InputError, match="record"):
+        mindahl.fit(io.StringIO("x,F\n1,no\n"))
 
 
 def test_quantities_of_pint_are_fitted_in_their_units(sphere):
@@ -125,7 +128,7 @@ def test_a_result_is_loaded_from_its_json(tmp_path, sphere):
     assert repr(loaded) == repr(result)
     assert "sigma = " in str(loaded)
     assert loaded.records == ()
-    with pytest.raises(AttributeError, match="read from JSON has no residuals_csv"):
+    with pytest.raises(ValueError, match="has no residuals of its own"):
         loaded.residuals_csv()
     path.write_text('{"schema": "mindahl.contact/1"}')
     with pytest.raises(ValueError, match="is no result of a fit"):

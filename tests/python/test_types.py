@@ -1,11 +1,15 @@
 """The package and its stubs by mypy, on itself and on what a user writes."""
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+import mindahl
+from conftest import DATA
 
 pytest.importorskip("mypy")
 USE = Path(__file__).with_name("typed_use.py")
@@ -14,6 +18,9 @@ MISTAKES = {
     "mindahl.plan(sigma='stiff')": 'has incompatible type "str"',
     "mindahl.fit(displacement, force, modell='dahl')": 'Unexpected keyword argument "modell"',
     "state.displacement = 1.0": "is read-only",
+    "mindahl.fit(displacement, force).sgima": 'has no attribute "sgima"',
+    "mindahl.fit(displacement, force).adequacy.verdcit": 'has no attribute "verdcit"',
+    "mindahl.fit(displacement, force).measured.cycles[0].gap": 'has no attribute "gap"',
     "text: str = mindahl.fit(displacement, force).sigma.unit_of": 'has no attribute "unit_of"',
 }
 
@@ -45,3 +52,9 @@ def test_mistakes_are_found_before_a_script_runs(mypy, tmp_path):
     found = mypy(str(script)).stdout.splitlines()
     for line, (mistake, fault) in enumerate(MISTAKES.items(), start=correct.count("\n") + 2):
         assert any(f"mistaken.py:{line}:" in said and fault in said for said in found), mistake
+
+
+def test_a_result_has_the_sections_of_the_schema():
+    schema = json.loads((DATA.parent / "docs" / "schema" / "fit.json").read_text())["properties"]
+    assert set(mindahl.FitResult.__annotations__) - {"sigma", "alpha", "slip_force"} == (
+        set(schema) - {"parameters"})

@@ -18,7 +18,7 @@ namespace mindahl::campaign {
 
 struct TrackOptions {
   /// Options of each fit. The reversal gate splits the record; without one it is 0.
-  identification::FitOptions fit;
+  identification::FitOptions fit{};
   std::optional<double> compliance = std::nullopt;  ///< G* [1/Pa], for the contact radius
   std::size_t together = 1;                         ///< cycles in a row that are one fit, >= 1
   std::size_t every = 1;    ///< one fit of so many that there could be, >= 1

@@ -20,7 +20,7 @@ namespace mindahl::identification {
 
 /// A parameter of the problem and its parameter block, θ: non-dimensional and of order one.
 ///   value = scale·exp(θ) where it is positive,  else  value = reference + scale·θ
-struct CeresParameter {
+struct [[gnu::visibility("default")]] CeresParameter {
   std::string name;  ///< name in FitResult::parameters
   std::string unit;
   double theta = 0.0;  ///< the parameter block, of size one
@@ -53,7 +53,7 @@ struct CeresParameter {
 /// Without residuals of one's own its minimum is the fit's. Turning points that the fit found
 /// between samples, weights of noisy displacements and those of a robust loss are not part of it;
 /// a robust loss is given to AddTo(), which then adds one residual block a sample.
-class CeresProblem {
+class [[gnu::visibility("default")]] CeresProblem {
  public:
   /// @param records        [m], [N]; those of the fit
   /// @param options        those of the fit
@@ -64,7 +64,7 @@ class CeresProblem {
   /// @throws InvalidArgument as the fit does
   CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
                const FitResult& fit, double residual_unit = 1.0);
-  CeresProblem(CeresProblem&&) noexcept;
+  CeresProblem(CeresProblem &&) noexcept;
   CeresProblem& operator=(CeresProblem&&) noexcept;
   ~CeresProblem();
 
@@ -83,7 +83,7 @@ class CeresProblem {
   /// Adds a residual block for every record, bounds, and holds what the fit holds.
   /// @param problem  takes ownership of what is added; this must outlive it
   /// @param loss     of each sample, in residual units; none: least squares. Taken over
-  void AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);
+  void AddTo(ceres::Problem & problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);
 
  private:
   struct State;

@@ -32,37 +32,37 @@ struct FitOptions {
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
   /// Empty: both are fitted and the smaller AICc on effective samples is kept.
-  std::optional<models::InitialState> initial_state;
+  std::optional<models::InitialState> initial_state{};
 
   /// The state of each record, in the place of initial_state; empty: that of all. Where neither is
   /// given, records that differ are found.
-  std::vector<models::InitialState> initial_states;
+  std::vector<models::InitialState> initial_states{};
 
   /// How the records are read, and which samples count.
-  loop::PreparationOptions preparation;
+  loop::PreparationOptions preparation{};
 
   /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
   bool offsets = true;
 
   /// Terms that are fitted in addition, by name: rig_stiffness, plateau_slope, force_drift …
   /// Fixing one gives it a known value.
-  std::vector<std::string> terms;
+  std::vector<std::string> terms{};
 
   /// Columns of the records, by the names of their covariates, in proportion to which a force is
   /// added, C·(column − the middle of its range in each record; without offsets − 0). Each C is a
   /// parameter, NameOfCovariate(); fixing it gives it a known value. Every record must have them.
-  std::vector<std::string> covariates;
+  std::vector<std::string> covariates{};
 
   /// Normal load [N] of every record, or one for all; empty: the mean of a record's column. Where
   /// records differ in it by more than Thresholds::load_difference they are one contact all the
   /// same: Tc = μN, σ ∝ N^p with p the parameter load_exponent, α shared; σ and Tc are those at the
   /// mean of the records' loads.
-  std::vector<double> normal_loads;
+  std::vector<double> normal_loads{};
 
   /// Known standard deviation of the force noise [N] of all records; empty: from the residuals,
   /// of each record by itself where they differ in it. Not of a force that is imposed, which is
   /// taken as exact.
-  std::optional<double> force_noise;
+  std::optional<double> force_noise{};
 
   /// Fraction of such intervals, in (0, 1), that contain the true value.
   double confidence = 0.95;
@@ -70,12 +70,12 @@ struct FitOptions {
   /// Its scale comes from the residuals, or is the known noise.
   Loss loss = Loss::kNone;
 
-  std::map<std::string, double> fixed;  ///< parameter held at a value
+  std::map<std::string, double> fixed{};  ///< parameter held at a value
   /// Priors of fitted parameters: each is one more residual, (θ − θ_prior)/u relative to the noise
   /// that a fit without priors finds.
-  std::map<std::string, Prior> priors;
-  std::map<std::string, double> start;     ///< replaces the starting value found from the data
-  std::map<std::string, Interval> bounds;  ///< replaces the default bounds
+  std::map<std::string, Prior> priors{};
+  std::map<std::string, double> start{};     ///< replaces the starting value found from the data
+  std::map<std::string, Interval> bounds{};  ///< replaces the default bounds
 
   /// The solver stops when a step can lower the cost by function_tolerance · cost at the most …
   double function_tolerance = 1e-10;
@@ -90,7 +90,7 @@ struct FitOptions {
   std::size_t starts = 1;
   std::uint64_t seed = 1;  ///< seed of the random starts
 
-  Thresholds thresholds;
+  Thresholds thresholds{};
 
   /// Returns the channel that is fitted, whose noise the residuals are: that which is not imposed.
   [[nodiscard]] loop::Channel response() const { return loop::Other(preparation.excitation); }

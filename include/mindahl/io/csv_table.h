@@ -13,8 +13,8 @@ namespace mindahl::io {
 
 /// A column that is in memory already.
 struct NamedColumn {
-  std::string name;            ///< header cell with its unit: "x [um]"
-  std::vector<double> values;  ///< NaN where there is no number
+  std::string name{};            ///< header cell with its unit: "x [um]"
+  std::vector<double> values{};  ///< NaN where there is no number
 };
 
 /// The name of standard input where a file is asked for; ./- is a file of that name.

@@ -14,7 +14,7 @@ enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals, kBa
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
-  std::string label;           ///< for the legend; "" = no entry
+  std::string label{};         ///< for the legend; "" = no entry
   std::vector<double> x = {};  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y = {};  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
@@ -27,14 +27,14 @@ struct PlotSeries {
 
 /// A vertical line across a panel, where something happened.
 struct PlotMark {
-  double x = 0.0;     ///< finite; > 0 on a logarithmic axis
-  std::string label;  ///< next to it; "" = none
+  double x = 0.0;       ///< finite; > 0 on a logarithmic axis
+  std::string label{};  ///< next to it; "" = none
 };
 
 /// One pair of axes, with its title and its legend above it.
 struct PlotPanel {
-  std::string x_label;  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
-  std::string y_label;
+  std::string x_label{};  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
+  std::string y_label{};
   std::vector<PlotSeries> series = {};  ///< the first twelve differ in colour and in grey
   double height = 1.0;                  ///< relative to the other panels, > 0
   bool log_x = false;
@@ -45,7 +45,7 @@ struct PlotPanel {
 
 /// Panels, one under the other.
 struct Plot {
-  std::string title;  ///< "" = none
+  std::string title{};  ///< "" = none
   std::vector<PlotPanel> panels = {};
   int width = 900;   ///< [px]
   int height = 700;  ///< [px]

@@ -17,10 +17,10 @@ namespace mindahl::io {
 /// and an offset, "raw*0.0123-4.5 [N]", "lvdt2-lvdt1". Without a unit the header's is taken, else
 /// SI.
 struct RecordColumns {
-  std::string displacement;
-  std::string force;
-  std::string time;
-  std::string normal_load;
+  std::string displacement{};
+  std::string force{};
+  std::string time{};
+  std::string normal_load{};
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
   std::string encoding = {};                 ///< encoding of the file, as ReadCsvTable() takes it
   std::optional<double> sample_rate = {};    // [Hz], of a file without a time

@@ -34,24 +34,24 @@ struct PreparationOptions {
   /// Excursions up to this [unit of the excitation] are noise and make no reversal. Empty:
   /// ChooseReversalGate, and at least what a known displacement noise reaches, 2√(2 ln n) standard
   /// deviations.
-  std::optional<double> reversal_gate;
+  std::optional<double> reversal_gate{};
 
   /// Spikes, dropouts and held values (FindGlitches) do not count, and make no history.
   bool leave_out_glitches = true;
 
   /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).
   /// Empty: decided by the sign of the loop's energy.
-  std::optional<int> force_sense;
+  std::optional<int> force_sense{};
 
   /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
   /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. Under
   /// an imposed force it makes no gate, and the displacement is not smoothed. A
   /// noisy displacement is smoothed (DisplacementSmoother), since noise in the argument of a curved
   /// law is a bias.
-  std::optional<double> displacement_noise;
+  std::optional<double> displacement_noise{};
 
   /// Samples under another load [N] do not count; they still make history.
-  std::optional<Interval> load_window;
+  std::optional<Interval> load_window{};
 
   /// Cycles at the start of each record that do not count; they still make history.
   std::size_t skip_cycles = 0;
@@ -59,14 +59,14 @@ struct PreparationOptions {
   /// Samples of other cycles do not count; they still make history. The first cycle lasts from the
   /// record's start to its second reversal, each other one two reversals longer, the last to the
   /// record's end.
-  std::optional<CountRange> cycles;
+  std::optional<CountRange> cycles{};
 
   /// Other samples do not count; they still make history.
-  std::optional<CountRange> samples;
+  std::optional<CountRange> samples{};
 
   /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
   /// make history.
-  std::vector<std::vector<bool>> held_out;
+  std::vector<std::vector<bool>> held_out{};
 };
 
 /// One record as every later stage sees it.

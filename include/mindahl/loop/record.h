@@ -9,17 +9,17 @@ namespace mindahl::loop {
 
 /// Another quantity that was recorded, in a unit of its own.
 struct Covariate {
-  std::string name;            ///< header of its column, or the column's number
-  std::string unit;            ///< unit in the file; empty where it has none
-  std::vector<double> values;  ///< one a sample
+  std::string name{};            ///< header of its column, or the column's number
+  std::string unit{};            ///< unit in the file; empty where it has none
+  std::vector<double> values{};  ///< one a sample
 };
 
 /// A measured or simulated hysteresis record in SI units, one entry a sample, in order of time.
 struct Record {
-  std::vector<double> displacement;        ///< tangential displacement δ [m]
-  std::vector<double> force;               ///< tangential force T [N]
-  std::vector<double> time;                ///< [s]; empty when not recorded
-  std::vector<double> normal_load;         ///< N [N]; empty when not recorded
+  std::vector<double> displacement{};      ///< tangential displacement δ [m]
+  std::vector<double> force{};             ///< tangential force T [N]
+  std::vector<double> time{};              ///< [s]; empty when not recorded
+  std::vector<double> normal_load{};       ///< N [N]; empty when not recorded
   std::vector<Covariate> covariates = {};  ///< other columns; may be empty
 
   [[nodiscard]] std::size_t size() const { return displacement.size(); }
@@ -27,11 +27,11 @@ struct Record {
 
 /// A record somewhere in memory: what every stage takes. Columns as in Record.
 struct RecordView {
-  std::span<const double> displacement;
-  std::span<const double> force;
-  std::span<const double> time;
-  std::span<const double> normal_load;
-  std::span<const Covariate> covariates;
+  std::span<const double> displacement{};
+  std::span<const double> force{};
+  std::span<const double> time{};
+  std::span<const double> normal_load{};
+  std::span<const Covariate> covariates{};
 
   RecordView() = default;
   /// Views arrays of one size each; empty where not recorded.

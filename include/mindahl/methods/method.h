@@ -14,7 +14,7 @@ namespace mindahl::methods {
 
 /// An imposed displacement [m]; the contact is unloaded at 0.
 struct Drive {
-  std::span<const double> displacement;
+  std::span<const double> displacement{};
   /// Amplitude [m] at each sample where it changes along the path, else empty. Used only by a model
   /// that refers to its steady loop.
   std::span<const double> envelope = {};
@@ -43,8 +43,8 @@ using Evaluator = std::function<void(const Drive& drive, std::span<double> force
 /// model's; what differs is how a branch is followed. Every method keeps |T| <= Tc; the elements of
 /// Iwan add up to Tc, to rounding.
 struct Method {
-  std::string_view name;   ///< on the command line
-  std::string_view title;  ///< in reports
+  std::string_view name{};   ///< on the command line
+  std::string_view title{};  ///< in reports
   /// Unit of Resolution::steps, a plural in -s first, as "substeps a sample"; "" if unused.
   std::string_view steps = {};
   std::size_t default_steps = 1;

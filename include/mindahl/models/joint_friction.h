@@ -18,7 +18,7 @@ namespace mindahl::models {
 /// strain-wave and cycloid drives, with h = Tc/σ, μ = Tc/N̄ and μ′ = A·μ (google-deepmind/mujoco
 /// #3528).
 struct JointFriction {
-  BranchLaw law;                ///< σ [N/m], α, Tc [N] under the reference load
+  BranchLaw law{};              ///< σ [N/m], α, Tc [N] under the reference load
   double reference_load = 1.0;  ///< N̄ [N], finite, > 0
   double asymmetry = 0.0;       ///< A in (−1, 1): slip forces Tc(1 ± A) under N̄
 };
@@ -72,6 +72,10 @@ class JointState {
 
   /// Returns to z = 0 at the displacement of the start.
   void Reset() { state_.Reset(); }
+
+  /// As of ContactState.
+  [[nodiscard]] std::vector<double> Memory() const { return state_.Memory(); }
+  void Remember(std::span<const double> memory) { state_.Remember(memory); }
 
  private:
   [[nodiscard]] double ForceOf(double state, double load) const;

@@ -11,16 +11,16 @@ namespace mindahl::report {
 
 /// Identifies a file from which a result was made.
 struct InputFile {
-  std::string name;                   ///< name given by the user
-  std::optional<std::string> sha256;  ///< io::Sha256OfFile(); empty where it is no regular file
+  std::string name{};                   ///< name given by the user
+  std::optional<std::string> sha256{};  ///< io::Sha256OfFile(); empty where it is no regular file
 };
 
 /// Holds what is needed to make a result again.
 struct Provenance {
-  std::string command;            ///< command for a shell; "" where there was none
-  std::vector<InputFile> inputs;  ///< files that were read
+  std::string command{};            ///< command for a shell; "" where there was none
+  std::vector<InputFile> inputs{};  ///< files that were read
   /// Options with their values, those of a configuration file too.
-  std::vector<std::pair<std::string, std::string>> options;
+  std::vector<std::pair<std::string, std::string>> options{};
 };
 
 /// Returns the report of a fit as one page of HTML 5, for people: the answer's lines beside the

@@ -42,9 +42,9 @@ struct LeftOut {
 
 /// Holds the inputs of a report.
 struct ReportInput {
-  std::vector<std::string> files;       ///< name of each record, as it is to be printed
-  std::vector<io::RecordFile> records;  ///< records that were fitted, as read
-  identification::FitResult fit;
+  std::vector<std::string> files{};       ///< name of each record, as it is to be printed
+  std::vector<io::RecordFile> records{};  ///< records that were fitted, as read
+  identification::FitResult fit{};
   identification::FitOptions options = {};  ///< options of the fit, with what it chose
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.

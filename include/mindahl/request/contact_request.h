@@ -17,10 +17,10 @@ inline constexpr const char* kComplianceUnit = "1/Pa";
 
 /// Holds the properties of the contact that the user gave.
 struct ContactOptions {
-  contact::KnownContact known;
+  contact::KnownContact known{};
   /// Loads as given, one or one a file; known.normal_load is their mean.
-  std::vector<contact::UncertainValue> normal_loads;
-  std::optional<contact::UncertainValue> friction_coefficient;
+  std::vector<contact::UncertainValue> normal_loads{};
+  std::optional<contact::UncertainValue> friction_coefficient{};
 };
 
 /// Sets the normal loads [N], one for all records or one a record: their mean is what is known of
@@ -57,10 +57,10 @@ ContactParameters ResolveContact(const ContactOptions& options);
 
 /// A branch law: by its parameters, or by a contact.
 struct LawRequest {
-  std::optional<double> sigma;       ///< [N/m]
-  std::optional<double> alpha;       ///< [-]
-  std::optional<double> slip_force;  ///< [N]
-  ContactOptions contact;
+  std::optional<double> sigma{};       ///< [N/m]
+  std::optional<double> alpha{};       ///< [-]
+  std::optional<double> slip_force{};  ///< [N]
+  ContactOptions contact{};
 };
 
 /// True if a parameter other than α, or anything of a contact, was given.

@@ -49,42 +49,42 @@ struct RigRequest {
 
 /// A column in proportion to which a force is added.
 struct CovariateRequest {
-  std::string column;
+  std::string column{};
   std::optional<double> coefficient = {};  ///< [N/unit of the column]; empty: it is fitted
 };
 
 /// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
 /// be.
 struct FitRequest {
-  std::vector<std::string> files;
-  io::RecordColumns columns;
-  bool join = false;                                    // the files are pieces of one record
-  std::optional<std::uint64_t> max_memory;              // [bytes]; else what the process may have
-  std::optional<identification::Interval> time_window;  // [s]
+  std::vector<std::string> files{};
+  io::RecordColumns columns{};
+  bool join = false;                                      // the files are pieces of one record
+  std::optional<std::uint64_t> max_memory{};              // [bytes]; else what the process may have
+  std::optional<identification::Interval> time_window{};  // [s]
   std::string model = "auto";
   std::string initial_state = "auto";
   std::string force_sign = "auto";
   std::string noise_in = "force";
   std::string offsets = "on";
-  bool compare = false;                     // all models, with and without a rig
-  std::optional<RigRequest> rig_stiffness;  // empty: rigid
+  bool compare = false;                       // all models, with and without a rig
+  std::optional<RigRequest> rig_stiffness{};  // empty: rigid
   /// kNoTerms or kAutomatic alone, or names of groups of terms and of columns; empty: none.
-  std::vector<std::string> terms;
-  std::vector<CovariateRequest> covariates;
-  std::optional<identification::Interval> load_window;  // [N]
-  std::optional<loop::CountRange> cycles;
-  std::optional<loop::CountRange> samples;
+  std::vector<std::string> terms{};
+  std::vector<CovariateRequest> covariates{};
+  std::optional<identification::Interval> load_window{};  // [N]
+  std::optional<loop::CountRange> cycles{};
+  std::optional<loop::CountRange> samples{};
   std::string trim = "on";
   std::string loss = "none";
-  std::map<std::string, double> fix;
-  std::map<std::string, double> start;
-  std::map<std::string, identification::Interval> bound;
-  std::map<std::string, contact::UncertainValue> prior;
+  std::map<std::string, double> fix{};
+  std::map<std::string, double> start{};
+  std::map<std::string, identification::Interval> bound{};
+  std::map<std::string, contact::UncertainValue> prior{};
   double confidence = 0.95;
-  std::optional<double> force_noise;
-  std::optional<double> displacement_noise;
-  std::optional<double> reversal_gate;
-  ContactOptions contact;
+  std::optional<double> force_noise{};
+  std::optional<double> displacement_noise{};
+  std::optional<double> reversal_gate{};
+  ContactOptions contact{};
 };
 
 /// True if the terms are those that the record requires.

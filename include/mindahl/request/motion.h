@@ -16,15 +16,15 @@ namespace mindahl::request {
 /// Holds what is asked for the motion of a contact: a waveform, or a file.
 struct DriveRequest {
   std::string waveform = "sine";
-  std::optional<double> lambda;
-  std::optional<double> amplitude;
+  std::optional<double> lambda{};
+  std::optional<double> amplitude{};
   models::ExcitationOptions excitation{.cycles = 1.0};
-  std::string path;
-  std::string
-      displacement;  ///< column of that file, as of RecordColumns; "": by its name, else first
-  std::string load_column;  ///< likewise, of the normal load; "": the load is constant
-  std::string force_path;   ///< a file that imposes the force instead
-  std::string force;        ///< column of that file, likewise
+  std::string path{};
+  /// Column of that file, as of RecordColumns; "": the first, or the one of a recognised name.
+  std::string displacement{};
+  std::string load_column{};  ///< likewise, of the normal load; "": the load is constant
+  std::string force_path{};   ///< a file that imposes the force instead
+  std::string force{};        ///< column of that file, likewise
   std::uint64_t seed = 1;
 };
 
@@ -46,14 +46,14 @@ ImposedMotion MakeMotion(const DriveRequest& request, const models::BranchLaw& l
 /// Holds what is asked of a simulation: docs/contract.md, `mindahl simulate`.
 struct SimulationRequest {
   std::string model = "mindlin";
-  LawRequest law;
-  DriveRequest drive;
+  LawRequest law{};
+  DriveRequest drive{};
   double asymmetry = 0.0;           ///< A of slip forces Tc(1 ± A) [-]
   double force_noise = 0.0;         ///< standard deviation [N]
   double displacement_noise = 0.0;  ///< standard deviation [m]
   std::string method = "exact";
-  std::optional<std::size_t> steps;
-  std::optional<double> tolerance;
+  std::optional<std::size_t> steps{};
+  std::optional<double> tolerance{};
 };
 
 /// Returns the names of the models that may be simulated.

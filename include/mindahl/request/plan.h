@@ -17,22 +17,22 @@ namespace mindahl::request {
 
 /// Holds the contact and the loops to plan: docs/contract.md, `mindahl plan`.
 struct PlanRequest {
-  LawRequest law;
+  LawRequest law{};
   /// Reads a record whose fit gives law and noise; then of the law only α may be given.
-  std::function<io::RecordFile()> record;
-  std::string record_name;
-  std::optional<double> rig_stiffness;  ///< [N/m]
-  std::optional<double> force_noise;    ///< [N]
-  double displacement_noise = 0.0;      ///< [m]
+  std::function<io::RecordFile()> record{};
+  std::string record_name{};
+  std::optional<double> rig_stiffness{};  ///< [N/m]
+  std::optional<double> force_noise{};    ///< [N]
+  double displacement_noise = 0.0;        ///< [m]
   double autocorrelation = 0.0;
-  std::vector<double> amplitudes;  ///< [m]; empty: 13 about slip
-  std::vector<double> load_ratios;
-  std::optional<double> load_exponent;
+  std::vector<double> amplitudes{};  ///< [m]; empty: 13 about slip
+  std::vector<double> load_ratios{};
+  std::optional<double> load_exponent{};
   std::size_t samples_per_cycle = 200;
   double cycles = 3.0;
-  std::optional<models::InitialState> initial_state;  ///< empty: both
-  std::vector<std::string> with;                      ///< names of terms that are fitted too
-  identification::WantedPrecision wanted;
+  std::optional<models::InitialState> initial_state{};  ///< empty: both
+  std::vector<std::string> with{};                      ///< names of terms that are fitted too
+  identification::WantedPrecision wanted{};
 };
 
 /// The loops that start from one initial state, in the order of their amplitudes.

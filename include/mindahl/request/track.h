@@ -64,7 +64,7 @@ void Validate(const TrackRequest& request);
 
 /// Receives what a run has to say as it goes on. `fits` is needed, the others may be empty.
 struct TrackEvents {
-  std::function<void(std::span<const campaign::CycleFit>)> fits;  ///< in their order, by batches
+  std::function<void(std::span<const campaign::CycleFit>)> fits{};  ///< in their order, by batches
   std::function<void(std::string_view)> note = {};
   std::function<void(std::string_view)> warn = {};
   /// Called before the first fit: may set which are skipped, and the seed.

@@ -13,11 +13,11 @@ namespace mindahl::request {
 
 /// Holds the law and the excitations to study: docs/contract.md, `mindahl tradeoff`.
 struct TradeoffRequest {
-  LawRequest law;                        ///< default: the contact of Peyret et al. (2017) §3
-  std::vector<std::string> excitations;  ///< names of ExcitationNames(); empty: all
-  std::vector<double> displacement;      ///< [m] a path of the user's instead of these
-  std::string path_name;                 ///< title of that path
-  double tolerance = 0.01;               ///< largest error that is allowed [-], in (0, 1]
+  LawRequest law{};                        ///< default: the contact of Peyret et al. (2017) §3
+  std::vector<std::string> excitations{};  ///< names of ExcitationNames(); empty: all
+  std::vector<double> displacement{};      ///< [m] a path of the user's instead of these
+  std::string path_name{};                 ///< title of that path
+  double tolerance = 0.01;                 ///< largest error that is allowed [-], in (0, 1]
 };
 
 /// Returns the names of the excitations, in their order.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "mindahl/core/interruption.h"
 #include "mindahl/models/joint_friction.h"
 
 namespace mindahl::identification {
@@ -343,6 +344,7 @@ void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<d
 
 void Response::Differentiate(const LawPoint& at, std::span<double> t,
                              const ResponseColumns& columns) {
+  AskWhetherToGoOn();
   std::size_t begin = 0;
   for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
     const ScaledRecord& record = problem_->data->records[r];

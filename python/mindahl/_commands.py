@@ -1,0 +1,262 @@
+"""Other commands of the program: contact(), convert(), plan() and command(); and the functions of the
+library excitation() and simulate()."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _mindahl
+from ._arguments import (Floats, Uncertain, array, number, optional_number,
+                         path_text, words)
+from ._mindahl import Record
+from ._records import RecordArguments, columns_by_name, is_path, records_of, si_columns
+from ._result import FitWarning, Report
+
+
+class Answer(NamedTuple):
+    document: str
+    text: str
+    established: bool
+
+
+def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] = (),
+        outputs: Sequence[str] = ()) -> tuple[Answer, list[str]]:
+    """What a command of the program answers, and what it writes to the outputs that are named by their
+    options. What it warns of and assumes is a FitWarning of the caller's caller.
+
+    files: an option, "" for none, with a path, a Record or the columns of a file that is written.
+    Raises InputError where the program refuses.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        written = ["json", *outputs]
+        asked = [*options, *(f"--{name}={folder}/{name}" for name in written)]
+        for k, (option, given) in enumerate(files):
+            name = option or ("record" if len(files) == 1 else f"record {k + 1}")
+            path = path_text(given) if is_path(given) else _written(f"{folder}/{name}", given)
+            asked.append(f"--{option}={path}" if option else path)
+        # What is written for this call has a name, and no folder.
+        out, said, is_done = _run(command, asked, f"{folder}/")
+        for message in said:
+            if message.startswith(("note: ", "warning: ")):
+                warnings.warn(_mindahl.with_keywords(message.partition(": ")[2]), FitWarning, stacklevel=3)
+        document, *texts = [_content(f"{folder}/{name}").replace(f"{folder}/", "") for name in written]
+        return Answer(document, out, is_done), texts
+
+
+def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, list[str], bool]:
+    """What a command prints, its messages, and whether its status is 0."""
+    status, out, err = _mindahl.run_command(["mindahl", command, *options])
+    if folder:
+        out, err = (text.replace(folder, "") for text in (out, err))
+    said = re.findall(r"mindahl(?: \w+)?: ([^\r\n]*)", err)
+    if status not in (0, 3):
+        refusal = re.sub("; see mindahl .*", "", said[-1]) if said else err
+        raise _mindahl.InputError(_mindahl.with_keywords(refusal))
+    return out, said, status == 0
+
+
+def _written(path: str, source: Any) -> str:
+    """A CSV file of columns or of a record, of as many digits as they have."""
+    if isinstance(source, Record):
+        source = list(si_columns(source).values())
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(",".join(name for name, _ in source) + "\n")
+        file.writelines(",".join(row) + "\n"
+                        for row in zip(*(map(repr, np.asarray(values, dtype=np.float64).tolist())
+                                         for _, values in source)))
+    return path
+
+
+def _content(path: str) -> str:
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+class Conversion(Report):
+    """A conversion: sections of the program's JSON, and the lines that the target reads."""
+
+    input_lines: Optional[list[str]] = None
+
+
+def restored(kind: Any, arguments: dict[str, Any], memory: list[float]) -> Any:
+    """A ContactState or JointState that was pickled."""
+    state = kind(**arguments)
+    state._remember(memory)
+    return state
+
+
+def contact(
+    *, friction: Optional[Uncertain] = None, normal_load: Optional[Uncertain] = None,
+    youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
+    radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
+    poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
+    contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
+) -> Report:
+    """Hertz, Mindlin and the Mindlin-Dahl mapping: sigma = 8a/G*, alpha = 1/3, Tc = mu N.
+
+    Each a number or (number, standard uncertainty):
+    friction: mu [-]. normal_load: N [N].
+    youngs_modulus_1 [Pa], poisson_1 [-], radius_1 [m] (inf a plane, negative a seat) and the same
+        of body 2; or contact_radius a [m] and compliance G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa].
+    Returns the sections contact and parameters: result.parameters.sigma.value [N/m],
+        .standard_error, .unit.
+    Raises InputError naming what is missing, ValueError for a value out of range.
+    """
+    return Report(*ask("contact", words(locals()))[0], "contact")
+
+
+def convert(
+    fit: Any = None, *, to: str, sigma: Optional[float] = None, slip_force: Optional[float] = None,
+    amplitude: Optional[float] = None, alpha: Optional[float] = None, from_: Optional[str] = None,
+    tolerance: float = 0.01, elements: int = 8, beta: float = 0.5,
+    normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
+    viscous: Optional[float] = None,
+) -> Conversion:
+    """Converts a contact's steady loop to another law or program.
+
+    fit: file of `mindahl fit --json`, whose law and amplitude are taken unless given here.
+    sigma [N/m], alpha [-] (1/3), slip_force Tc [N]: parameters of the law from_, "masing" (default)
+        or "dahl".
+    amplitude: X [m] of the contact's steady loop.
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts", "yade",
+        "mujoco", "mujoco-joint", "urdf" or "sdf".
+    tolerance: of force and energy [-]. elements: number for "iwan". beta: of "bouc-wen".
+    normal_load [N]: for "lammps", "liggghts", "yade". contact_radius [m]: for "lammps".
+    viscous [N s/m]: for "lugre" and the four laws of robots.
+    Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
+        None for codes of discrete elements without a normal load.
+    Raises ValueError naming the quantity, its value and the rule.
+    """
+    given = dict(locals())
+    del given["fit"]
+    has_lines = to not in ("lammps", "liggghts", "yade") or normal_load is not None
+    answer, lines = ask("convert", words(given), [] if fit is None else [("", fit)],
+                        ["input-lines"] if has_lines else [])
+    conversion = Conversion(*answer, "conversion")
+    conversion.input_lines = lines[0].splitlines() if lines else None
+    return conversion
+
+
+def excitation(
+    waveform: str = "sine", *, amplitude: float, cycles: float = 1.0, samples_per_cycle: int = 200,
+    frequency: float = 1.0, growth: Optional[float] = None, seed: int = 1,
+) -> tuple[Floats, Floats]:
+    """Time [s] and imposed displacement [m], as `mindahl simulate --waveform` makes them.
+
+    waveform: "sine", "triangle", "growing-sine", "random", "nested".
+    amplitude: [m], > 0, the largest. cycles: > 0, multiples of 1/samples_per_cycle.
+    samples_per_cycle: from 4; a multiple of 4 puts samples on the extremes. frequency: [Hz], > 0.
+    growth: of a growing sine, last over first envelope, >= 1; default 10. seed: of a random waveform.
+    Returns two arrays of one length, from 0 at time 0.
+    Raises InputError (a ValueError) for an unknown waveform or a value out of range.
+    """
+    told = _run("simulate", [*words(locals()), "--sigma=1", "--slip-force=1"])[0]
+    rows = np.array([line.split(",")[:2] for line in told.splitlines()[1:]], dtype=np.float64)
+    return rows[:, 0].copy(), rows[:, 1].copy()
+
+
+def simulate(
+    displacement: Any, *, sigma: float, slip_force: float, alpha: Optional[float] = None,
+    model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None, asymmetry: float = 0.0,
+    load: Any = None, reference_load: float = 1.0,
+) -> Floats:
+    """Computes the tangential force [N] of a contact along a displacement, exactly for any history.
+
+    displacement: array [m]; the contact is unloaded at 0, and a first sample that is not 0 is the
+        first loading step. Used where it is when it is contiguous float64.
+    sigma: tangential stiffness [N/m], > 0. slip_force: Tc [N], > 0.
+    alpha: shape exponent [-], >= 0; by default the model's own, or 1/3.
+    model: "mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl".
+    rig_stiffness: of a spring [N/m] in series, by default rigid.
+    asymmetry: A of slip forces Tc(1 ± A) [-], in (-1, 1).
+    load: array, of "dahl": the force is in proportion to it, slip_force being that under
+        reference_load; of either sign, as the torque that a joint carries.
+    Returns an array of the same length. Noise is NumPy's: + rng.normal(0, deviation, force.size).
+    Raises ValueError naming the quantity, its value and the rule.
+    """
+    return _mindahl.simulate(
+        array("displacement", displacement), sigma=number("sigma", sigma),
+        slip_force=number("slip_force", slip_force), alpha=optional_number("alpha", alpha),
+        model=model, rig_stiffness=optional_number("rig_stiffness", rig_stiffness),
+        asymmetry=number("asymmetry", asymmetry),
+        load=None if load is None else array("load", load),
+        reference_load=number("reference_load", reference_load))
+
+
+def _one_record(source: Any) -> Any:
+    """A path, or a record from a frame, a Record or a pair of arrays."""
+    if is_path(source):
+        return source
+    arguments = RecordArguments({})
+    records = records_of(source, None, arguments)
+    if len(records) != 1:
+        raise ValueError(f"record: {len(records)} records: give one")
+    for note in arguments.assumed:
+        warnings.warn(_mindahl.with_keywords(note), FitWarning, stacklevel=3)
+    return records[0]
+
+
+def plan(
+    record: Any = None, *, sigma: Optional[float] = None, alpha: Optional[float] = None,
+    slip_force: Optional[float] = None, rig_stiffness: Optional[float] = None,
+    force_noise: Optional[float] = None, displacement_noise: float = 0.0,
+    autocorrelation: float = 0.0, load_exponent: Optional[float] = None,
+    amplitude: Union[None, float, Sequence[float]] = None,
+    load_ratio: Union[None, float, Sequence[float]] = None, cycles: float = 3.0,
+    samples_per_cycle: int = 200, initial_state: str = "both",
+    with_: Union[None, str, Sequence[str]] = None,
+    want: Optional[Mapping[str, Union[float, str]]] = None, **contact: Optional[Uncertain],
+) -> Report:
+    """Plans a measurement: the standard errors that a loop of each amplitude would give.
+
+    The contact, one of
+        sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of contact();
+        record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives contact
+            and noise; alpha is used where it does not determine one.
+    rig_stiffness: of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations;
+        autocorrelation of the force noise [-], in [0, 1). load_exponent: p of sigma ~ N^p [-].
+    amplitude: X [m], one or several; by default 13 around the onset of slip. load_ratio: loads
+        relative to the contact's own [-], one loop at each. cycles >= 1, samples_per_cycle >= 4.
+    initial_state: "virgin", "steady" or "both". with_: further terms to fit, "rig_stiffness",
+        "plateau_slope", "viscous", "force_drift".
+    want: parameter to wanted standard error, in its unit or in percent: {"slip_force": "1%"}.
+    Returns the sections of `mindahl plan --json`; .to_pandas() has a row a loop; .established is
+        False where no amplitude reaches what is wanted.
+    Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
+    """
+    given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
+    given.update(amplitude=_several(amplitude), load_ratio=_several(load_ratio))
+    files = [] if record is None else [("record", _one_record(record))]
+    return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
+
+
+def _several(values: Any) -> Any:
+    return list(values) if isinstance(values, tuple) else values
+
+
+def command(name: str, *files: Any, **options: Any) -> Report:
+    """Any command of the program that writes JSON, with its options as keywords: command("validate", cases=5).
+
+    files: what the command takes without an option: paths, or Records, data frames and dictionaries of
+        arrays, {"x [um]": ..., "F [N]": ...}, in the place of a file.
+    options: as `mindahl NAME --help-all` has them, with underscores, numbers in SI units. One that
+        takes a path takes all of these.
+    Returns the sections of the JSON that the command writes.
+    Raises InputError (a ValueError) where the program refuses.
+    """
+    given = [("", each) for each in files] + list(options.items())
+    tables = [(option, columns_by_name(each) or each) for option, each in given if _is_file(option, each)]
+    rest = {option: each for option, each in options.items() if not _is_file(option, each)}
+    return Report(*ask(name, words(rest), tables)[0], name)
+
+
+def _is_file(option: str, given: Any) -> bool:
+    columns = [] if isinstance(given, Record) else columns_by_name(given) or []
+    return not option or isinstance(given, Record) or any(  # and not parameters with their bounds
+        not isinstance(values, tuple) for _, values in columns)

@@ -1,0 +1,119 @@
+#include <pybind11/stl.h>
+
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bindings.h"
+#include "cli/app.h"
+#include "mindahl/io/output_file.h"
+#include "mindahl/request/batch.h"
+#include "mindahl/request/fit_request.h"
+
+namespace mindahl::python {
+
+namespace py = pybind11;
+using request::BatchEntry;
+using request::Strictness;
+
+namespace {
+
+int Run(const std::vector<std::string>& words, std::ostream& out, std::ostream& err) {
+  std::vector<const char*> arguments;
+  arguments.reserve(words.size());
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  return cli::Run(static_cast<int>(arguments.size()), arguments.data(), out, err);
+}
+
+/// Runs the command line as the program does, and returns its exit status.
+int RunProgram(const std::vector<std::string>& words) {
+  const py::gil_scoped_release others_may_run;
+  io::RemoveTemporaryFilesOnSignals();
+  const int status = Run(words, std::cout, std::cerr);
+  io::RaiseNotedSignal();
+  return status;
+}
+
+/// Returns the exit status, and what the program writes to its two streams.
+py::tuple RunCommand(const std::vector<std::string>& words) {
+  std::ostringstream out;
+  std::ostringstream err;
+  int status = 0;
+  {
+    const Running running;
+    status = Run(words, out, err);
+  }
+  return py::make_tuple(status, out.str(), err.str());
+}
+
+/// What is kept of a source of a batch, and what other processes give back: name, fault, done,
+/// notes, JSON of the fit and digest.
+py::tuple StateOf(const BatchEntry& entry) {
+  return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, request::FitJson(entry),
+                        entry.sha256);
+}
+
+std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
+  std::vector<BatchEntry> entries;
+  for (const py::tuple& state : states) {
+    BatchEntry& entry = entries.emplace_back();
+    entry.file = state[0].cast<std::string>();
+    entry.fault = state[1].cast<std::string>();
+    entry.done = state[2].cast<bool>();
+    entry.notes = state[3].cast<std::vector<std::string>>();
+    request::SetFitJson(entry, state[4].cast<std::string>());
+    entry.sha256 = state[5].cast<std::string>();
+  }
+  return entries;
+}
+
+/// @param stops  asked now and then whether the fit is to end; None: never
+py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
+                 const std::string& strict, const py::object& stops) {
+  BatchEntry entry;
+  {
+    const py::gil_scoped_release others_may_run;
+    const Interruptible asked([&stops] {
+      const py::gil_scoped_acquire own;
+      if (stops.is_none() || !stops().cast<bool>()) return;
+      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      throw Interrupted();
+    });
+    const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
+                                  : strict == "doubtful" ? Strictness::kDoubtful
+                                                         : Strictness::kNone;
+    entry = request::FitSource(request, record.name, strictness,
+                               [&](const request::FitRequest& own, const request::Tell& note) {
+                                 std::vector<io::RecordFile> files = {record.file};
+                                 request::KeepTimeWindow(own, record.name, files.front());
+                                 for (const std::string& text : files.front().notes) note(text);
+                                 return files;
+                               });
+  }
+  return StateOf(entry);
+}
+
+/// The columns of the table, the table, JSON and text of a batch, and whether all is done.
+py::tuple BatchOf(const std::vector<py::tuple>& states) {
+  const std::vector<BatchEntry> entries = EntriesOf(states);
+  py::dict columns;
+  for (const request::BatchColumn& column : request::TableOf(entries)) {
+    columns[py::str(std::string(column.name))] = column.cells;
+  }
+  return py::make_tuple(columns, request::TableCsv(entries), request::ToJson(entries, ""),
+                        request::ToText(entries, ""), request::AllDone(entries));
+}
+
+}  // namespace
+
+void AddProgram(py::module_& module) {
+  module.def("run_program", &RunProgram, py::arg("words"));
+  module.def("run_command", &RunCommand, py::arg("words"));
+  module.def("fit_one", &FitOne, py::arg("record"), py::arg("request"), py::arg("strict"),
+             py::arg("stops"));
+  module.def("batch", &BatchOf, py::arg("entries"));
+}
+
+}  // namespace mindahl::python
