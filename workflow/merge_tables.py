@@ -1,58 +1,64 @@
 #!/usr/bin/env python3
-"""Makes one table of those of the shards of `mindahl track --separate`, and one summary of theirs.
+"""Makes one table of those of the tests of a campaign, each row with its test, and one summary of theirs.
 Memory does not grow with the tables.
 
-usage: merge_tables.py TABLE SUMMARY SHARD.csv...
-Beside each SHARD.csv is its summary, SHARD.json.
+usage: merge_tables.py RESULTS TABLE.csv...
+Beside each TABLE.csv is its summary, TABLE.json, empty where the record has a fault; its log is
+RESULTS/log/TABLE.txt.
 """
+import csv
 import json
 import os
-import shutil
 import sys
 from pathlib import Path
 
 
-def merge(tables, table):
+def merge(tables, to):
     """Rows of all tables, in the order of their names on the command line."""
+    writer = csv.writer(to, lineterminator="\n")
     header = None
     for path in tables:
-        with open(path, "rb") as rows:
-            first = rows.readline()
+        with open(path, newline="") as rows:
+            reader = csv.reader(rows)
+            first = next(reader, None)
+            if first is None:
+                continue
             if header is None:
                 header = first
-                table.write(header)
+                writer.writerow(["test", *header])
             if first != header:
-                sys.exit(f"merge_tables: {path} has other columns than {tables[0]}")
-            shutil.copyfileobj(rows, table)
+                sys.exit(f"merge_tables: {path} has other columns than those before")
+            writer.writerows([path.stem, *row] for row in reader)
 
 
-def summarise(tables):
-    """What all tests make together, and of each what its own run said."""
-    shards = [json.loads(path.with_suffix(".json").read_text()) for path in tables]
-    tests = [test for shard in shards for test in shard["tests"]]
-    return {
-        "schema": "mindahl.campaign/1",
-        "version": shards[0]["version"],
-        "fits": sum(shard["fits"] for shard in shards),
-        "flagged": sum(shard["flagged"] for shard in shards),
-        "accumulated_energy": sum(shard["accumulated_energy"] for shard in shards),
-        "failed": [test["file"] for test in tests if test["fault"] is not None],
-        "tests": tests,
-    }
+def test_of(results, path):
+    """What a test's own run said, or the fault of its record."""
+    said = path.with_suffix(".json").read_text()
+    if said:
+        return {"test": path.stem, "fault": None, **json.loads(said)}
+    log = (results / "log" / f"{path.stem}.txt").read_text().strip().splitlines()
+    return {"test": path.stem, "fault": log[-1] if log else "no message"}
 
 
 def main():
-    if len(sys.argv) < 4:
+    if len(sys.argv) < 3:
         sys.exit(__doc__)
-    table, summary, *tables = map(Path, sys.argv[1:])
+    results, *tables = map(Path, sys.argv[1:])
+    tests = [test_of(results, path) for path in tables]
+    summary = {
+        "schema": "mindahl.campaign/2",
+        "fits": sum(test.get("fits", 0) for test in tests),
+        "failed": [test["test"] for test in tests if test["fault"] is not None],
+        "tests": tests,
+    }
     # Each whole or not at all.
-    with open(f"{table}.part", "wb") as file:
+    with open(results / "campaign.csv.part", "w", newline="") as file:
         merge(tables, file)
-    with open(f"{summary}.part", "w") as file:
-        json.dump(summarise(tables), file, indent=1, ensure_ascii=False)
+    with open(results / "campaign.json.part", "w") as file:
+        json.dump(summary, file, indent=1, ensure_ascii=False)
         file.write("\n")
-    os.replace(f"{table}.part", table)
-    os.replace(f"{summary}.part", summary)
+    for name in ("campaign.csv", "campaign.json"):
+        os.replace(results / f"{name}.part", results / name)
 
 
 if __name__ == "__main__":

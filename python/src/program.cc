@@ -84,13 +84,12 @@ py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
     const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
                                   : strict == "doubtful" ? Strictness::kDoubtful
                                                          : Strictness::kNone;
-    entry = request::FitSource(request, record.name, strictness,
-                               [&](const request::FitRequest& own, const request::Tell& note) {
-                                 std::vector<io::RecordFile> files = {record.file};
-                                 request::KeepTimeWindow(own, record.name, files.front());
-                                 for (const std::string& text : files.front().notes) note(text);
-                                 return files;
-                               });
+    entry =
+        request::FitSource(request, record.name, strictness, [&](const request::FitRequest& own) {
+          std::vector<io::RecordFile> files = {record.file};
+          request::KeepTimeWindow(own, record.name, files.front());
+          return files;
+        });
   }
   return StateOf(entry);
 }
