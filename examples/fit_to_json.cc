@@ -22,14 +22,11 @@ int main(int argc, char** argv) {
     input.files = {argv[1]};
     input.records = {mindahl::io::ReadRecord(argv[1])};
     const std::vector<mindahl::loop::Record> records = {input.records.front().record};
-    // The load as given, else the mean of its column where the record has one.
-    if (argc == 3) {
-      input.known.normal_load = std::strtod(argv[2], nullptr);
-    } else if (const auto mean = mindahl::report::MeanNormalLoad(records); mean && *mean > 0) {
-      input.known.normal_load = *mean;
-    }
     input.fit = mindahl::identification::Fit(records, {.offsets = true},
                                              mindahl::identification::Depth::kFull);
+    // The load as given, else the mean of its column where the record has one.
+    input.known.normal_load = input.fit.normal_load;
+    if (argc == 3) input.known.normal_load = std::strtod(argv[2], nullptr);
     const mindahl::report::Report report = mindahl::report::MakeReport(std::move(input));
     std::fputs(mindahl::report::ToJson(report).c_str(), stdout);
     return report.fit.converged ? 0 : 3;

@@ -9,6 +9,7 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
+#include "report/names.h"
 #include "report/statements.h"
 
 namespace mindahl::reliability {
@@ -78,7 +79,7 @@ std::string ParameterText(const ParameterEstimate& estimate, const std::optional
   std::string text =
       fmt::format("  {}{:<10} truth {:<20} fitted {:<12.5g} 95 % {} … {}, {}", is_wrong ? '!' : ' ',
                   estimate.name, TruthText(truth), estimate.value, EndText(estimate.lower95),
-                  EndText(estimate.upper95), report::Words(estimate.identifiability));
+                  EndText(estimate.upper95), report::Name(estimate.identifiability));
   if (estimate.status != ParameterStatus::kFree) text += ", at bound";
   if (truth && IsFalseLimit(estimate, *truth)) text += ", FALSE LIMIT";
   if (truth) {
