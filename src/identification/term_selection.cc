@@ -242,6 +242,7 @@ class Selection {
   [[nodiscard]] const Gain& Simplest(std::span<const Gain> gains) const;
   Model FitWith(const TermChoice& choice, const std::map<std::string, double>& starts);
   Model FitAnew(const TermChoice& choice);
+  FitResult FitTo(const FitOptions& options, Depth depth);
   Model Fitted(FitOptions with, FitOptions options);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
@@ -279,6 +280,7 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
                       std::vector<Candidate> candidates) {
   candidates_ = std::move(candidates);
   std::vector<TermChoice> choices;
+  choices.reserve(candidates_.size());
   for (const Candidate& candidate : candidates_) choices.push_back(candidate.choice);
   FitOptions as_fitted = options;
   as_fitted.preparation.force_sense = law.force_sense;
@@ -390,6 +392,17 @@ Selection::Model Selection::FitAnew(const TermChoice& choice) {
   return Fitted(with, with);
 }
 
+/// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
+/// loop.
+FitResult Selection::FitTo(const FitOptions& options, Depth depth) {
+  try {
+    ++result_.estimates;
+    return Fitter(options).Fit(records_, depth);
+  } catch (const InvalidArgument&) {
+    return {};
+  }
+}
+
 /// @param with     as the user gives them
 /// @param options  of the search
 Selection::Model Selection::Fitted(FitOptions with, FitOptions options) {
@@ -398,12 +411,7 @@ Selection::Model Selection::Fitted(FitOptions with, FitOptions options) {
   options.preparation.force_sense = base_.fit.force_sense;
   options.preparation.held_out = held_out_;
   options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  try {
-    ++result_.estimates;
-    model.fit = Fitter(options).Fit(records_, Depth::kEstimate);
-  } catch (const InvalidArgument&) {
-    model.fit = {};  // not identifiable here, or the rig is softer than the loop
-  }
+  model.fit = FitTo(options, Depth::kEstimate);
   return model;
 }
 
@@ -526,25 +534,20 @@ void Selection::FitLast(const FitResult& law) {
   std::vector<FitOptions> tried = {std::move(from_here)};
   if (is_found_anew_) tried.insert(tried.begin(), base_.options);
   for (const FitOptions& options : tried) {
-    try {
-      ++result_.estimates;
-      FitResult last = Fitter(options).Fit(records_, Depth::kFull);
-      if (!IsFitted(last) || Leaves(last)) continue;
-      if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
-      // One term that leaves but noise rules out what leaves much more.
-      const bool is_settled =
-          result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
-      std::erase_if(alternatives_, [&](const Alternative& alternative) {
-        return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
-               (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
-      });
-      IncludeAlternatives(alternatives_, options.thresholds, last);
-      result_.fit = std::move(last);
-      result_.options = base_.options;
-      return;
-    } catch (const InvalidArgument&) {
-      // a term that all samples, with what was left out for others, do not determine
-    }
+    FitResult last = FitTo(options, Depth::kFull);
+    if (!IsFitted(last) || Leaves(last)) continue;
+    if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
+    // One term that leaves but noise rules out what leaves much more.
+    const bool is_settled =
+        result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
+    std::erase_if(alternatives_, [&](const Alternative& alternative) {
+      return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
+             (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
+    });
+    IncludeAlternatives(alternatives_, options.thresholds, last);
+    result_.fit = std::move(last);
+    result_.options = base_.options;
+    return;
   }
   for (const std::string& name : result_.added) {
     ConsideredTerm& considered = candidates_[*Find(name)].considered;

@@ -121,7 +121,7 @@ std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   if (time.terms.empty()) return {};
   if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
-  return NumbersOf(names, RulesOf(Role::kTime), std::move(time), notes);
+  return NumbersOf(names, RulesOf(Role::kTime), time, notes);
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
@@ -247,7 +247,7 @@ SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
       (stated.empty() && names[of_response].name.evidence.word.ends_with("compliance"));
   const auto read = [&](Role role, Expression of) {
     const std::size_t column = of.terms.front().column;
-    std::vector<double> values = NumbersOf(names, RulesOf(role), std::move(of), sweep.notes);
+    std::vector<double> values = NumbersOf(names, RulesOf(role), of, sweep.notes);
     const auto bad = std::ranges::find_if(values, [](double value) { return !(value > 0); });
     if (bad == values.end()) return values;
     throw InputError(
@@ -281,8 +281,7 @@ std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
                                                    : DimensionOfUnit(columns.unit);
   const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
   std::vector<std::string> notes;  // SI is the documented default here
-  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), std::move(columns),
-                   notes);
+  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), columns, notes);
 }
 
 }  // namespace mindahl::io

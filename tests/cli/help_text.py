@@ -59,8 +59,8 @@ OF_OTHERS = {
     "--static", "--enable", "--std",
     "--component", "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--problems", "--repeats", "--rounds",
-    "--shards", "--tests", "--write",
-    "--add-terms", "--array", "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
+    "--tests", "--write",
+    "--add-terms", "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
 
 
