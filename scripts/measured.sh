@@ -45,7 +45,7 @@ tribometer=tribometer/test_data_2.txt
 fit tribometer $tribometer --select time=20:60
 fit tribometer_rig $tribometer --select time=20:60 --model mindlin --rig-stiffness fit
 fit tribometer_load $tribometer --select load=4.98:5.1
-fit tribometer_auto $tribometer --select time=20:60 --compare
+fit tribometer_compare $tribometer --select time=20:60 --compare
 
 columns=(--displacement "5 [mm]" --force "7 [N]" --time "1 [ms]")
 fit oring seals/O-ring257_3bar.csv "${columns[@]}"

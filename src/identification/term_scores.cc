@@ -145,21 +145,22 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
     shapes_new = shapes_new || !IsExponent(parameter);
     if (IsExponent(parameter)) exponent = p;
   }
+  const bool is_tried = exponent && shapes_new;
   double least = std::numeric_limits<double>::infinity();
   double best = 0.0;
   Eigen::MatrixXd derivatives;
   for (const double tried : kTriedExponents) {
-    if (exponent && shapes_new) theta[*exponent] = tried;
+    if (is_tried) theta[*exponent] = tried;
     Eigen::MatrixXd here = LinearizeAt(problem, theta, response_, added).jacobian;
-    const Eigen::VectorXd left = LeftOver(here, LeftOver(at_fit_.jacobian, at_fit_.residual));
-    if (left.squaredNorm() < least) {
-      least = left.squaredNorm();
+    const double left = is_tried ? LeftOver(here, freed_).squaredNorm() : 0.0;
+    if (left < least) {
+      least = left;
       best = tried;
       derivatives = std::move(here);
     }
-    if (!exponent || !shapes_new) break;
+    if (!is_tried) break;
   }
-  if (exponent && shapes_new) theta[*exponent] = best;
+  if (is_tried) theta[*exponent] = best;
   std::vector<Added> result;
   for (std::size_t c = 0; c < added.size(); ++c) {
     Added& one = result.emplace_back(Added{.name = parameters.NameOf(added[c]),
@@ -197,6 +198,7 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   names_.clear();
   for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
   const Eigen::VectorXd& residual = at_fit_.residual;
+  freed_ = LeftOver(at_fit_.jacobian, residual);
   effective_samples_ =
       EffectiveSamples(data_, {residual.data(), static_cast<std::size_t>(residual.size())});
   choices_.clear();

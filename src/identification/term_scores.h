@@ -103,6 +103,7 @@ class TermScores {
   double effective_samples_ = 1.0;
   Linearization at_fit_;  // in those that are inside their bounds; the first columns of all
   std::vector<std::string> names_;  // of these
+  Eigen::VectorXd freed_;           // what these leave of the residuals
   // The choices:
   std::vector<std::vector<Added>> choices_;
   Eigen::VectorXd norms_;                 // of all columns

@@ -534,7 +534,7 @@ void Selection::FitLast(const FitResult& law) {
   std::vector<FitOptions> tried = {std::move(from_here)};
   if (is_found_anew_) tried.insert(tried.begin(), base_.options);
   for (const FitOptions& options : tried) {
-    FitResult last = FitTo(options, Depth::kFull);
+    FitResult last = FitTo(options, selection_.depth);
     if (!IsFitted(last) || Leaves(last)) continue;
     if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
     // One term that leaves but noise rules out what leaves much more.
@@ -582,7 +582,7 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
   FitOptions from_here = base_.options;
   StartFrom(base_.fit, from_here);
   ++result_.estimates;
-  result_.fit = Fitter(from_here).Fit(records_, Depth::kFull);
+  result_.fit = Fitter(from_here).Fit(records_, selection_.depth);
   return candidates_.size() == names.size() && IsFitted(result_.fit);
 }
 
@@ -623,7 +623,7 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
   } else if (!options.start.empty() ||
              !Selection(records, selection, result).RunNamed(options, selection.named)) {
     Fitter all_at_once(options);
-    result.fit = all_at_once.Fit(records, Depth::kFull);
+    result.fit = all_at_once.Fit(records, selection.depth);
   }
   return result;
 }

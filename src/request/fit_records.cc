@@ -24,6 +24,7 @@
 namespace mindahl::request {
 
 using identification::AdequacyVerdict;
+using identification::Depth;
 using identification::FitOptions;
 using identification::FitResult;
 using identification::Identifiability;
@@ -239,7 +240,7 @@ struct AskedFit {
 
 /// Fits the options' law with the terms that are named or, where asked for, chosen.
 AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
-                std::span<const Record> records, bool chooses_terms) {
+                std::span<const Record> records, bool chooses_terms, Depth depth = Depth::kFull) {
   AskedFit asked{.options = options};
   std::vector<std::string> named = NamedTerms(request);
   std::erase_if(named, [](const std::string& name) {
@@ -247,13 +248,14 @@ AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
   });
   if (options.response() == loop::Channel::kForce && (chooses_terms || !named.empty())) {
     identification::TermSelection selected = identification::SelectTerms(
-        records, options, {.named = chooses_terms ? std::vector<std::string>() : std::move(named)});
+        records, options,
+        {.depth = depth, .named = chooses_terms ? std::vector<std::string>() : std::move(named)});
     asked.options = selected.options;
     asked.fit = std::move(selected.fit);
     if (chooses_terms) asked.terms = std::move(selected);
     return asked;
   }
-  asked.fit = identification::Fit(records, options, identification::Depth::kFull);
+  asked.fit = identification::Fit(records, options, depth);
   return asked;
 }
 
@@ -349,7 +351,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       tried.preparation = options.preparation;
       tried.initial_state = options.initial_state;
       tried.model = options.model;
-      const FitResult found = FitLaw(with, tried, records, /*chooses_terms=*/false).fit;
+      const FitResult found =
+          FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       if (LosesSlipForce(fit, found)) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;

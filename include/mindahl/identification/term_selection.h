@@ -23,6 +23,7 @@ struct TermSelectionOptions {
   /// Least fraction by which the error of prediction falls with a term that is added.
   double smallest_gain = 0.03;
   std::size_t most_fits = 15;  ///< in all, nearly all of them at Depth::kEstimate
+  Depth depth = Depth::kFull;  ///< of the fit that is returned
   /// Names of groups that the options have: they are added one after the other, each from the
   /// solution without it, and are not judged. Nothing is selected then.
   std::vector<std::string> named = {};
@@ -49,7 +50,7 @@ struct TermSelection {
   std::size_t held_out_parts = 0;  ///< cycles or strokes, each predicted once
   std::size_t estimates = 0;       ///< fits that were made, at any depth
   FitOptions options;              ///< with the terms that were added
-  FitResult fit;                   ///< with them, at Depth::kFull
+  FitResult fit;                   ///< with them
 };
 
 /// Fits a record with the terms that it requires and no others (forward selection).
