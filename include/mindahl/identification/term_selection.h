@@ -23,7 +23,7 @@ struct TermSelectionOptions {
   /// Least fraction by which the error of prediction falls with a term that is added.
   double smallest_gain = 0.03;
   std::size_t most_fits = 15;  ///< in all, nearly all of them at Depth::kEstimate
-  Depth depth = Depth::kFull;  ///< of the fit that is returned
+  Depth depth = Depth::kFull;  ///< depth of the fit that is returned
   /// Names of groups that the options have: they are added one after the other, each from the
   /// solution without it, and are not judged. Nothing is selected then.
   std::vector<std::string> named = {};
