@@ -239,6 +239,10 @@ void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns,
     of_part_.push_back(TransposedProduct(rows, rows));
     samples_of_part_.push_back(part.samples);
   }
+  of_fit_.resize(static_cast<std::size_t>(of_law));
+  std::iota(of_fit_.begin(), of_fit_.end(), Eigen::Index{0});
+  squares_of_fit_ = SquaresAfter(whole_, of_fit_, StepBy(whole_, of_fit_));
+  predicted_by_fit_ = Predict(of_fit_);
 }
 
 /// Returns the sums of squares of the parts, each after a step by those of the other folds.
@@ -269,7 +273,7 @@ std::optional<double> TermScores::TestEffects(const std::vector<Eigen::Index>& b
   const auto terms = std::ssize(added);
   Eigen::MatrixXd of_others = whole_(before, before);
   of_others.diagonal().array() += kOwnSquare;
-  // What is freed, by the columns as they are.
+  // The added columns and the residuals, freed of the others, as combinations of all columns.
   Eigen::MatrixXd freed = Eigen::MatrixXd::Zero(whole_.rows(), terms + 1);
   std::vector<Eigen::Index> all = Joined(added, std::array{last});
   freed(before, Eigen::all) = -SolveSymmetric(of_others, whole_(before, all));
@@ -321,9 +325,7 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
     if (one.place >= 0) added.push_back(one.place);
   }
   if (added.empty()) return std::nullopt;
-  std::vector<Eigen::Index> before(static_cast<std::size_t>(at_fit_.jacobian.cols()));
-  std::iota(before.begin(), before.end(), Eigen::Index{0});
-  Step step{.places = Joined(before, added), .values = {}};
+  Step step{.places = Joined(of_fit_, added), .values = {}};
   step.values = StepBy(whole_, step.places);
   TermScore score;
   PutValues(choice, step, score.values);
@@ -332,29 +334,25 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
     if (place < std::ssize(names_)) score.law.emplace(name, step.values[place] / norms_[place]);
   }
   const double rounding = kRoundingRms * kRoundingRms;  // of a residual's square
-  const auto squares_of_all = [&](const std::vector<Eigen::Index>& places) {
-    return SquaresAfter(whole_, places, StepBy(whole_, places)) +
-           rounding * static_cast<double>(data_.counted);
-  };
-  const double without = squares_of_all(before);
-  const double with = squares_of_all(step.places);
+  const double floor_of_all = rounding * static_cast<double>(data_.counted);
+  const double without = squares_of_fit_ + floor_of_all;
+  const double with = SquaresAfter(whole_, step.places, step.values) + floor_of_all;
   score.rms = data_.force * std::sqrt(with / static_cast<double>(data_.counted));
   if (of_part_.empty()) {
     score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
   } else {
-    const std::vector<double> least = Predict(before);
     const std::vector<double> now = Predict(step.places);
     double samples = 0.0;
     double sum = 0.0;
-    for (std::size_t c = 0; c < least.size(); ++c) {
+    for (std::size_t c = 0; c < predicted_by_fit_.size(); ++c) {
       const double floor = rounding * samples_of_part_[c];
-      sum +=
-          samples_of_part_[c] * std::log(std::max(least[c], floor) / std::max(now[c], floor)) / 2;
+      sum += samples_of_part_[c] *
+             std::log(std::max(predicted_by_fit_[c], floor) / std::max(now[c], floor)) / 2;
       samples += samples_of_part_[c];
     }
     score.gain = 1 - std::exp(-sum / samples);
   }
-  const std::optional<double> by_parts = TestEffects(before, added);
+  const std::optional<double> by_parts = TestEffects(of_fit_, added);
   const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
   score.p_value = by_parts    ? *by_parts
                   : ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(added.size()))

@@ -110,6 +110,10 @@ class TermScores {
   Eigen::MatrixXd whole_;                 // products of columns of unit norm, the residuals last
   std::vector<Eigen::MatrixXd> of_part_;  // likewise
   std::vector<double> samples_of_part_;
+  // The fit itself, against which choices are scored:
+  std::vector<Eigen::Index> of_fit_;  // its columns
+  double squares_of_fit_ = 0.0;       // after a step of its own
+  std::vector<double> predicted_by_fit_;
   std::size_t folds_ = 0;
 };
 

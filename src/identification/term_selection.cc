@@ -115,6 +115,12 @@ std::vector<Candidate> ListCandidates(std::span<const RecordView> records,
   return candidates;
 }
 
+/// True if a gap was measured without a model in every record.
+bool HasGap(const FitResult& law) {
+  return std::ranges::all_of(
+      law.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
+}
+
 /// True if hardly more than white noise is left.
 bool IsNearlyWhite(const FitResult& fit) {
   constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
@@ -304,7 +310,8 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
   }
   if (!counts_alike) base_ = FitWith({}, {});
   if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
-  // Into cycles where there are four, else into strokes; no more than are dealt to the folds.
+  // Into cycles where there are four, else into strokes; several cycles a part where there are
+  // many.
   constexpr std::size_t kEnoughCycles = 4;
   constexpr std::size_t kMostParts = 60;
   const ScoredSamples samples = CountedSamples(base_.fit, records_);
@@ -506,8 +513,7 @@ void Selection::Run(const FitOptions& options) {
   if (!Begin(options, law, ListCandidates(records_, options, law))) return;
   // A gap that was measured without a model is tried first: no linear step from a contact that is
   // too soft for the want of a gap predicts it.
-  const auto has_gap = [](const RecordFit& record) { return record.facts.backlash.has_value(); };
-  if (std::ranges::all_of(law.records, has_gap)) {
+  if (HasGap(law)) {
     const std::size_t gap = *Find("backlash");
     Add(gap, FitAnew(candidates_[gap].choice));
   }
@@ -572,10 +578,10 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
   const FitResult law = Fitter(options).Fit(records_, Depth::kErrors);
   if (!IsFitted(law) || !law.converged || !Begin(options, law, std::move(candidates))) return false;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    Score();
-    const std::optional<TermScore> score = scores_->Of(c);
-    if (!score) return false;
-    Model model = FitWith(candidates_[c].choice, score->values);
+    const std::vector<Gain> gains = Score();
+    const auto gain = std::ranges::find(gains, c, &Gain::candidate);
+    if (gain == gains.end()) return false;
+    Model model = FitWith(candidates_[c].choice, gain->score.values);
     if (!IsFitted(model.fit) || !model.fit.converged) return false;
     base_ = std::move(model);
   }
@@ -589,8 +595,7 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
 std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
   std::vector<std::string> names;
   if (!IsFitted(law) || !Begin(options, law, ListCandidates(records_, options, law))) return names;
-  const auto has_gap = [](const RecordFit& record) { return record.facts.backlash.has_value(); };
-  if (std::ranges::all_of(law.records, has_gap)) names.emplace_back("backlash");
+  if (HasGap(law)) names.emplace_back("backlash");
   for (const Gain& gain : Score()) {
     const std::string& name = candidates_[gain.candidate].considered.name;
     const bool is_there = std::ranges::find(names, name) != names.end();

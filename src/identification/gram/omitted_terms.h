@@ -28,7 +28,7 @@ struct DepartureFit {
   std::vector<double> step = {};  // of θ, one a free parameter
 };
 
-/// What a fit's model may lack, all terms of Departures() together: r = −Jδ − Cγ + ε with
+/// Holds what a fit's model may lack, all terms of Departures() together: r = −Jδ − Cγ + ε with
 /// γ_k ~ N(0, τ²/‖c_k‖²), τ by the marginal likelihood, and ε the noise process of what all columns
 /// leave: what a model misses is smooth along the loop and would pass for autocorrelated noise.
 struct AdequacyTest {

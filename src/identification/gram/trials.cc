@@ -42,27 +42,43 @@ void PutInPlace(const ScaledRecords& data, double before, const Solution& after,
   for (std::size_t j = 0; j < free.size(); ++j) fit.step[j] = after.theta[free[j]] - theta[free[j]];
 }
 
+/// Keeps the θ of least cost of those that it is shown.
+class CheapestLook {
+ public:
+  CheapestLook(std::span<const double> theta, Solver& solver)
+      : solver_(solver), theta_(theta.begin(), theta.end()) {}
+
+  /// @param theta  kept with the linear parameters that are best beside the others
+  void See(std::vector<double> theta) {
+    const double cost = solver_.CostAt(theta);
+    if (!(cost < cost_)) return;
+    cost_ = cost;
+    theta_ = std::move(theta);
+  }
+  [[nodiscard]] const std::vector<double>& theta() const { return theta_; }
+
+ private:
+  Solver& solver_;
+  std::vector<double> theta_;
+  double cost_ = std::numeric_limits<double>::infinity();
+};
+
 /// θ of least cost among stiffer contacts: what was the gap's was taken for theirs.
 std::vector<double> StifferLook(std::span<const double> theta, const Parameters& parameters,
                                 Solver& solver) {
   constexpr std::array kStiffer = {1.0, 2.0, 4.0, 8.0, 16.0};
-  const std::array shapes = {theta[kShape], 0.0, 1.0 / 3, 1.0};
-  std::vector<double> best(theta.begin(), theta.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (const double shape : shapes) {
+  CheapestLook cheapest(theta, solver);
+  for (const double shape : {theta[kShape], 0.0, 1.0 / 3, 1.0}) {
     if (parameters[kShape].fixed && shape != theta[kShape]) continue;
     for (const double factor : kStiffer) {
       std::vector<double> look(theta.begin(), theta.end());
       look[kShape] = std::clamp(shape, parameters[kShape].lower, parameters[kShape].upper);
       look[kStiffness] =
           std::min(look[kStiffness] + std::log(factor), parameters[kStiffness].upper);
-      const double cost = solver.CostAt(look);
-      if (!(cost < least)) continue;
-      least = cost;
-      best = look;
+      cheapest.See(std::move(look));
     }
   }
-  return best;
+  return cheapest.theta();
 }
 
 }  // namespace
@@ -120,20 +136,16 @@ void LeaveOutEnds(ScaledRecords& data, double longest) {
 std::vector<double> BestLook(std::span<const double> theta, std::size_t lag,
                              const Parameter& parameter, Solver& solver) {
   constexpr std::array kShares = {0.06, 0.15, 0.3, 0.6, 1.0};  // of the longest
-  std::vector<double> best(theta.begin(), theta.end());
-  std::vector<double> look = best;
-  double least = solver.CostAt(best);
+  CheapestLook cheapest(theta, solver);
+  std::vector<double> look(theta.begin(), theta.end());
+  cheapest.See(look);
   for (const double end : {parameter.lower, parameter.upper}) {
     for (const double share : kShares) {
-      std::ranges::copy(theta, look.begin());
       look[lag] = share * end;
-      const double cost = solver.CostAt(look);
-      if (!(cost < least)) continue;
-      least = cost;
-      best = look;
+      cheapest.See(look);
     }
   }
-  return best;
+  return cheapest.theta();
 }
 
 }  // namespace
