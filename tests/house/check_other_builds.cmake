@@ -4,13 +4,7 @@ cmake_minimum_required(VERSION 3.25)
 # examples, which need nothing else of it.
 file(REMOVE_RECURSE ${SCRATCH})
 
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "${command}\n${output}")
-  endif()
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 set(configure -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX})
 if(WHAT STREQUAL "InAnotherProject")
