@@ -107,7 +107,7 @@ class Likelihood {
   identification::LogLikelihood of_;
 };
 
-/// What the options of `mindahl fit` ask of a fit, but for its files.
+/// Returns the request that the options of `mindahl fit` make, without files.
 FitRequest RequestOf(const std::vector<std::string>& words) {
   FitRequest request;
   cli::ReadOptions(words, [&request](CLI::App& app) {

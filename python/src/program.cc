@@ -48,7 +48,7 @@ py::tuple RunCommand(const std::vector<std::string>& words) {
   return py::make_tuple(status, out.str(), err.str());
 }
 
-/// What is kept of a source of a batch, and what other processes give back: name, fault, done,
+/// Returns the state of a source of a batch, which other processes give back: name, fault, done,
 /// notes, JSON of the fit and digest.
 py::tuple StateOf(const BatchEntry& entry) {
   return py::make_tuple(entry.file, entry.fault, entry.done, entry.notes, request::FitJson(entry),

@@ -315,7 +315,7 @@ class Writer {
     for (const Finding& finding : fit_.findings) {
       const bool is_note = finding.severity == identification::Severity::kNote;
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
-      // What is alike in every stroke does not drift.
+      // A misfit that is the same in every stroke does not drift.
       const bool is_moot =
           (IsInadequate(report_) && !finding.parameters.empty()) ||
           (finding.code == "slow_residuals" && (IsInadequate(report_) || IsAlikeInStrokes(fit_)));

@@ -10,7 +10,7 @@
 #include "support/measured.h"
 #include "support/prelude.h"
 
-// What a new user reads: answers that once misled, each for a kind.
+// The answers of `fit` do not mislead: each test is one kind of answer that once did.
 namespace mindahl::cli::answers_test {
 namespace {
 

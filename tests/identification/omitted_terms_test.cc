@@ -10,7 +10,7 @@
 #include "identification/stages.h"
 #include "support/prelude.h"
 
-// What residuals are asked for in addition to the model, by a calculation of its own.
+// The test of adequacy finds omitted terms as a separate calculation does.
 namespace mindahl::identification::omitted_terms_test {
 namespace {
 

@@ -122,7 +122,7 @@ TEST(Plot, DrawsAConstantAndAPointAlone) {
 }
 
 TEST(Plot, PlacesPointsWhereTheirTicsSay) {
-  // Of tics at 0 and 10 the pixel of 5 is the middle: from the drawing alone.
+  // The point at 5 lies midway between the tics at 0 and 10, by the pixels of the drawing.
   const std::string svg = Svg(OnePanel({"", {0, 5, 10}, {-2, 5, 9}, PlotStyle::kPoints}));
   const std::string dots = PathOf(svg, "dots");
   std::vector<double> places;

@@ -4,7 +4,7 @@
 
 #include "reading.h"
 
-// What reading in pieces adds to reading whole, which the other tests compare with each other.
+// A stream reads a record in pieces; that it gives what reading whole gives is tested elsewhere.
 namespace mindahl::io::record_stream_test {
 namespace {
 

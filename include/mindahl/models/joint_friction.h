@@ -73,7 +73,7 @@ class JointState {
   /// Returns to z = 0 at the displacement of the start.
   void Reset() { state_.Reset(); }
 
-  /// As of ContactState.
+  /// Returns the memory of the contact, as ContactState::Memory() does.
   [[nodiscard]] std::vector<double> Memory() const { return state_.Memory(); }
   void Remember(std::span<const double> memory) { state_.Remember(memory); }
 
