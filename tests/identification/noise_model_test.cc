@@ -171,40 +171,6 @@ Tally TallyOf(const std::vector<double>& coefficients, int loops) {
   return {std::sqrt(tally.stated), std::sqrt(tally.scatter)};
 }
 
-TEST(NoiseModel, AutocorrelationThatColumnsTookUpIsGivenBack) {
-  // Fifteen slow cosines take up most of what is slow in 600 samples of a first order of 0.9, whose
-  // first correlation is known to √((1 − ρ²)/600) = 0.018 each.
-  constexpr double kRho = 0.9;
-  constexpr std::size_t kRows = 600;
-  constexpr Eigen::Index kCosines = 15;
-  constexpr int kSeries = 20;
-  Eigen::MatrixXd cosines(kRows, kCosines);
-  for (Eigen::Index j = 0; j < kCosines; ++j) {
-    for (Eigen::Index i = 0; i < cosines.rows(); ++i) {
-      const double phase = std::numbers::pi * (static_cast<double>(i) + 0.5) / kRows;
-      cosines(i, j) = std::cos(static_cast<double>(j) * phase);
-    }
-    cosines.col(j).normalize();  // cosines of whole half turns are orthogonal
-  }
-  Generator generator(6);
-  double left = 0.0;
-  double restored = 0.0;
-  for (int k = 0; k < kSeries; ++k) {
-    std::vector<double> series = Autoregressive({kRho}, kRows, generator);
-    Eigen::Map<Eigen::VectorXd> values(series.data(), cosines.rows());
-    const Eigen::VectorXd parts = cosines.transpose() * values;
-    values -= cosines * parts;
-    const std::vector<unsigned char> counts(kRows, 1);
-    const std::array all = {std::span<const double>(series)};
-    const std::array masks = {std::span<const unsigned char>(counts)};
-    left += EstimateAutocorrelation(all, masks).correlations[1] / kSeries;
-    restored += EstimateAutocorrelationBeside(all, masks, cosines).correlations[1] / kSeries;
-  }
-  constexpr double kError = 0.018 / 4.47;  // of the mean of twenty
-  EXPECT_LT(left, kRho - 8 * kError) << "which says nothing if the cosines took up nothing";
-  EXPECT_LT(std::abs(restored - kRho), 0.5 * std::abs(left - kRho));
-}
-
 TEST(NoiseModel, StandardErrorsAreTheScatterOfLoopsWithCorrelatedNoise) {
   constexpr int kLoops = 100;
   // A scatter over 100 loops is itself known to 1/√200 = 7 %.

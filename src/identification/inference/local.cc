@@ -90,43 +90,21 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   return at;
 }
 
-namespace {
-
-/// Residuals, and which of them count, one series a record.
-struct RecordSeries {
-  std::pmr::vector<std::span<const double>> residuals;
-  std::pmr::vector<std::span<const unsigned char>> counts;
-};
-
-RecordSeries SeriesOf(const ScaledRecords& data, std::span<const double> residual,
-                      std::span<const unsigned char> tells, std::pmr::memory_resource* memory) {
-  RecordSeries series{decltype(RecordSeries::residuals)(memory),
-                      decltype(RecordSeries::counts)(memory)};
-  series.residuals.reserve(data.records.size());
-  series.counts.reserve(data.records.size());
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.residuals.push_back(residual.subspan(begin, record.size()));
-    series.counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
-                                          : tells.subspan(begin, record.size()));
-    begin += record.size();
-  }
-  return series;
-}
-
-}  // namespace
-
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
                                   std::span<const unsigned char> tells,
                                   std::pmr::memory_resource* memory) {
-  const auto [residuals, counts] = SeriesOf(data, residual, tells, memory);
+  std::pmr::vector<std::span<const double>> residuals(memory);
+  std::pmr::vector<std::span<const unsigned char>> counts(memory);
+  residuals.reserve(data.records.size());
+  counts.reserve(data.records.size());
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    residuals.push_back(residual.subspan(begin, record.size()));
+    counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
+                                   : tells.subspan(begin, record.size()));
+    begin += record.size();
+  }
   return EstimateAutocorrelation(residuals, counts);
-}
-
-Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
-                                      const Eigen::MatrixXd& columns) {
-  const auto [residuals, counts] = SeriesOf(data, residual, {}, std::pmr::get_default_resource());
-  return EstimateAutocorrelationBeside(residuals, counts, columns);
 }
 
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,

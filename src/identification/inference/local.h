@@ -55,10 +55,6 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// Returns the autocorrelation of noise of which the residuals are what orthonormal columns leave.
-Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
-                                      const Eigen::MatrixXd& columns);
-
 /// Returns the effective number of samples of residuals, weighted or not, one record after the
 /// other: those that count, over the variance inflation from autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,

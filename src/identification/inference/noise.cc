@@ -109,71 +109,12 @@ Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) 
   return best;
 }
 
-/// Computes by how much fitted columns reduce the sums of products of residuals at each lag, for
-/// noise of a process and a variance.
-Autocovariances TakenUp(const Autocorrelation& process, double variance,
-                        std::span<const Series> residuals, const Eigen::MatrixXd& columns,
-                        std::size_t highest) {
-  Eigen::MatrixXd correlated(columns.rows(), columns.cols());
-  Eigen::Index begin = 0;
-  for (const Series series : residuals) {
-    const auto size = static_cast<Eigen::Index>(series.size());
-    correlated.middleRows(begin, size) = process.Apply(columns.middleRows(begin, size));
-    begin += size;
-  }
-  const Eigen::MatrixXd mixed = TransposedProduct(columns, correlated);
-  const Eigen::MatrixXd other = correlated - Product(columns, mixed);
-  Autocovariances taken{};
-  const auto samples = static_cast<double>(columns.rows());
-  for (std::size_t lag = 0; lag <= highest; ++lag) {
-    begin = 0;
-    for (const Series series : residuals) {
-      const auto size = static_cast<Eigen::Index>(series.size());
-      const Eigen::Index left = size - std::min(size, static_cast<Eigen::Index>(lag));
-      const Eigen::Index later = begin + size - left;
-      taken[lag] +=
-          columns.middleRows(begin, left).cwiseProduct(correlated.middleRows(later, left)).sum() +
-          other.middleRows(begin, left).cwiseProduct(columns.middleRows(later, left)).sum();
-      begin += size;
-    }
-    taken[lag] *= variance / samples;
-  }
-  return taken;
-}
-
 }  // namespace
 
 Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
                                         std::span<const Mask> counts) {
   const std::size_t count = CountOf(counts);
   return ProcessOf(EstimateAutocovariances(residuals, counts, HighestOrderOf(count)), count);
-}
-
-Autocorrelation EstimateAutocorrelationBeside(std::span<const Series> residuals,
-                                              std::span<const Mask> counts,
-                                              const Eigen::MatrixXd& columns) {
-  constexpr int kRounds = 15;
-  constexpr double kSettled = 2e-3;  // of the variance
-  // What is left of an autocovariance says nothing where less than that is left.
-  constexpr double kMostTaken = 0.9;
-  const std::size_t count = CountOf(counts);
-  const std::size_t highest = HighestOrderOf(count);
-  const Autocovariances measured = EstimateAutocovariances(residuals, counts, highest);
-  Autocovariances covariance = measured;
-  Autocorrelation process = ProcessOf(covariance, count);
-  for (int round = 0; round < kRounds && process.order > 0; ++round) {
-    const Autocovariances taken = TakenUp(process, covariance[0], residuals, columns, highest);
-    if (!(taken[0] < kMostTaken * covariance[0])) break;
-    double change = 0.0;
-    for (std::size_t lag = 0; lag <= highest; ++lag) {
-      const double next = measured[lag] + taken[lag];
-      change = std::max(change, std::abs(next - covariance[lag]) / covariance[0]);
-      covariance[lag] = next;
-    }
-    process = ProcessOf(covariance, count);
-    if (change < kSettled) break;
-  }
-  return process;
 }
 
 double Autocorrelation::SquaredCorrelations() const {
@@ -232,18 +173,6 @@ Eigen::MatrixXd Autocorrelation::FilterBackwards(
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
   if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
   return innovation_share * SquareOf(FilterBackwards(columns));
-}
-
-Eigen::MatrixXd Autocorrelation::Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  if (order == 0 || columns.cols() == 0) return columns;
-  Eigen::MatrixXd filtered = FilterBackwards(columns);
-  const auto depth = static_cast<Eigen::Index>(order);
-  for (Eigen::Index i = filtered.cols() - 1; i >= 0; --i) {
-    for (Eigen::Index k = 0; k < std::min(depth, filtered.cols() - 1 - i); ++k) {
-      filtered.col(i) += coefficients[static_cast<std::size_t>(k)] * filtered.col(i + 1 + k);
-    }
-  }
-  return innovation_share * filtered.leftCols(columns.rows()).rowwise().reverse().transpose();
 }
 
 double Noise::effective_samples() const {

@@ -26,9 +26,6 @@ struct Autocorrelation {
   /// independent one does (Bartlett 1946).
   [[nodiscard]] double SquaredCorrelations() const;
 
-  /// R·columns with R that matrix: filters backwards, then forwards.
-  [[nodiscard]] Eigen::MatrixXd Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
-
   /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it.
   /// @param columns  J of one record, a row a sample in order of time
   /// @returns columns², relative error below 1e-8
@@ -45,14 +42,6 @@ struct Autocorrelation {
 /// @param counts     of each sample, 0 where it is left out; of the same sizes
 Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>> residuals,
                                         std::span<const std::span<const unsigned char>> counts);
-
-/// The autocorrelation of noise of which the residuals are what orthonormal columns Q leave, which
-/// take up most of what is slow in it: the process whose covariances Γ, as the residuals would have
-/// them, (1 − QQᵀ)Γ(1 − QQᵀ) along its diagonals, are the measured ones.
-/// @param columns  Q, a row a sample of all series one after the other
-Autocorrelation EstimateAutocorrelationBeside(
-    std::span<const std::span<const double>> residuals,
-    std::span<const std::span<const unsigned char>> counts, const Eigen::MatrixXd& columns);
 
 /// The one account of the noise of a fit, in units of the data: whoever states an error, compares
 /// two fits or counts samples asks it.
