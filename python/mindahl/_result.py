@@ -160,7 +160,7 @@ class Parameter:
         only where the search ended, and repr() has no number of it.
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
-    identifiability: "identifiable", "effective" (the model is not adequate), "extrapolated",
+    identifiability: "identifiable", "effective" (the model is not adequate),
         "bounded_below" or "not_identifiable".
     """
 

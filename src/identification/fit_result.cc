@@ -37,17 +37,6 @@ double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_
 
 }  // namespace
 
-bool ParameterEstimate::IsSetBy(IntervalSource source) const {
-  return std::ranges::any_of(interval, [&](const IntervalPart& part) {
-    return part.source == source && (part.lower == lower95 || part.upper == upper95);
-  });
-}
-
-std::optional<double> ParameterEstimate::MovedByPriors() const {
-  if (!without_priors || !without_priors->standard_error) return std::nullopt;
-  return (value - without_priors->value) / *without_priors->standard_error;
-}
-
 const ParameterEstimate* FitResult::Find(std::string_view name) const {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
   return found == parameters.end() ? nullptr : &*found;

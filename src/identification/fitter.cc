@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/cycle_energy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/record_findings.h"
@@ -20,6 +19,7 @@
 #include "identification/inference/reweighting.h"
 #include "identification/inferred_fit.h"
 #include "identification/intervals.h"
+#include "identification/law_choice.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/requirements.h"
 #include "identification/problem/scaled_records.h"
@@ -105,7 +105,6 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;
     fit.load_varies = !data.records[r].load_ratio.empty();
-    fit.alone.reset();
     fit.structure = {};
     fit.fitted_force.clear();
     fit.fitted_displacement.clear();
@@ -133,27 +132,6 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
   result.law = parameters.LawAt(solution.theta);
   result.rig = parameters.RigAt(solution.theta);
   result.load_exponent = parameters.LoadExponentAt(solution.theta);
-}
-
-/// Fills what the law loses in each cycle where that changes from cycle to cycle.
-void FillLawEnergy(const Attempt& attempt, FitResult& result) {
-  const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  // In Dahl's own law z² adds as much to the upward stroke as it takes from the downward one.
-  const bool is_asymmetric = asymmetry != nullptr && asymmetry->value != 0 &&
-                             result.model->memory == models::Memory::kReturnPoint;
-  for (std::size_t r = 0; r < result.records.size(); ++r) {
-    RecordFit& fit = result.records[r];
-    fit.law_energy.clear();
-    const bool changes = is_asymmetric && fit.initial_state == InitialState::kVirgin;
-    if (!changes || !fit.facts.closed) continue;
-    const std::span<const double> displacement = attempt.prepared.records[r].displacement();
-    const double first = displacement[fit.facts.cycles.front().start] - displacement.front();
-    fit.law_energy = EnergyOfCycles(*result.model, result.LawOf(fit), result.rig,
-                                    {.asymmetry = asymmetry->value,
-                                     .amplitude = AmplitudeBehindGap(result, fit.facts.amplitude),
-                                     .first_direction = first < 0 ? -1 : 1,
-                                     .cycles = fit.facts.cycles.size()});
-  }
 }
 
 /// Assembles what a solution says by itself: values, residuals and what the records show without a
@@ -201,61 +179,8 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   if (!data.is_forced()) result.force_noise = solved.noise.force * data.force;
   result.outliers = solved.noise.outliers;
   FillParameters(problem, solution, result);
-  FillLawEnergy(attempt, result);
   FillFitted(attempt, solved, result);
   return result;
-}
-
-/// Returns options to fit one record of a load series, all shared parameters held.
-FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std::size_t r) {
-  FitOptions alone = options;
-  alone.normal_loads = {*series.records[r].normal_load};
-  alone.initial_states = {series.records[r].initial_state};
-  alone.preparation.force_sense = series.force_sense;
-  alone.preparation.held_out.clear();
-  if (r < options.preparation.held_out.size()) {
-    alone.preparation.held_out = {options.preparation.held_out[r]};
-  }
-  alone.start.clear();
-  alone.priors.clear();
-  std::erase_if(alone.terms,
-                [](const std::string& name) { return FindTerm(name)->scope == Scope::kContact; });
-  // A record's own lose their number, those of the others go.
-  const auto translate = [&](auto& values) {
-    std::remove_reference_t<decltype(values)> own;
-    for (const auto& [name, value] : values) {
-      const std::string term(TermNameOf(name));
-      if (FindTerm(term)->scope == Scope::kRecord && name == fmt::format("{}_{}", term, r + 1)) {
-        own.emplace(term, value);
-      }
-    }
-    values = std::move(own);
-  };
-  translate(alone.fixed);
-  translate(alone.bounds);
-  for (const ParameterEstimate& estimate : series.parameters) {
-    const Term* term = FindTerm(estimate.name);
-    const bool is_shared = term != nullptr && term->scope == Scope::kContact;
-    const bool is_own = estimate.name == "sigma" || estimate.name == "slip_force" ||
-                        estimate.name == "load_exponent";
-    if (is_shared && !is_own) alone.fixed[estimate.name] = estimate.value;
-  }
-  return alone;
-}
-
-/// Fits each record of a load series by itself.
-void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& options,
-                     FitResult& series) {
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    try {
-      Fitter fitter(OptionsAlone(options, series, r));
-      const FitResult& fit = fitter.Fit(records[r], Depth::kIntervals);
-      if (!fit.converged) continue;
-      series.records[r].alone = {*fit.Find("sigma"), *fit.Find("slip_force")};
-    } catch (const InvalidArgument&) {
-      continue;  // few samples, a loop stiffer than the rig: by itself no fit, as documented
-    }
-  }
 }
 
 /// Returns WithinMeasuredForce() of a fit that is not adequate, from starts of its own.
@@ -359,7 +284,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
   result = Infer(attempt, std::move(solved), std::move(result));
-  if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
+  if (depth < Depth::kFull) return;
+  result.law_choice =
+      ReportedLaw(CompareLaws(records, given, data, result), result.adequacy.verdict);
+  Append(result.findings, FindOtherLaw(result.law_choice));
 }
 
 /// True if the next fit may start at the last one's end: a single minimum, not at a bound.

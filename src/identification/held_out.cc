@@ -44,6 +44,32 @@ ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> r
   return samples;
 }
 
+std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit,
+                                                 const ScoredSamples& samples) {
+  std::vector<std::vector<double>> residuals(samples.mask.size());
+  for (std::size_t r = 0; r < residuals.size(); ++r) {
+    residuals[r].reserve(samples.mask[r].size());
+    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
+      if (samples.mask[r][i] != 0) residuals[r].push_back(fit.records[r].residual[i]);
+    }
+  }
+  return residuals;
+}
+
+double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples) {
+  double logarithms = 0.0;
+  double count = 0.0;
+  for (const std::vector<double>& series : ScoredResiduals(fit, samples)) {
+    if (series.empty()) continue;
+    double sum = 0.0;
+    for (const double residual : series) sum += residual * residual;
+    const auto size = static_cast<double>(series.size());
+    logarithms += size * std::log(sum / size) / 2;
+    count += size;
+  }
+  return std::exp(logarithms / count);
+}
+
 double SumOfSquares(double rms, const ScoredSamples& samples) {
   const double in_units = kRoundingRms * rms / samples.rounding;
   return static_cast<double>(samples.count) * in_units * in_units;
@@ -87,59 +113,31 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   return options;
 }
 
-std::vector<double> PredictParts(std::span<const RecordView> records, FitOptions options,
-                                 std::size_t free, const ScoredSamples& samples,
-                                 std::span<const Part> parts, std::size_t folds) {
-  std::vector<double> mean_square(parts.size(), 0.0);
+std::optional<double> PredictParts(std::span<const RecordView> records, FitOptions options,
+                                   std::size_t free, const ScoredSamples& samples,
+                                   std::span<const Part> parts, std::size_t folds) {
+  double squares = 0.0;
+  double predicted = 0.0;
   const FitOptions whole = options;
   for (std::size_t fold = 0; fold < folds; ++fold) {
     options.preparation.held_out = HeldOut(records, whole, parts, fold, folds);
     auto left = static_cast<double>(samples.count);
     for (std::size_t c = fold; c < parts.size(); c += folds) left -= parts[c].samples;
-    if (left < static_cast<double>(free)) return {};
+    if (left < static_cast<double>(free)) return std::nullopt;
     Fitter fitter(options);
     const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
-    if (!fit.converged) return {};
+    if (!fit.converged) return std::nullopt;
     for (std::size_t c = fold; c < parts.size(); c += folds) {
       const Part& part = parts[c];
       for (std::size_t i = part.begin; i < part.end; ++i) {
         if (samples.mask[part.record][i] == 0) continue;
         const double error = fit.records[part.record].residual[i];
-        mean_square[c] += error * error / part.samples;
+        squares += error * error;
+        ++predicted;
       }
     }
   }
-  return mean_square;
-}
-
-MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, std::size_t folds) {
-  double samples = 0.0;
-  double sum = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    samples += parts[c].samples;
-    sum += parts[c].samples * values[c];
-  }
-  MeanOverParts result{.mean = sum / samples};
-  double squares = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    const double deviation = parts[c].samples / samples * (values[c] - result.mean);
-    squares += deviation * deviation;
-  }
-  const auto count = static_cast<double>(values.size());
-  const auto of_folds = static_cast<double>(folds);
-  result.standard_error =
-      std::sqrt(squares * count / (count - 1) * (1 + of_folds / (of_folds - 1)));
-  return result;
-}
-
-bool PredictsWorse(std::span<const double> other, std::span<const double> best,
-                   std::span<const Part> cycles, std::size_t folds, double rounding) {
-  if (other.empty() || best.empty()) return false;
-  std::vector<double> difference;
-  difference.reserve(cycles.size());
-  for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
-  const MeanOverParts mean = Mean(difference, cycles, folds);
-  return mean.mean > mean.standard_error + rounding * rounding;
+  return squares / predicted;
 }
 
 }  // namespace mindahl::identification

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace mindahl::identification {
 
-/// Predictions of parts of records by fits to the rest: what models and terms are chosen by.
+/// What fits are compared by: their residuals, and predictions of parts of records by fits to the
+/// rest.
 
 /// One vector a record, one entry a sample, 1 where it counts.
 using SampleMask = std::vector<std::vector<unsigned char>>;
@@ -28,16 +30,19 @@ struct Part {
   double samples = 0.0;  // that are scored
 };
 
-struct MeanOverParts {
-  double mean = 0.0;
-  double standard_error = 0.0;
-};
-
 /// True if the fit found parameters.
 bool IsFitted(const FitResult& fit);
 
 /// Returns the samples that count in a fit.
 ScoredSamples CountedSamples(const FitResult& fit, std::span<const loop::RecordView> records);
+
+/// Returns the residuals [N] that are scored, one series a record.
+std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit,
+                                                 const ScoredSamples& samples);
+
+/// The rms [N] by which fits are compared: of records whose noise differs the mean of the
+/// logarithms over the samples, so that each counts by its own noise.
+double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples);
 
 /// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.
 double SumOfSquares(double rms, const ScoredSamples& samples);
@@ -54,23 +59,13 @@ void HoldInitialStates(const FitResult& fit, FitOptions& options);
 /// Returns options under which the fit is found again from where it is.
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 
-/// Returns the mean square error [N²] of the prediction of each part by fits to the others, dealt
-/// in turn to the folds so that slow changes of the contact are in every one; empty where a fit
+/// Returns the mean square error [N²] of the prediction of parts by fits to the others, dealt in
+/// turn to the folds so that slow changes of the contact are in every one; empty where a fit
 /// failed. Samples held out still make history.
 /// @param options  of those fits, as ContinuedFrom() makes them; what they hold out stays so
 /// @param free     parameters of those fits
-std::vector<double> PredictParts(std::span<const loop::RecordView> records, FitOptions options,
-                                 std::size_t free, const ScoredSamples& samples,
-                                 std::span<const Part> parts, std::size_t folds);
-
-/// Mean over samples, with its error from the scatter between parts. The folds' fits share most of
-/// their samples, so that their predictions err together: Nadeau & Bengio (2003) add to the
-/// variance of a mean over K folds, 1/K, the ratio of predicted to fitted samples, 1/(K − 1).
-MeanOverParts Mean(std::span<const double> values, std::span<const Part> parts, std::size_t folds);
-
-/// True if `other` predicts the parts worse than `best` by more than a standard error of the
-/// difference and what is rounding.
-bool PredictsWorse(std::span<const double> other, std::span<const double> best,
-                   std::span<const Part> cycles, std::size_t folds, double rounding);
+std::optional<double> PredictParts(std::span<const loop::RecordView> records, FitOptions options,
+                                   std::size_t free, const ScoredSamples& samples,
+                                   std::span<const Part> parts, std::size_t folds);
 
 }  // namespace mindahl::identification

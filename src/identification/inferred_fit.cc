@@ -19,7 +19,6 @@
 #include "identification/diagnosis/record_findings.h"
 #include "identification/diagnosis/residual_structure.h"
 #include "identification/gram/omitted_terms.h"
-#include "identification/gram/trials.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
@@ -118,45 +117,19 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
     return;
   }
   AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, buffers.response);
-  // A load that varies would have to be read as late.
-  if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
-    TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
-    std::vector<std::optional<loop::Backlash>> gaps;
-    gaps.reserve(result.records.size());
-    for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
-    TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
-  }
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
-  result.adequacy = JudgeAdequacy(problem, solution, {test, causes}, options, result.parameters);
-  const std::optional<Finding> slow = FindSlowResiduals(result, thresholds);
-  Append(result.findings, slow);
-  const bool is_doubtful = IsDoubtful(test, thresholds) || is_limited || slow;
+  result.adequacy = JudgeAdequacy(*problem.data, test, causes);
+  const bool is_doubtful =
+      IsDoubtful(test, thresholds) || is_limited || RemembersTooLong(result, thresholds);
   result.adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   result.adequacy = DoubtedByNoise(thresholds, result);
   result.adequacy = GradeUse(thresholds, result);
   result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
-  const std::vector<ParameterEstimate> plain = result.parameters;
   WidenByOmittedTerms(problem, solution, test, causes,
                       StudentQuantile(test.degrees_of_freedom, options.confidence),
                       result.parameters);
-  result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
-  result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
-}
-
-/// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
-/// the displacement's, residuals are autocorrelated as its errors are, and their draws know that.
-std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const Noise& noise,
-                                               const Thresholds& thresholds) {
-  std::vector<unsigned char> tells;
-  if (noise.force_share.empty()) return tells;
-  for (const ScaledRecord& record : data.records) {
-    for (const unsigned char counts : record.counts) {
-      const double share = noise.force_share[tells.size()];
-      tells.push_back(share * share >= thresholds.force_noise_share ? counts : 0);
-    }
-  }
-  return tells;
+  result.parameters = CoverDiscrepancy(fitted, thresholds, result);
 }
 
 /// Estimates the noise and the statistics of the residuals.
@@ -169,9 +142,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
   const bool only_rounding = rms < kOnlyRounding;
   if (!only_rounding) {
-    const std::vector<unsigned char> tells =
-        SamplesOfForceNoise(*problem.data, noise, options.thresholds);
-    noise.autocorrelation = AutocorrelationOf(*problem.data, residual, tells);
+    noise.autocorrelation = AutocorrelationOf(*problem.data, residual);
   }
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
   noise.repeating = only_rounding ? 1.0 : repeating;
@@ -190,56 +161,35 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
   Append(result.findings, FindUndetermined(problem, estimates.local()));
 }
 
-/// Replaces intervals of Tc and σ by those of the likelihood where the parabola may fail.
-void WidenByProfiles(const FittedProblem& fitted, const FitOptions& options, SearchBuffers& buffers,
-                     FitResult& result) {
-  const double peak_force = result.PeakForce();
-  const double quantile = fitted.estimates.quantile();
-  if (NeedsSlipForceProfile(fitted, peak_force / result.law.slip_force, options, buffers)) {
-    SlipForceProfile profile = ProfileSlipForce(fitted, options, buffers);
-    const double carried = CarriedForce(fitted.problem, result, peak_force);
-    result.parameters =
-        WidenByProfile(fitted.problem, profile, quantile, carried, std::move(result.parameters));
-    Append(result.findings, FindOpenSlipForce(result, profile));
-    result.slip_force_profile = std::move(profile.likelihood);
+/// Replaces the intervals by those of the likelihood where the parabola may fail.
+void UseProfiles(const FittedProblem& fitted, const FitOptions& options, SearchBuffers& buffers,
+                 FitResult& result) {
+  const bool slips =
+      result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
+  const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
+  std::vector<std::size_t> profiled;
+  if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, buffers) ||
+      NeedsProfile(fitted, kRig, options, buffers)) {
+    profiled = {kStiffness, kShape, kSlipForce, kRig};
+  } else if (IsBadlyKnown(fitted, kStiffness, options.thresholds)) {
+    profiled = {kStiffness};
   }
-  result.parameters = ProfileBesideRig(fitted, options, buffers, std::move(result.parameters));
-  if (const auto ranges = ProfileSmallShape(fitted, options, buffers)) {
-    result.parameters = IncludeSmallShape(fitted.problem, *ranges, std::move(result.parameters));
-  }
-  if (StiffnessIsOpenAbove(fitted, options, buffers)) {
-    OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
-    result.findings.push_back({.code = "sigma_bounded_below", .parameters = {"sigma"}});
-  }
+  result.parameters =
+      WithProfiles(fitted, profiled, options, buffers, std::move(result.parameters));
 }
 
 /// Tests α = 1/3, also with a rig.
 void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
   const FitOptions& options = attempt.options;
-  const Problem& problem = fitted.problem;
   result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
   if (!result.mindlin_test) return;
-  if (const auto rig =
-          TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers)) {
-    result.mindlin_test->rig_stiffness = rig->rig_stiffness;
-    result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
-  }
-  const bool is_forced = problem.data->is_forced();
-  if ((problem.data->load_varies || is_forced) &&
-      WantsRig(problem, fitted.solution, *result.mindlin_test, options.thresholds)) {
-    result.findings.push_back({.code = "rig_not_tried",
-                               .parameters = {"sigma", "alpha"},
-                               .numbers = {{"alpha", result.law.shape_exponent}},
-                               .kind = is_forced ? "imposed_force" : "varying_load"});
-  }
-}
-
-/// Compares Masing's law with Dahl's own.
-void CompareModels(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
-  const std::optional<LawChoice> choice =
-      CompareLaws(fitted.problem, fitted.solution, result, attempt.options, attempt.buffers);
-  result.law_choice = ReportedLaw(choice, result.adequacy.verdict);
-  Append(result.findings, FindOtherLaw(result.law_choice));
+  const auto rig = TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers);
+  if (!rig) return;
+  result.mindlin_test->rig_stiffness = rig->rig_stiffness;
+  result.parameters = IncludeRig(*rig, options.thresholds, std::move(result.parameters));
+  result.findings.push_back(
+      {.code = "shape_or_rig",
+       .numbers = {{"rig_stiffness", rig->rig_stiffness}, {"alpha", result.law.shape_exponent}}});
 }
 
 }  // namespace
@@ -261,7 +211,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
                             std::move(solved.at));
   const FittedProblem fitted{problem, solution, noise, estimates};
   FillErrors(problem, estimates, result);
-  WidenByProfiles(fitted, options, buffers, result);
+  UseProfiles(fitted, options, buffers, result);
   if (is_tested) TestShape(attempt, fitted, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
@@ -270,28 +220,21 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   result.parameters[kStiffness] = CoverSlipFactor(
       problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
-  result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
+  result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
-  Append(result.findings, FindWideIntervals(result, thresholds));
   if (is_judged) {
     if (!options.initial_state && options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
-    Append(result.findings, FindFewPlaces(problem, thresholds));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
-  Append(result.findings, FindExtrapolated(result, thresholds));
-  if (is_judged) {
-    Append(result.findings, FindMisfit(result, thresholds));
-    Append(result.findings, FindEnergyContradiction(result, thresholds));
-  }
   Append(result.findings, FindContradictedPrior(result, thresholds));
-  result.findings = WithoutNeedless(result.parameters, std::move(result.findings));
+  Append(result.findings, FindOpenSlipForce(result));
+  Append(result.findings, FindWideIntervals(result, thresholds));
   if (is_judged && IsInadequate(result, thresholds)) {
-    result = WithoutInadequate(std::move(result), thresholds);
+    result = WithoutInadequate(std::move(result));
   }
-  if (is_tested) CompareModels(attempt, fitted, result);
   Judge(result.parameters, result.findings);
   return result;
 }

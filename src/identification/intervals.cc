@@ -16,35 +16,30 @@ void RequireFiniteEnd(std::optional<double>& end) {
 
 }  // namespace
 
-void SetInterval(ParameterEstimate& estimate, IntervalPart part) {
-  RequireFiniteEnd(part.lower);
-  RequireFiniteEnd(part.upper);
-  estimate.lower95 = part.lower;
-  estimate.upper95 = part.upper;
-  estimate.interval.assign(1, part);
+void SetInterval(ParameterEstimate& estimate, Ends ends) {
+  RequireFiniteEnd(ends.lower);
+  RequireFiniteEnd(ends.upper);
+  estimate.lower95 = ends.lower;
+  estimate.upper95 = ends.upper;
 }
 
-void Include(ParameterEstimate& estimate, IntervalPart part) {
-  if (estimate.interval.empty()) return;
-  RequireFiniteEnd(part.lower);
-  RequireFiniteEnd(part.upper);
-  estimate.interval.push_back(part);
-  const bool is_closed_below = estimate.lower95 && part.lower;
-  const bool is_closed_above = estimate.upper95 && part.upper;
+void Include(ParameterEstimate& estimate, Ends ends) {
+  RequireFiniteEnd(ends.lower);
+  RequireFiniteEnd(ends.upper);
+  const bool is_closed_below = estimate.lower95 && ends.lower;
+  const bool is_closed_above = estimate.upper95 && ends.upper;
   estimate.lower95 =
-      is_closed_below ? std::optional(std::min(*estimate.lower95, *part.lower)) : std::nullopt;
+      is_closed_below ? std::optional(std::min(*estimate.lower95, *ends.lower)) : std::nullopt;
   estimate.upper95 =
-      is_closed_above ? std::optional(std::max(*estimate.upper95, *part.upper)) : std::nullopt;
+      is_closed_above ? std::optional(std::max(*estimate.upper95, *ends.upper)) : std::nullopt;
 }
 
-void RaiseLowerEnd(ParameterEstimate& estimate, IntervalSource source, double least) {
-  if (!estimate.lower95 || *estimate.lower95 >= least) return;
-  estimate.lower95 = least;
-  estimate.interval.push_back({.source = source, .lower = least, .upper = estimate.upper95});
+void RaiseLowerEnd(ParameterEstimate& estimate, double least) {
+  if (estimate.lower95 && *estimate.lower95 < least) estimate.lower95 = least;
 }
 
-void OpenAbove(ParameterEstimate& estimate, IntervalSource source) {
-  Include(estimate, {.source = source, .lower = estimate.lower95});
+void OpenAbove(ParameterEstimate& estimate) {
+  estimate.upper95.reset();
   estimate.standard_error.reset();
 }
 
@@ -52,7 +47,6 @@ void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.standard_error.reset();
   estimate.lower95.reset();
   estimate.upper95.reset();
-  estimate.interval.clear();
 }
 
 bool TurnsWithMotion(const ParameterEstimate& estimate) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mindahl/identification/fit_result.h"
@@ -27,19 +28,25 @@ using ParameterEstimates = std::vector<ParameterEstimate>;
 /// is known.
 inline constexpr double kFarthestStep = 3.0;
 
-/// Begins the interval anew with one part. An end that is not finite is open.
-void SetInterval(ParameterEstimate& estimate, IntervalPart part);
+/// Ends of an interval, or of a part of one; empty where it is open.
+struct Ends {
+  std::optional<double> lower = {};
+  std::optional<double> upper = {};
+};
+
+/// Begins the interval anew. An end that is not finite is open.
+void SetInterval(ParameterEstimate& estimate, Ends ends);
 
 /// Extends the interval by a part: an end that is open in either is open from then on. Leaves an
 /// estimate without an interval, held or undetermined, as it is.
-void Include(ParameterEstimate& estimate, IntervalPart part);
+void Include(ParameterEstimate& estimate, Ends ends);
 
 /// Raises the lower end to a value that the parameter cannot lie below, which is no more than its
 /// estimate. Leaves an end that is open, and an estimate without an interval, as it is.
-void RaiseLowerEnd(ParameterEstimate& estimate, IntervalSource source, double least);
+void RaiseLowerEnd(ParameterEstimate& estimate, double least);
 
 /// Opens the interval above: there is no standard error then.
-void OpenAbove(ParameterEstimate& estimate, IntervalSource source);
+void OpenAbove(ParameterEstimate& estimate);
 
 /// Takes back the interval and the standard error.
 void WithdrawInterval(ParameterEstimate& estimate);

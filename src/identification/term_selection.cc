@@ -208,7 +208,7 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
             std::clamp(value, std::min(*widest.facts.half_gap / widest.load_ratio, estimate->value),
                        std::max(widest.facts.peak_force / widest.load_ratio, estimate->value));
       }
-      Include(*estimate, {.source = IntervalSource::kOmittedTerms, .lower = value, .upper = value});
+      Include(*estimate, {.lower = value, .upper = value});
     }
   }
   for (Finding& finding : FindWideIntervals(fit, thresholds)) {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/model_comparison.h"
 #include "report/fields.h"
 #include "report/names.h"
 
@@ -54,9 +54,9 @@ bool IsOfLaw(std::string_view parameter) {
 
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
-  constexpr auto kSaid = std::to_array<std::string_view>(
-      {"law_undecided", "other_law_fits_better", "systematic_residual", "no_model_fits",
-       "model_inadequate", "loop_not_seen", "no_closed_cycle", "fit_failed"});
+  constexpr auto kSaid =
+      std::to_array<std::string_view>({"law_undecided", "other_law_fits_better", "model_inadequate",
+                                       "loop_not_seen", "no_closed_cycle", "fit_failed"});
   return std::ranges::find(kSaid, code) != kSaid.end();
 }
 
@@ -313,12 +313,10 @@ class Writer {
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
     for (const Finding& finding : fit_.findings) {
-      const bool is_note = finding.severity == identification::Severity::kNote;
+      const bool is_note =
+          finding.severity == identification::Severity::kNote && finding.code != "shape_or_rig";
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
-      // A misfit that is the same in every stroke does not drift.
-      const bool is_moot =
-          (IsInadequate(report_) && !finding.parameters.empty()) ||
-          (finding.code == "slow_residuals" && (IsInadequate(report_) || IsAlikeInStrokes(fit_)));
+      const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
       std::string text = Sentence(finding, fit_, report_.units);
       if (!finding.parameters.empty()) {
@@ -339,21 +337,16 @@ class Writer {
 
 /// Lists the models that were compared, the best first.
 void AddComparison(const Report& report, std::vector<Line>& lines) {
-  if (!report.selection) return;
-  std::vector<const identification::ModelScore*> scores;
-  for (const auto& score : report.selection->scores) {
-    if (score.converged) scores.push_back(&score);
-  }
-  std::ranges::sort(scores, {}, [](const auto* score) { return score->delta_aicc; });
-  for (const auto* score : scores) {
-    std::string text = fmt::format("{}{}: ΔAICc {:.4g}, rms {}", score->model->name,
-                                   score->rig ? " behind a rig" : "", score->delta_aicc,
-                                   Quantity(score->rms, report.units.response, 4));
-    if (score->held_out_rms) {
-      text +=
-          fmt::format(", held-out {}", Quantity(*score->held_out_rms, report.units.response, 4));
+  std::vector<identification::ModelScore> scores = report.compared;
+  std::erase_if(scores, [](const auto& score) { return !score.converged; });
+  std::ranges::sort(scores, {}, &identification::ModelScore::delta_aicc);
+  for (const auto& score : scores) {
+    std::string text = fmt::format("{}{}: ΔAICc {:.4g}, rms {}", score.model->name,
+                                   score.rig ? " behind a rig" : "", score.delta_aicc,
+                                   Quantity(score.rms, report.units.response, 4));
+    if (score.held_out_rms) {
+      text += fmt::format(", held-out {}", Quantity(*score.held_out_rms, report.units.response, 4));
     }
-    if (score->redundant) text += ", the same as a simpler one";
     lines.push_back({"compared", std::move(text)});
   }
 }

@@ -17,7 +17,7 @@ inline constexpr auto kNamesOf<identification::ParameterStatus> =
     std::to_array<std::string_view>({"free", "fixed", "at_lower_bound", "at_upper_bound"});
 template <>
 inline constexpr auto kNamesOf<identification::Identifiability> = std::to_array<std::string_view>(
-    {"identifiable", "effective", "extrapolated", "bounded_below", "not_identifiable"});
+    {"identifiable", "effective", "bounded_below", "not_identifiable"});
 template <>
 inline constexpr auto kNamesOf<models::InitialState> = std::to_array<std::string_view>({"virgin",
                                                                                         "steady"});

@@ -52,42 +52,27 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"slip_force_not_identifiable",
      "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
     {"asymmetry_not_identifiable", "the loop stays below slip"},
-    {"sigma_bounded_below", "a rigid contact fits as well: sample more densely after reversals"},
     {"slip_force_bounded_below",
      "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
      "plan says how far)",
      "the force keeps changing while the contact slides"},
-    {"slip_force_extrapolated",
-     "an asymptote, of which the force reaches {share%}: raise the amplitude until the force "
-     "levels "
-     "off (mindahl plan says how far)",
-     "an asymptote, of which the force reaches {share%}"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
-    {"few_places",
-     "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
-     "often"},
     {"unknown_past",
      "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
      "--initial-state virgin"},
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},
-    {"rig_not_tried", "a compliant rig, which cannot be fitted here, would look the same"},
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses
     {"law_undecided", "the other law fits as well"},
     {"other_law_fits_better.dahl", "Dahl's own law fits better: --model dahl"},
     {"other_law_fits_better", "Masing's law fits better: --model mindlin-dahl"},
-    {"systematic_residual", "the misfit is alike in every stroke"},
-    {"slow_residuals", "the misfit drifts slowly: fit parts of it, --select cycles=LO:HI"},
-    {"energy_contradiction",
-     "the cycles dissipate {measured:J} each, the fitted law {model:J}: look at the plot"},
     {"loop_not_seen",
      "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
      "columns?"},
-    {"no_model_fits", "the law does not have the shape of the record"},
     {"model_inadequate", "the law does not describe the record"},
     // about the search
     {"weights_not_settled", "the weights of the samples did not settle; try another --loss"},

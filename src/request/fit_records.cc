@@ -13,8 +13,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/law_selection.h"
-#include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
@@ -266,17 +265,12 @@ AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
   const bool chooses_terms = ChoosesTerms(request);
   if (request.model != kAutomatic) return FitLaw(request, options, records, chooses_terms);
   AskedFit asked = FitLaw(request, options, records, /*chooses_terms=*/false);
-  if (identification::MayFollowOtherLaw(asked.fit, options)) {
+  const auto& choice = asked.fit.law_choice;
+  if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
-    if (identification::IsBetterLaw(other.fit, asked.fit, options.thresholds)) {
-      asked = std::move(other);
-    } else if (asked.fit.law_choice) {
-      // Fitted in full, the other law is not the better one by as much as decides.
-      asked.fit.law_choice->decided = false;
-      asked.fit.law_choice->preferred = nullptr;
-    }
+    if (other.fit.converged) asked = std::move(other);
   }
   if (!chooses_terms) return asked;
   FitOptions of_law = options;
@@ -462,9 +456,9 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
   AskedFit asked{.options = options};
-  std::optional<identification::ModelSelection> selection;
+  std::vector<identification::ModelScore> compared;
   try {
-    if (request.compare) selection = identification::SelectModel(records, options);
+    if (request.compare) compared = identification::CompareModels(records, options);
     asked = FitAsked(request, options, records);
   } catch (const identification::TooFewSamples& error) {
     throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
@@ -481,7 +475,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
                              .notes = std::move(notes),
-                             .selection = std::move(selection),
+                             .compared = std::move(compared),
                              .terms = std::move(asked.terms),
                              .next = std::move(next)});
 }

@@ -72,11 +72,7 @@ Json FindingsTable() {
 Json CausesTable() {
   Json rows = Json::array();
   for (const identification::Departure& row : identification::Departures()) {
-    rows.push_back({{"code", row.code},
-                    {"unit", row.unit},
-                    {"unit_by_sample", row.unit_by_sample},
-                    {"meaning", row.meaning},
-                    {"option", row.group}});
+    rows.push_back({{"code", row.code}, {"meaning", row.meaning}, {"option", row.group}});
   }
   return rows;
 }

@@ -2,7 +2,7 @@
 // does not.
 
 #include "identification/stages.h"
-#include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/model_comparison.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
 

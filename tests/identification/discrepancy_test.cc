@@ -74,10 +74,7 @@ TEST(Discrepancy, ReachesToBothSidesOfASlipForceThatIsOffTheGap) {
     const FitResult fit = FitNoisy(record);
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     ASSERT_TRUE(slip_force.includes_discrepancy) << bulge;
-    // The mean of six parts, up and down by thirds of the stroke, in each of which so much is
-    // missed.
-    const double margin = fit.adequacy.misfit / std::sqrt(6.0);
-    ASSERT_GT((slip_force.value - *fit.records[0].facts.half_gap) / bulge, margin / 0.3) << bulge;
+    const double margin = fit.adequacy.misfit;
     const double beyond =
         bulge > 0 ? *slip_force.upper95 - slip_force.value : slip_force.value - *slip_force.lower95;
     EXPECT_GE(beyond, 0.99 * margin) << bulge;
@@ -109,54 +106,6 @@ TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
                         std::sqrt(1 + 1 / cycles);
   EXPECT_LE(*slip_force.lower95, *facts.half_gap - margin);
 }
-
-/// A record whose force grows towards the ends of the stroke, fitted as of a virgin contact.
-struct Bulging {
-  Bulging() {
-    Record record = Loop();
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      record.force[i] *= 1 + 0.2 * std::pow(record.displacement[i] / kReach, 9);
-    }
-    FitOptions options;
-    options.initial_state = InitialState::kVirgin;
-    fit = FitOne(record, options);
-    stages.emplace(record, options);
-    theta = stages->ThetaOf(fit);
-  }
-
-  /// −Σcr/Σc² of thirds of the strokes between turning points, up and down, c the derivative of
-  /// the force by ln Tc; but for those with less than a quarter of the largest Σc².
-  std::vector<double> Steps() {
-    const auto& free = stages->problem.parameters.free();
-    const auto place = std::ranges::find(free, kSlipForce) - free.begin();
-    const Eigen::VectorXd column = stages->DifferencesAt(theta).col(place);
-    const Eigen::VectorXd residual = stages->ResidualsAt(theta);
-    const std::vector<double>& x = stages->records[0].displacement;
-    const std::vector<std::size_t>& turns = fit.records[0].reversals;
-    std::array<double, 6> products{};
-    std::array<double, 6> squares{};
-    for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
-      const double width = x[turns[k + 1]] - x[turns[k]];
-      for (std::size_t i = turns[k]; i < turns[k + 1]; ++i) {
-        const auto third = static_cast<std::size_t>(3 * (x[i] - x[turns[k]]) / width);
-        const std::size_t part = std::min<std::size_t>(third, 2) + (width > 0 ? 0 : 3);
-        products[part] -= column[static_cast<long>(i)] * residual[static_cast<long>(i)];
-        squares[part] += column[static_cast<long>(i)] * column[static_cast<long>(i)];
-      }
-    }
-    std::vector<double> steps;
-    for (std::size_t part = 0; part < 6; ++part) {
-      if (squares[part] > 0.25 * std::ranges::max(squares)) {
-        steps.push_back(products[part] / squares[part]);
-      }
-    }
-    return steps;
-  }
-
-  FitResult fit;
-  std::optional<Stages> stages;
-  std::vector<double> theta;
-};
 
 TEST(Discrepancy, LoopThatDoesNotSlideKeepsItsVerdictOnTheSlipForce) {
   const FitResult fit = FitNoisy(OfPosition(0.4, /*reach=*/0.3e-6));  // a fifth of gross slip

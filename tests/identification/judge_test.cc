@@ -23,24 +23,20 @@ struct Verdict {
 
 /// What each finding says of the parameters that it names, as docs/contract.md has it.
 constexpr auto kVerdicts = std::to_array<Verdict>({
-    {"no_model_fits", Identifiability::kNotIdentifiable},
-    {"energy_contradiction", Identifiability::kNotIdentifiable},
     {"undetermined_parameter", Identifiability::kNotIdentifiable},
     {"undetermined_combination", Identifiability::kNotIdentifiable},
     {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
     {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
     {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-    {"shape_or_rig", Identifiability::kNotIdentifiable},
     {"slip_force_bounded_below", Identifiability::kBoundedBelow},
-    {"sigma_bounded_below", Identifiability::kBoundedBelow},
-    {"systematic_residual", Identifiability::kIdentifiable},
+    {"loop_not_seen", Identifiability::kNotIdentifiable},
+    {"path_too_long", Identifiability::kIdentifiable},
 });
 
 TEST(Judge, VerdictsAreInTheOrderOfPrecedence) {
   using enum Identifiability;
   EXPECT_GT(kNotIdentifiable, kBoundedBelow);
-  EXPECT_GT(kBoundedBelow, kExtrapolated);
-  EXPECT_GT(kExtrapolated, kEffective);
+  EXPECT_GT(kBoundedBelow, kEffective);
   EXPECT_GT(kEffective, kIdentifiable);
 }
 
@@ -96,9 +92,9 @@ TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
   ParameterEstimate open = Known("slip_force");
   open.upper95.reset();
   EXPECT_EQ(JudgedWith(open, {}), Identifiability::kBoundedBelow);
-  EXPECT_EQ(JudgedWith(open, {{.code = "no_model_fits", .parameters = {"slip_force"}}}),
+  EXPECT_EQ(JudgedWith(open, {{.code = "loop_not_seen", .parameters = {"slip_force"}}}),
             Identifiability::kNotIdentifiable);
-  EXPECT_EQ(JudgedWith(open, {{.code = "systematic_residual", .parameters = {"slip_force"}}}),
+  EXPECT_EQ(JudgedWith(open, {{.code = "path_too_long", .parameters = {"slip_force"}}}),
             Identifiability::kBoundedBelow)
       << "a finding makes nothing better";
   open.lower95.reset();
@@ -126,64 +122,6 @@ TEST(Judge, EarlierVerdictIsForgotten) {
   ParameterEstimate estimate = Known("alpha");
   estimate.identifiability = Identifiability::kNotIdentifiable;
   EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kIdentifiable);
-}
-
-std::vector<std::string> KeptOf(std::span<const ParameterEstimate> estimates,
-                                std::vector<Finding> findings) {
-  std::vector<std::string> kept;
-  for (const Finding& finding : WithoutNeedless(estimates, std::move(findings)))
-    kept.emplace_back(finding.code);
-  return kept;
-}
-
-TEST(WithoutNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
-  const std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
-  const Finding wide{.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "wide"};
-  const Finding rig{.code = "shape_or_rig", .parameters = {"sigma", "alpha"}};
-  const Finding law{.code = "law_undecided", .parameters = {"alpha"}};
-  const Finding of_other{.code = "few_places", .parameters = {"sigma"}};
-  EXPECT_THAT(KeptOf(estimates, {wide}), ElementsAre("alpha_not_identifiable"));
-  EXPECT_THAT(KeptOf(estimates, {wide, rig}), ElementsAre("shape_or_rig"));
-  EXPECT_THAT(KeptOf(estimates, {rig, wide}), ElementsAre("shape_or_rig")) << "in either order";
-  EXPECT_THAT(KeptOf(estimates, {wide, of_other}),
-              ElementsAre("alpha_not_identifiable", "few_places"));
-  EXPECT_THAT(KeptOf(estimates, {law, wide}),
-              ElementsAre("law_undecided", "alpha_not_identifiable"))
-      << "which calls α identifiable";
-}
-
-TEST(WithoutNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
-  std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
-  const Finding energy{.code = "energy_contradiction",
-                       .parameters = {"sigma", "alpha", "slip_force"}};
-  const Finding shape{.code = "no_model_fits", .parameters = {"sigma", "alpha"}};
-  EXPECT_THAT(KeptOf(estimates, {shape, energy}),
-              ElementsAre("no_model_fits", "energy_contradiction"))
-      << "the slip force is still claimed";
-  estimates[2].upper95.reset();
-  EXPECT_THAT(KeptOf(estimates, {shape, energy}), ElementsAre("no_model_fits"));
-}
-
-TEST(WithoutNeedless, KeepsAnOpenSlipForceUnlessItsIntervalIncludesTheDiscrepancy) {
-  std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
-  const Finding open{.code = "slip_force_bounded_below", .parameters = {"slip_force"}};
-  EXPECT_THAT(KeptOf(estimates, {open}), ElementsAre("slip_force_bounded_below"));
-  estimates[2].includes_discrepancy = true;
-  EXPECT_THAT(KeptOf(estimates, {open}), ElementsAre());
-}
-
-TEST(WithoutInadequate, IsNeverReportedWithZeroMisfit) {
-  // No omitted term explains it, and what comes back in every stroke is 0.8 of the variance.
-  FitResult result;
-  result.rms = 3.0;
-  result.records.resize(1);
-  result.records[0].structure.repeatable_share = 0.8;
-  result.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
-  result = WithoutInadequate(std::move(result), {});
-  EXPECT_EQ(result.adequacy.verdict, AdequacyVerdict::kInadequate);
-  EXPECT_NEAR(result.adequacy.misfit, 3.0 * std::sqrt(0.8), 1e-12);
-  EXPECT_NEAR(result.adequacy.misfit_over_noise, std::sqrt(0.8 / 0.2), 1e-12);
-  EXPECT_LE(result.adequacy.p_value, Thresholds().repeat_chance);
 }
 
 }  // namespace

@@ -194,9 +194,6 @@ TEST(Lag, OfOneToThreeSamplesOf200IsTheFirstCauseOfADoubt) {
         const Cause& cause = fit.adequacy.causes.front();
         EXPECT_EQ(cause.code, "channel_lag");
         EXPECT_EQ(cause.term, "lag");
-        EXPECT_EQ(cause.unit, "s");
-        // 0.1 samples are some four standard errors.
-        EXPECT_NEAR(cause.size / kStep, samples, 0.25);
       }
     }
   }

@@ -97,7 +97,8 @@ TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
     ASSERT_TRUE(estimate.prior && estimate.without_priors) << name;
     EXPECT_EQ(estimate.prior->value, prior.value) << name;
     EXPECT_DOUBLE_EQ(estimate.without_priors->value, alone.value) << name;
-    EXPECT_NEAR(*estimate.MovedByPriors(), 1.0, kThirdOrder) << name;
+    const double moved = estimate.value - estimate.without_priors->value;
+    EXPECT_NEAR(moved / *estimate.without_priors->standard_error, 1.0, kThirdOrder) << name;
     EXPECT_EQ(fit.FindFinding("prior_contradicted"), nullptr) << name;
   }
 }

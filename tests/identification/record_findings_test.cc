@@ -4,7 +4,6 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
 
 // What is found in records, from facts made by hand, and what a whole fit makes of them.
@@ -67,71 +66,6 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   EXPECT_EQ(FindInRecords(records, {}).at(0).Number("record"), 2);
 }
 
-// --- energies
-
-/// A fit whose law loses `share` of what was measured.
-FitResult FitThatLoses(double share) {
-  FitResult fit;
-  fit.model = &testing::Model("mindlin-dahl");
-  fit.law = kLaw;
-  for (const char* name : {"sigma", "alpha", "slip_force"}) {
-    ParameterEstimate& estimate = fit.parameters.emplace_back();
-    estimate.name = name;
-    estimate.lower95 = 1.9;
-    estimate.upper95 = 2.1;
-    estimate.status = ParameterStatus::kFree;
-  }
-  fit.residuals.effective_samples = 100;
-  RecordFit& record = fit.records.emplace_back(Flawless());
-  record.counts.assign(20, 1);
-  record.measures.amplitude = record.facts.amplitude = kReach;
-  const double energy = SteadyLoopEnergy(*fit.model, kLaw, kReach) / share;
-  record.facts.cycles.resize(2);
-  record.facts.cycles[0].energy = energy;
-  record.facts.cycles[0].steady = true;
-  record.facts.cycles[1].start = 10;
-  record.facts.cycles[1].energy = 0.1 * energy;
-  return fit;
-}
-
-TEST(FindEnergyContradiction, WithholdsTheLawWhereItLosesMoreOrLessThanWasMeasured) {
-  for (const double share : {0.02, 0.7, 1.5, 45.0}) {
-    const auto finding = FindEnergyContradiction(FitThatLoses(share), {});
-    ASSERT_TRUE(finding) << share;
-    EXPECT_THAT(finding->parameters, ElementsAre("sigma", "alpha", "slip_force"));
-    EXPECT_DOUBLE_EQ(*finding->Number("model") / *finding->Number("measured"), share);
-    EXPECT_EQ(finding->Number("amplitude"), kReach);
-  }
-  for (const double share : {0.85, 1.0, 1.15}) {
-    EXPECT_FALSE(FindEnergyContradiction(FitThatLoses(share), {})) << share;
-  }
-}
-
-TEST(FindEnergyContradiction, TakesTheTravelOfTheRigOff) {
-  FitResult fit = FitThatLoses(1.0);
-  fit.rig.stiffness = fit.law.tangential_stiffness / 4;
-  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
-  fit.records[0].facts.amplitude =
-      kReach + SteadyPeakForce(*fit.model, fit.law, kReach) / fit.rig.stiffness;
-  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
-}
-
-TEST(FindEnergyContradiction, IsSilentWhereAnotherForceTakesPart) {
-  FitResult viscous = FitThatLoses(0.5);
-  viscous.parameters.emplace_back().name = "viscous";
-  viscous.parameters.back().value = 2.0;
-  EXPECT_FALSE(FindEnergyContradiction(viscous, {}));
-}
-
-TEST(FindEnergyContradiction, IsSilentWhereNoiseMakesTheDifference) {
-  FitResult fit = FitThatLoses(0.5);
-  // A force of half the energy over the way, a tenth of it with a hundred samples.
-  fit.force_noise = SteadyLoopEnergy(*fit.model, kLaw, kReach) / (4 * kReach);
-  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
-  fit.force_noise *= 4;
-  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
-}
-
 TEST(IsWorthSaying, NeedsASizeAndACertainty) {
   EXPECT_TRUE(IsWorthSaying({.slope = -0.05, .p_value = 1e-4}, 1.0));
   EXPECT_FALSE(IsWorthSaying({.slope = -0.05, .p_value = 0.2}, 1.0));
@@ -156,23 +90,6 @@ TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {
   EXPECT_EQ(intervals.records[0].gate.count, intervals.records[0].reversals.size());
   EXPECT_THAT(intervals.findings, IsEmpty());
   EXPECT_FALSE(fitter.Fit(views, Depth::kEstimate).records[0].facts.closed);
-}
-
-TEST(FitOfARecord, WhoseReversalsAreNoiseKnowsNothingOfTheLaw) {
-  Record record = Loop();
-  testing::Generator generator(5);
-  for (double& x : record.displacement) x += 0.01 * kReach * testing::Normal(generator);
-  FitOptions options;
-  options.preparation.reversal_gate = 0.0;
-  options.preparation.displacement_noise = 0.0;
-  const std::vector<RecordView> views = {record};
-  Fitter fitter(options);
-  const FitResult& fit = fitter.Fit(views, Depth::kIntervals);
-  ASSERT_GT(fit.records[0].reversals.size(), 50U) << "of six";
-  EXPECT_NE(fit.FindFinding("energy_contradiction"), nullptr);
-  for (const char* name : {"sigma", "alpha", "slip_force"}) {
-    EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
-  }
 }
 
 TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {

@@ -167,7 +167,6 @@ inline identification::FitResult MadeFit(double peak_force) {
     estimate.value = 2.0;
     estimate.lower95 = 1.9;
     estimate.upper95 = 2.1;
-    estimate.interval = {{identification::IntervalSource::kParabola, 1.9, 2.1}};
     estimate.status = identification::ParameterStatus::kFree;
   }
   identification::RecordFit& record = result.records.emplace_back();

@@ -96,22 +96,6 @@ TEST(TermSelection, LargeViscousForceIsNotLeftToASlipForceOfTheSpeedAndADrag) {
   EXPECT_FALSE(TermOf(selection, "slip_speed").added);
 }
 
-TEST(TermSelection, CauseOfLessThanHalfOfWhatTermsLeaveIsNotNamed) {
-  Record record = Clean();
-  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const double place = record.displacement[i] / kReach;
-    record.force[i] *= 1 + 0.4 * (std::sqrt(std::abs(SpeedAt(i)) / largest) - 1);
-    record.force[i] += kLaw.slip_force * (0.1 * place * place + 0.1 * std::sin(7 * place));
-  }
-  const TermSelection selection = Select(Noisy(record, 13));
-  ASSERT_THAT(selection.added, ::testing::Not(IsEmpty()));
-  ASSERT_NE(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  for (const Cause& cause : selection.fit.adequacy.causes) {
-    EXPECT_TRUE(cause.explains >= 0.5 || cause.is_measured) << cause.code;
-  }
-}
-
 TEST(TermSelection, ForceOfPositionIsAddedAlone) {
   const double slope = 0.1 * kLaw.slip_force / kReach;
   Record record = Clean();

@@ -117,16 +117,6 @@ TEST(VaryingLoad, IsReportedIfTheLawDoesNotModelIt) {
   }
 }
 
-TEST(VaryingLoad, DoesNotTellASmallerAlphaFromARig) {
-  Generator generator(7);
-  const Motion motion{.swing = 0.1, .shape_exponent = 0.15};
-  const FitResult fit = testing::FitOne(
-      testing::WithForceNoise(RecordOf(motion), 0.005 * kFriction * kLoad, generator));
-  ASSERT_NE(fit.FindFinding("rig_not_tried"), nullptr);
-  EXPECT_EQ(fit.Find("alpha")->identifiability, Identifiability::kNotIdentifiable);
-  EXPECT_EQ(fit.Find("slip_force")->identifiability, Identifiability::kIdentifiable);
-}
-
 TEST(VaryingLoad, KeepsAlphaBelowOneWithNote) {
   // A loop of Dahl's exponential: the law of a varying load comes no nearer than its bound.
   const testing::History displacement = testing::Cycling(testing::Wave::kSine, 3e-6, 3.0, kSamples);

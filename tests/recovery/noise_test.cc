@@ -201,8 +201,6 @@ TEST(Noise, CoarseGrossSlipLeavesTheStiffnessOpenAbove) {
   // A limit at most: between two samples σ and α may be what they like together.
   EXPECT_GE(sigma.identifiability, Identifiability::kBoundedBelow);
   EXPECT_FALSE(sigma.upper95);
-  EXPECT_TRUE(IsWarnedOf(fit, "sigma_bounded_below") ||
-              IsWarnedOf(fit, "undetermined_combination"));
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   EXPECT_EQ(slip_force.identifiability, Identifiability::kIdentifiable);
   // The mean of over 100 plateau samples of 2 % noise; 6 standard errors.

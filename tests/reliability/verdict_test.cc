@@ -41,7 +41,7 @@ TEST(Verdict, IsSilentIfTruthIsFarOffWithoutWarning) {
 
 TEST(Verdict, IsWarnedIfTruthIsFarOffWithWarning) {
   FitResult fit = FitOf(105.0, 1.0);
-  fit.findings.push_back({.code = "systematic_residual"});
+  fit.findings.push_back({.code = "path_too_long"});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kWarned);
 }
 

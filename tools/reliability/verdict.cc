@@ -24,16 +24,13 @@ using identification::Severity;
 namespace {
 
 /// Findings that only say what a record leaves open, which a clean one may.
-constexpr std::array<std::string_view, 10> kLeftOpen = {"slip_force_bounded_below",
-                                                        "sigma_bounded_below",
-                                                        "alpha_not_identifiable",
-                                                        "sigma_not_identifiable",
-                                                        "slip_force_not_identifiable",
-                                                        "undetermined_parameter",
-                                                        "undetermined_combination",
-                                                        "slip_force_extrapolated",
-                                                        "unknown_past",
-                                                        "few_places"};
+constexpr std::array<std::string_view, 7> kLeftOpen = {"slip_force_bounded_below",
+                                                       "alpha_not_identifiable",
+                                                       "sigma_not_identifiable",
+                                                       "slip_force_not_identifiable",
+                                                       "undetermined_parameter",
+                                                       "undetermined_combination",
+                                                       "unknown_past"};
 
 double Distance(double value, const Range& truth) {
   return std::max({truth.lowest - value, value - truth.highest, 0.0});
@@ -103,8 +100,8 @@ std::string FindingsText(const FitResult& fit) {
                       static_cast<int>(fit.adequacy.verdict), fit.adequacy.misfit_over_noise,
                       fit.adequacy.p_value);
   for (const identification::Cause& cause : fit.adequacy.causes) {
-    text += fmt::format(" {} ({:.0f}, explains {:.0f} %, moves {:.2g})", cause.code,
-                        cause.delta_aicc, 100 * cause.explains, cause.moves);
+    text += fmt::format(" {} ({:.0f}, explains {:.0f} %)", cause.code, cause.delta_aicc,
+                        100 * cause.explains);
   }
   return text + "\n";
 }

@@ -101,13 +101,7 @@ struct Cause {
   std::string_view code;    ///< stable, for scripts; docs/contract.md lists them
   double delta_aicc = 0.0;  ///< change of AICc with the term: negative where it helps
   double explains = 0.0;    ///< fraction of the residuals' variance [–]
-  double size = 0.0;        ///< its value in `unit`; of several numbers the first
-  std::string_view unit;    ///< "s", "samples", "N s/m" …
   std::string term;         ///< name in `--terms` that fits it, or a column's; empty: none does
-  /// Largest shift that it would cause in σ, α or Tc [half width of their 95 % intervals].
-  double moves = 0.0;
-  bool is_measured = false;       ///< seen in the record without the model, and named first
-  bool has_known_factor = false;  ///< the column follows the contact: its factor has to be known
 };
 
 /// Holds whether, and why not, the model describes the records: docs/identification.md.

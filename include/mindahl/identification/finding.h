@@ -21,7 +21,6 @@ enum class Identifiability {
   kIdentifiable,
   kEffective,        ///< the interval is closed and includes what the model, which is not adequate,
                      ///< misses
-  kExtrapolated,     ///< the law's asymptote, which the record does not approach
   kBoundedBelow,     ///< the data give only a lower limit
   kNotIdentifiable,  ///< the data determine it not at all, or only in combination with others
 };
@@ -55,25 +54,17 @@ inline constexpr auto kFindings = [] {
       {"alpha_not_identifiable", kNotIdentifiable},
       {"slip_force_not_identifiable", kNotIdentifiable},
       {"asymmetry_not_identifiable", kNotIdentifiable},
-      {"sigma_bounded_below", kBoundedBelow},
       {"slip_force_bounded_below", kBoundedBelow},
-      {"slip_force_extrapolated", kExtrapolated},
       {"alpha_limited_by_load", kBoundedBelow},
       {"search_limit", kNotIdentifiable},
-      {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
-      {"shape_or_rig", kNotIdentifiable},
-      {"rig_not_tried", kNotIdentifiable},
+      {.code = "shape_or_rig", .severity = kNote},
       {.code = "prior_contradicted"},
       // about the law: under its own law a parameter is as well known as before
       {"law_undecided", kIdentifiable, kNote},
       {"other_law_fits_better", kIdentifiable, kWarning, true},
       // about the model discrepancy
-      {"systematic_residual", kIdentifiable, kWarning, true},
-      {.code = "slow_residuals"},
-      {"energy_contradiction", kNotIdentifiable, kWarning, true},
       {"loop_not_seen", kNotIdentifiable, kWarning, true},
-      {"no_model_fits", kNotIdentifiable, kWarning, true},
       {"model_inadequate", kNotIdentifiable, kWarning, true},
       // about the search
       {.code = "weights_not_settled"},

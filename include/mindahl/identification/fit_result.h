@@ -22,20 +22,6 @@
 
 namespace mindahl::identification {
 
-/// A law with its slip force fixed and all other free parameters refitted.
-struct ProfilePoint {
-  models::BranchLaw law;
-  /// F of the best fit against this one: (SS − SS_best)/s² over the effective samples, 0 of the
-  /// best fit itself.
-  double statistic = 0.0;
-};
-
-/// The likelihood along Tc, if a fit computed it (docs/theory.md §10).
-struct LikelihoodProfile {
-  double critical = 0.0;             ///< F(1, ν) beyond which points are outside the 95 % interval
-  std::vector<ProfilePoint> points;  ///< in order of slip force
-};
-
 /// States whether a record follows Masing's law (Mindlin's, Full-Dahl) or Dahl's own. For the same
 /// loop σ and Tc of the two laws differ by factors of up to 2^α and 2.
 struct LawChoice {
@@ -50,7 +36,8 @@ struct LawChoice {
   /// AICc of the other law minus that of the fitted one: positive if the fitted one is better.
   /// Empty if the other was not fitted: on a steady loop of one amplitude both give the same curve.
   std::optional<double> delta_aicc;
-  std::optional<double> likelihood_ratio;  ///< 2 ln Λ of the fitted law against the other
+
+  [[nodiscard]] bool prefers_alternative() const { return decided && preferred == alternative; }
 };
 
 /// How the search of a fit ended, as Ceres reports it.
@@ -79,24 +66,6 @@ enum class Depth {
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
-/// Names what a part of an interval allows for.
-enum class IntervalSource {
-  kParabola,      ///< curvature of the likelihood at its maximum
-  kProfile,       ///< the likelihood itself, where the parabola is not accurate enough
-  kOmittedTerms,  ///< terms that the model lacks and the residuals look like
-  kPlateau,       ///< half gap of the loop, measured without a model
-  kSmallShape,    ///< an α above the bound 0, where the search stopped
-  kDiscrepancy,   ///< a model discrepancy of the size that the record has
-  kCarriedForce,  ///< not below the force that was measured to be carried
-};
-
-/// A contribution to an interval; ends are empty where it is open.
-struct IntervalPart {
-  IntervalSource source = IntervalSource::kParabola;
-  std::optional<double> lower = {};
-  std::optional<double> upper = {};
-};
-
 /// Holds the estimate of a parameter without the priors of the fit.
 struct WithoutPriors {
   double value = 0.0;
@@ -113,21 +82,12 @@ struct ParameterEstimate {
   ParameterStatus status = ParameterStatus::kFixed;
   bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
   Identifiability identifiability = Identifiability::kNotIdentifiable;
-  /// The contributions of which the interval is the union; empty where there is none.
-  std::vector<IntervalPart> interval = {};
   std::optional<Prior> prior = {};                   ///< prior of this parameter; empty without one
   std::optional<WithoutPriors> without_priors = {};  ///< empty if the fit has no prior
   /// Standard deviation that repeats of the test would have: `standard_error` of a model that is
   /// adequate, else what leaving out one part of the record's cycles after the other changes. A
   /// discrepancy that all repeats have in common is not in it.
   std::optional<double> repeat_error = {};
-
-  /// Returns by how many of the standard errors without priors the priors moved the value; empty
-  /// where there is none.
-  [[nodiscard]] std::optional<double> MovedByPriors() const;
-
-  /// True if a contribution of this kind sets an end of the interval.
-  [[nodiscard]] bool IsSetBy(IntervalSource source) const;
 
   /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
@@ -137,19 +97,11 @@ struct ParameterEstimate {
 
 /// Compares α = 1/3 with the fitted α, the other parameters refitted.
 struct MindlinTest {
-  double likelihood_ratio = 0.0;  ///< 2 ln Λ, for autocorrelated residuals
-  double p_value = 1.0;           ///< p-value by F(1, degrees of freedom)
+  double p_value = 1.0;  ///< p-value by F(1, degrees of freedom)
   /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
   /// ΔAICc: then the record does not distinguish a contact of another shape from Mindlin's in a
   /// compliant rig. Computed where α = 1/3 is rejected, α is smaller and no rig is fitted.
   std::optional<double> rig_stiffness;
-};
-
-/// Holds Tc and σ as one record of a load series determines them at its load; the shape and all
-/// other parameters that the records share are held at the values of the whole series.
-struct RecordAlone {
-  ParameterEstimate stiffness;   ///< σ [N/m]
-  ParameterEstimate slip_force;  ///< Tc [N]
 };
 
 /// Holds the fit of one record.
@@ -172,12 +124,6 @@ struct RecordFit {
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
   double load_ratio = 1.0;            ///< load over the mean load of a load series; else 1
   bool load_varies = false;           ///< within the record, if the law knows it
-  /// Holds this record's own values, from Depth::kFull on; empty where it cannot be fitted alone.
-  std::optional<RecordAlone> alone;
-  /// Energy [J] that the fitted law loses in each cycle of `facts`, between ± their amplitude;
-  /// empty where every cycle loses what the steady loop does. Of a virgin contact whose slip forces
-  /// differ.
-  std::vector<double> law_energy;
   /// Averages residuals by place in the stroke, sign as the displacement; from kIntervals on.
   ResidualStructure structure;
   /// [N] Fitted (measured if the displacement is fitted), with the file's sign and offsets.
@@ -212,8 +158,6 @@ struct FitResult {
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
-  /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
-  std::optional<LikelihoodProfile> slip_force_profile;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

@@ -6,7 +6,7 @@
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -51,8 +51,8 @@ struct ReportInput {
   std::optional<identification::Interval> load_window = {};
   std::vector<LeftOut> left_out = {};   ///< what was cut off the records as not of their tests
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
-  std::optional<identification::ModelSelection> selection = {};  ///< if models were compared
-  std::optional<identification::TermSelection> terms = {};       ///< if terms were chosen
+  std::vector<identification::ModelScore> compared = {};    ///< if models were compared
+  std::optional<identification::TermSelection> terms = {};  ///< if terms were chosen
   /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
   /// reported.
   std::optional<NextStep> next = {};

@@ -17,57 +17,6 @@
 
 namespace mindahl::identification {
 
-namespace {
-
-struct Peak {
-  int direction = 1;
-  StrokeBin bin;
-};
-
-Peak LargestBin(const ResidualStructure& structure) {
-  Peak peak;
-  for (const StrokeResiduals& direction : structure.directions) {
-    for (const StrokeBin& bin : direction.bins) {
-      if (std::abs(bin.mean) > std::abs(peak.bin.mean)) peak = {direction.direction, bin};
-    }
-  }
-  return peak;
-}
-
-/// Correlation between the residuals of the two directions, over the same part of the stroke since
-/// the reversal, or at the same displacement.
-double Correlation(const ResidualStructure& structure, bool at_same_displacement) {
-  const auto& up = structure.directions[0].bins;
-  const auto& down = structure.directions[1].bins;
-  if (up.size() != down.size() || up.empty()) return 0.0;
-  double product = 0.0;
-  double up_squares = 0.0;
-  double down_squares = 0.0;
-  for (std::size_t i = 0; i < up.size(); ++i) {
-    const double other = down[at_same_displacement ? down.size() - 1 - i : i].mean;
-    product += up[i].mean * other;
-    up_squares += up[i].mean * up[i].mean;
-    down_squares += other * other;
-  }
-  return up_squares > 0 && down_squares > 0 ? product / std::sqrt(up_squares * down_squares) : 0.0;
-}
-
-std::string_view KindOf(const ResidualStructure& structure, const Peak& peak,
-                        const Thresholds& thresholds) {
-  // A force of position is the same on the way back; one of direction turns its sign.
-  if (Correlation(structure, /*at_same_displacement=*/true) > thresholds.same_directions) {
-    return "same_on_return";
-  }
-  const bool mirrored =
-      Correlation(structure, /*at_same_displacement=*/false) < -thresholds.same_directions;
-  if (peak.bin.position < thresholds.early_in_stroke) {
-    return mirrored ? "mirrored_early" : "one_sided_early";
-  }
-  return mirrored ? "mirrored" : "asymmetric";
-}
-
-}  // namespace
-
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
   if (local.null.empty()) return std::nullopt;
   std::vector<std::string> names;
@@ -81,9 +30,12 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
                  .parameters = std::move(names)};
 }
 
-std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile) {
+std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   std::vector<Finding> findings;
-  if (!profile.open_above) return findings;
+  const ParameterEstimate& slip_force = *result.Find("slip_force");
+  if (slip_force.status == ParameterStatus::kFixed || !slip_force.lower95 || slip_force.upper95) {
+    return findings;
+  }
   // Those of the report, which are of closed cycles where there are any.
   const loop::LoopFacts& facts = result.WidestRecord().facts;
   const loop::LoopMeasures& measures = result.WidestRecord().measures;
@@ -145,60 +97,17 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
         name == "alpha"
             ? to_95 * (upper - lower) > thresholds.widest_shape * std::max(1.0, estimate.value)
             : !(lower > 0) || std::pow(upper / lower, to_95) > thresholds.widest_ratio;
-    if (!wide) continue;
+    const bool is_said = std::ranges::any_of(result.findings, [&](const Finding& finding) {
+      return finding.code.row().verdict == Identifiability::kNotIdentifiable &&
+             std::ranges::find(finding.parameters, name) != finding.parameters.end();
+    });
+    if (!wide || is_said) continue;
     findings.push_back({.code = code,
                         .parameters = {std::string(name)},
                         .numbers = {{"lower", lower}, {"upper", upper}},
                         .kind = "wide"});
   }
   return findings;
-}
-
-double MisfitOf(const FitResult& result) {
-  const double size = ScaleOfMisfit(result);
-  if (!(size > 0)) return 0.0;
-  const double rms = result.outliers > 0
-                         ? std::hypot(result.adequacy.misfit, result.ResponseNoise())
-                         : result.residuals.rms;
-  return rms / size;
-}
-
-std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
-  const double misfit = MisfitOf(result);
-  if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
-  const bool fails = misfit > thresholds.failing_misfit;
-  for (const RecordFit& record : result.records) {
-    const ResidualStructure& structure = record.structure;
-    if (structure.repeatable_share <
-        (fails ? thresholds.repeats_when_failing : thresholds.repeats_when_poor)) {
-      continue;
-    }
-    const Peak peak = LargestBin(structure);
-    return Finding{
-        .code = fails ? FindingCode("no_model_fits") : FindingCode("systematic_residual"),
-        .parameters =
-            fails ? WithoutEffective(result, {"sigma", "alpha"}) : std::vector<std::string>{},
-        .numbers = {{"misfit", misfit},
-                    {"repeatable_share", structure.repeatable_share},
-                    {"largest", std::abs(peak.bin.mean)},
-                    {"position", peak.bin.position},
-                    {"direction", peak.direction}},
-        .kind = KindOf(structure, peak, thresholds)};
-  }
-  return std::nullopt;
-}
-
-std::optional<Finding> FindExtrapolated(const FitResult& result, const Thresholds& thresholds) {
-  const double peak_force = result.PeakForce();
-  const ParameterEstimate& slip_force = *result.Find("slip_force");
-  const double share = peak_force / slip_force.value;
-  const bool is_known = slip_force.status == ParameterStatus::kFixed || !slip_force.upper95;
-  if (is_known || result.law.shape_exponent < 1 || share >= thresholds.mobilised_by_asymptote) {
-    return std::nullopt;
-  }
-  return Finding{.code = "slip_force_extrapolated",
-                 .parameters = {"slip_force"},
-                 .numbers = {{"alpha", result.law.shape_exponent}, {"share", share}}};
 }
 
 namespace {
@@ -319,45 +228,6 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
   return finding;
 }
 
-std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
-  constexpr double kSamePlace = 0.005;  // of the range: closer samples say the same
-  std::size_t places = 0;
-  std::size_t samples = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    std::array<std::vector<double>, 2> ways;  // down, up
-    std::size_t turn = 0;
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      while (turn < record.reversals.size() && record.reversals[turn] < i) ++turn;
-      const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
-      if (record.counts[i] == 0 || is_inserted) continue;
-      const std::size_t end =
-          turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
-      const std::size_t begin = turn > 0 ? record.reversals[turn - 1] : 0;
-      const std::span<const double> excitation = record.excitation();
-      ways[excitation[end] > excitation[begin] ? 1 : 0].push_back(excitation[i]);
-      ++samples;
-    }
-    for (std::vector<double>& way : ways) {
-      std::ranges::sort(way);
-      double last = -std::numeric_limits<double>::infinity();
-      for (const double place : way) {
-        if (place - last <= 2 * kSamePlace) continue;  // the range is 2 in units of the data
-        ++places;
-        last = place;
-      }
-    }
-  }
-  // Few samples alone make wide intervals; these make narrow ones.
-  constexpr std::size_t kAgain = 2;
-  if (static_cast<double>(places) >= thresholds.fewest_places || samples < kAgain * places) {
-    return std::nullopt;
-  }
-  return Finding{.code = "few_places",
-                 .parameters = {"sigma", "alpha"},
-                 .numbers = {{"places", static_cast<double>(places)},
-                             {"samples", static_cast<double>(samples)}}};
-}
-
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
   const double r_squared = result.residuals.r_squared;
   // If a robust loss reduced the weight of readings, the variance is mostly theirs.
@@ -367,39 +237,16 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
                  .numbers = {{"r_squared", r_squared}}};
 }
 
-Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
-                            const Thresholds& thresholds) {
-  Finding finding{.code = "shape_or_rig",
-                  .numbers = {{"rig_stiffness", alternative.rig_stiffness},
-                              {"alpha", result.law.shape_exponent}}};
-  // A contact far stiffer than the rig is Jenkins' element again: the same curve, no other α.
-  if (alternative.tangential_stiffness < thresholds.rigid_beside_rig * alternative.rig_stiffness) {
-    finding.parameters = {"sigma", "alpha"};
-    if (result.is_load_series()) finding.parameters.emplace_back("load_exponent");
-  } else {
-    finding.severity = Severity::kNote;
-  }
-  return finding;
-}
-
-namespace {
-
-bool PrefersOther(const LawChoice& choice) {
-  return choice.decided && choice.preferred == choice.alternative;
-}
-
-}  // namespace
-
 std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
                                      AdequacyVerdict verdict) {
   const bool is_inadequate = verdict == AdequacyVerdict::kInadequate;
-  return choice && is_inadequate && !PrefersOther(*choice) ? std::nullopt : choice;
+  return choice && is_inadequate && !choice->prefers_alternative() ? std::nullopt : choice;
 }
 
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
-  if (!choice || (choice->decided && !PrefersOther(*choice))) return std::nullopt;
-  Finding finding{.code = PrefersOther(*choice) ? FindingCode("other_law_fits_better")
-                                                : FindingCode("law_undecided"),
+  if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
+  Finding finding{.code = choice->prefers_alternative() ? FindingCode("other_law_fits_better")
+                                                        : FindingCode("law_undecided"),
                   .parameters = {"sigma", "slip_force"},
                   .numbers = {{"sigma", choice->law.tangential_stiffness},
                               {"alpha", choice->law.shape_exponent},

@@ -20,24 +20,14 @@ namespace mindahl::identification {
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local);
 
 /// A slip force, and α with it, that the loop leaves open above.
-std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile);
+std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 
 /// `prior_contradicted`: parameters whose prior lies far from what the records say without it.
 std::optional<Finding> FindContradictedPrior(const FitResult& result, const Thresholds& thresholds);
 
-/// Closed intervals too wide to call a parameter known.
+/// Closed intervals too wide to call a parameter known, of those that no other finding calls
+/// unknown.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
-
-/// Returns the rms of the residuals over ScaleOfMisfit() [-], without what a robust loss has
-/// weighed down; 0 where there is none.
-double MisfitOf(const FitResult& result);
-
-/// Residuals that come back at the same place of every stroke, and are more than noise could
-/// explain: where they are, and what kind of friction or rig leaves such a trace.
-std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds);
-
-/// A slip force that is the asymptote of a law with α >= 1, which the record stays away from.
-std::optional<Finding> FindExtrapolated(const FitResult& result, const Thresholds& thresholds);
 
 /// Records that turn less than twice and do not start where the contact is unloaded: the branch
 /// that they start on began before them, and how far it has come is not known.
@@ -49,17 +39,9 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
 /// held, the offsets of the records in which it does not.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
-/// Samples that come back to the same few places of the loop in every cycle, however many they are:
-/// what lies between them, the turning points too, no cycle shows.
-std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
-
 /// A loop that is so small against the rest of the force that its shape and height are
 /// those of the rest.
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds);
-
-/// Another shape, or a rig in series.
-Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
-                            const Thresholds& thresholds);
 
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a

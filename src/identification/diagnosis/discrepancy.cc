@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -55,50 +54,7 @@ double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
          std::sqrt(1 + 1 / cycles);
 }
 
-/// Half the width of the interval in which a further part of the strokes has its step: Student's
-/// for so few parts.
-double SpreadOf(std::span<const double> steps, double confidence) {
-  const auto count = static_cast<double>(steps.size());
-  if (count < 2) return 0.0;
-  const double variance = boost::math::statistics::sample_variance(steps.begin(), steps.end());
-  return StudentQuantile(count - 1, confidence) * std::sqrt(variance);
-}
-
 }  // namespace
-
-std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
-                                     const Thresholds& thresholds) {
-  constexpr std::size_t kThirds = 3;
-  const std::size_t place = problem.parameters.PlaceAmongFree(kSlipForce);
-  if (place == problem.parameters.free().size() || problem.data->is_forced()) return {};
-  const auto& column = estimates.jacobian().col(static_cast<Eigen::Index>(place));
-  std::array<double, 2 * kThirds> products{};
-  std::array<double, 2 * kThirds> squares{};
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const MainStroke& stroke :
-         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
-      const double from = record.excitation()[stroke.begin];
-      const double width = record.excitation()[stroke.end] - from;
-      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
-        const auto third = static_cast<std::size_t>(way * static_cast<double>(kThirds));
-        const std::size_t part = std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds);
-        const auto row = static_cast<Eigen::Index>(begin + i);
-        products[part] -= column(row) * estimates.residual()(row);
-        squares[part] += column(row) * column(row);
-      }
-    }
-    begin += record.size();
-  }
-  constexpr double kLeast = 0.25;  // of the part that depends most on Tc
-  const double most = std::ranges::max(squares);
-  std::vector<double> steps;
-  for (std::size_t part = 0; part < squares.size(); ++part) {
-    if (squares[part] > kLeast * most) steps.push_back(products[part] / squares[part]);
-  }
-  return steps;
-}
 
 std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
                                         const Thresholds& thresholds) {
@@ -219,18 +175,14 @@ void CoverStiffness(const FittedProblem& fitted, const Thresholds& thresholds,
   const double lower = *stiffness.lower95;
   const double upper = *stiffness.upper95;
   for (const double ratio : StiffnessOfWindows(fitted.problem, fitted.estimates, thresholds)) {
-    Include(
-        stiffness,
-        {.source = IntervalSource::kDiscrepancy, .lower = ratio * lower, .upper = ratio * upper});
+    Include(stiffness, {.lower = ratio * lower, .upper = ratio * upper});
   }
 }
 
 }  // namespace
 
-ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
-                                    std::span<const ParameterEstimate> plain,
-                                    const Thresholds& thresholds, const FitResult& result) {
-  const auto& [problem, solution, noise, estimates] = fitted;
+ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Thresholds& thresholds,
+                                    const FitResult& result) {
   ParameterEstimates parameters = result.parameters;
   CoverStiffness(fitted, thresholds, parameters[kStiffness]);
   ParameterEstimate& slip_force = parameters[kSlipForce];
@@ -241,21 +193,13 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   }
   const loop::LoopFacts& facts = result.WidestRecord().facts;
   const double load_ratio = result.WidestRecord().load_ratio;
-  const bool is_open = slip_force.lower95 && !slip_force.upper95;
-  if (is_open && facts.closed && plain[kSlipForce].lower95 && !IsScaledByLoad(result)) {
-    const double carried = std::min(facts.peak_force / load_ratio, *plain[kSlipForce].lower95);
-    RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, carried);
-  }
   const std::optional<double> half_gap = MeasuredHalfGap(result);
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
   const bool has_slipped = loop::Slides(facts) || loop::ReachesSlip(facts);
   if (!is_free || !half_gap || !has_slipped) return parameters;
 
-  const std::vector<double> steps = SlipForceOfParts(problem, estimates, thresholds);
-  // The gap is a mean over parts of the strokes in each of which the model misses so much.
-  const double error =
-      result.adequacy.misfit / std::sqrt(std::max(1.0, static_cast<double>(steps.size())));
-  const double margin = std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, error);
+  const double margin =
+      std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, result.adequacy.misfit);
   GrowingRange range{slip_force.value, slip_force.value};
   range.Include(*half_gap - margin);
   range.Include(*half_gap + margin);
@@ -266,11 +210,7 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
   const auto limited = [&](double end) { return std::clamp(end, least, most); };
   range.Include(limited(slip_force.lower95.value_or(0.0)));
   range.Include(limited(slip_force.upper95.value_or(most)));
-  const double spread = SpreadOf(steps, result.confidence);
-  range.Include(limited(slip_force.value * std::exp(-spread)));
-  range.Include(limited(slip_force.value * std::exp(spread)));
-  SetInterval(slip_force,
-              {.source = IntervalSource::kDiscrepancy, .lower = range.lower, .upper = range.upper});
+  SetInterval(slip_force, {.lower = range.lower, .upper = range.upper});
   slip_force.includes_discrepancy = true;
   return parameters;
 }
@@ -308,8 +248,7 @@ ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& soluti
     }
   }
   if (factors.lower == factors.upper || !stiffness.lower95 || !stiffness.upper95) return stiffness;
-  Include(stiffness, {.source = IntervalSource::kDiscrepancy,
-                      .lower = std::max(factors.lower, 0.0) * *stiffness.lower95,
+  Include(stiffness, {.lower = std::max(factors.lower, 0.0) * *stiffness.lower95,
                       .upper = factors.upper * *stiffness.upper95});
   return stiffness;
 }

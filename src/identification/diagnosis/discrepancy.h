@@ -14,12 +14,6 @@
 /// does not average out, however many samples there are, and its size is that of the record.
 namespace mindahl::identification {
 
-/// The steps ln(Tc'/Tc) that parts of the strokes ask for, each by itself, the other parameters
-/// held: thirds of the main strokes, up and down. Parts that hardly depend on Tc are left out.
-/// @returns none where Tc is held, or a displacement is fitted
-std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
-                                     const Thresholds& thresholds);
-
 /// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
 /// record, whole cycles that follow on each other: √((1 − f)²/f·Σ(θ₋ₖ − θ̄)²/(n − 1)), the jackknife
 /// of n parts that have a fraction f of the samples each, each θ₋ₖ by one linear step of all free
@@ -38,22 +32,15 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
                                        const Thresholds& thresholds);
 
 /// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
-/// where the measured loop slides over most of its stroke: it becomes the union of the fitted
-/// value, the measured half gap with its margin, and, as far as they lie between the least and the
-/// largest of that half gap, T* and the value, each with the margin,
-///   - the interval so far, of noise and of the terms that the model omits,
-///   - what a further part of the strokes would ask for, by Student's law of SlipForceOfParts().
-/// A loop that slides has carried its slip force: no less than the gap in the middle of the stroke,
-/// no more than its largest force. The margin is the scatter of the cycles' half gaps and the error
-/// of a mean over the parts of the strokes, in each of which the model misses its rms. Other
-/// intervals are left as they are; those of a fit that is of use count as including what the model
-/// misses.
-///
-/// Of a loop that does not slide a lower limit of Tc is no less than the force that it carried.
-/// @param plain  estimates with the intervals that the model itself gives
-ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
-                                    std::span<const ParameterEstimate> plain,
-                                    const Thresholds& thresholds, const FitResult& result);
+/// where the measured loop slides over most of its stroke or reaches slip: it becomes the union of
+/// the fitted value, the measured half gap with its margin, and the interval so far, of noise and
+/// of the terms that the model omits, as far as that lies between the least and the largest of half
+/// gap, T* and the value, each with the margin. A loop that slides has carried its slip force: no
+/// less than the gap in the middle of the stroke, no more than its largest force. The margin is the
+/// scatter of the cycles' half gaps and the force that the model misses. Other intervals are left
+/// as they are; those of a fit that is of use count as including what the model misses.
+ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Thresholds& thresholds,
+                                    const FitResult& result);
 
 /// Returns the estimates with their repeat_error: the standard error where the model is adequate,
 /// else of ErrorsBetweenCycles().

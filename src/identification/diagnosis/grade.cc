@@ -76,14 +76,6 @@ double MissedForce(const FitResult& result) {
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
 
-std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names) {
-  std::erase_if(names, [&](const std::string& name) {
-    const ParameterEstimate* estimate = result.Find(name);
-    return estimate != nullptr && estimate->includes_discrepancy;
-  });
-  return names;
-}
-
 namespace {
 
 /// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes

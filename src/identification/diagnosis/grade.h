@@ -47,9 +47,6 @@ double MissedForce(const FitResult& result);
 /// Returns the variance [N² or m²] of the white part of the residuals that count.
 double WhiteVariance(const FitResult& result);
 
-/// Returns those of the named parameters whose interval does not include what the model misses.
-std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names);
-
 /// Returns the adequacy, doubtful where the residuals exceed 1.5 times the noise that the
 /// record has without a model: what does not repeat from stroke to stroke (pure error), or of a
 /// single cycle what differs between neighbouring samples. Tests of columns take a misfit that no

@@ -39,39 +39,6 @@ Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
   return finding;
 }
 
-/// True if a cycle of two strokes ends elsewhere than it began and so is no loop of its amplitude.
-/// A long stroke with a short one is no such cycle: its reversals are doubtful.
-/// @param widest  amplitude of the record's widest swings [m]
-bool RunsOn(const loop::CycleFacts& cycle, double widest) {
-  constexpr double kTwoStrokes = 0.6;  // half of it is one stroke's
-  return !cycle.returns && cycle.amplitude > kTwoStrokes * widest;
-}
-
-struct CycleEnergies {
-  double measured = 0.0;  // [J]
-  double of_law = 0.0;
-};
-
-/// Mean energies of the widest steady cycles, of those most of whose samples count.
-/// @param of_steady_loop  what the law loses in a cycle where that is the same in all
-std::optional<CycleEnergies> EnergiesThatCount(const RecordFit& record, double of_steady_loop) {
-  const std::vector<loop::CycleFacts>& cycles = record.facts.cycles;
-  CycleEnergies sum;
-  double count = 0.0;
-  for (std::size_t k = 0; k < cycles.size(); ++k) {
-    if (!cycles[k].steady || RunsOn(cycles[k], record.measures.amplitude)) continue;
-    const std::size_t end = k + 1 < cycles.size() ? cycles[k + 1].start : record.counts.size();
-    const auto samples = std::span(record.counts).subspan(cycles[k].start, end - cycles[k].start);
-    if (2 * static_cast<std::size_t>(std::ranges::count(samples, 0)) > samples.size()) continue;
-    sum.measured += cycles[k].energy;
-    if (!record.law_energy.empty()) sum.of_law += record.law_energy[k];
-    ++count;
-  }
-  if (count == 0) return std::nullopt;
-  return CycleEnergies{.measured = sum.measured / count,
-                       .of_law = record.law_energy.empty() ? of_steady_loop : sum.of_law / count};
-}
-
 }  // namespace
 
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
@@ -124,39 +91,6 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
     }
   }
   return findings;
-}
-
-std::optional<Finding> FindEnergyContradiction(const FitResult& result,
-                                               const Thresholds& thresholds) {
-  const RecordFit& record = result.WidestRecord();
-  // The measured energy includes the readings that a robust loss weighs down.
-  if (result.outliers > 0) return std::nullopt;
-  // Its energy depends on the load's time history too.
-  if (record.load_varies) return std::nullopt;
-  // These lose, or shift, energy that is not the contact's.
-  const bool has_other = std::ranges::any_of(result.parameters, [](const ParameterEstimate& other) {
-    return TurnsWithMotion(other) && other.value != 0;
-  });
-  if (has_other) return std::nullopt;
-  const double amplitude = record.facts.amplitude;
-  const models::BranchLaw law = result.LawOf(record);
-  const std::optional<CycleEnergies> energies = EnergiesThatCount(
-      record,
-      models::SteadyLoopEnergy(*result.model, law, ContactAmplitude(result, law, amplitude)));
-  if (!energies) return std::nullopt;
-  const auto [measured, model] = *energies;
-  const double difference = std::abs(measured - model);
-  if (!(difference > thresholds.energy_difference * std::max(std::abs(measured), model))) {
-    return std::nullopt;
-  }
-  // ∮ T dδ sums forces over a way of 4X, or displacements over one of 4T*.
-  const double way = result.response == loop::Channel::kForce ? amplitude : record.facts.peak_force;
-  const double error = 4 * way * result.ResponseNoise() /
-                       std::sqrt(std::max(1.0, result.residuals.effective_samples));
-  if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
-  return Finding{.code = "energy_contradiction",
-                 .parameters = WithoutEffective(result, {"sigma", "alpha", "slip_force"}),
-                 .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
 }
 
 bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {

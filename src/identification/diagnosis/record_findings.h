@@ -10,8 +10,7 @@
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/record.h"
 
-/// Derives the findings on the records themselves, and on a model that they contradict, as data:
-/// pure functions of a result.
+/// Derives the findings on the records themselves, as data: pure functions of a result.
 namespace mindahl::identification {
 
 /// Reversals that are not certain, glitches that are left out, a way that is longer than the
@@ -19,11 +18,6 @@ namespace mindahl::identification {
 /// a record count from 1.
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
                                    loop::Channel excitation = loop::Channel::kDisplacement);
-
-/// Energy of the widest steady cycles that count against that of the fitted law at their amplitude,
-/// where no viscous force takes part of it.
-std::optional<Finding> FindEnergyContradiction(const FitResult& result,
-                                               const Thresholds& thresholds);
 
 /// `load_followed` where the normal load varies within a record and the law knows it,
 /// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's

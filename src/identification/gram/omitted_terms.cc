@@ -82,16 +82,6 @@ std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
   return {vector.begin(), vector.end()};
 }
 
-/// Returns the process of noise that these residuals are of; white where they alternate: columns
-/// that took up what is slow left them so.
-Autocorrelation NoiseProcess(const ScaledRecords& data, const Eigen::VectorXd& residual) {
-  Autocorrelation process =
-      AutocorrelationOf(data, {residual.data(), static_cast<std::size_t>(residual.size())});
-  double sum = 0.0;
-  for (std::size_t k = 0; k < process.order; ++k) sum += process.coefficients[k];
-  return sum < 0 ? Autocorrelation() : process;
-}
-
 /// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
 DepartureFit FitOf(const Gram& gram, const DepartureColumns& departures,
                    std::span<const Eigen::Index> places, const GramAxes& axes,
@@ -107,17 +97,7 @@ DepartureFit FitOf(const Gram& gram, const DepartureColumns& departures,
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   const double explained = axes.coefficients.square().sum();
   fit.explains = std::clamp(explained / gram.sum_of_squares(), 0.0, 1.0);
-  fit.size = step.omitted[places[0]] * departures.unit_of_size[first];
-  fit.size_p_value = fit.p_value;
-  if (places.size() > 1) {
-    const double others = gram.AxesOf(places.subspan(1)).coefficients.square().sum();
-    const double of_first = std::max(0.0, explained - others) / axes.noise.maxCoeff();
-    fit.size_p_value = PValueOfF(of_first / noise.variance, noise.degrees);
-  }
   fit.step = ValuesOf(step.law);
-  const Departure& departure = Departures()[fit.departure];
-  fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
-                                                                  : departure.unit_by_sample;
   fit.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
   return fit;
 }
@@ -142,7 +122,8 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   GramAxes axes = gram.AxesOf(all);
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
-  const Autocorrelation process = NoiseProcess(data, left);
+  const Autocorrelation process =
+      AutocorrelationOf(data, {left.data(), static_cast<std::size_t>(left.size())});
   if (process.order > 0 || displacement.residuals.size() > 0) {
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
@@ -169,12 +150,6 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   test.step = ValuesOf(step.law);
   test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
 
-  for (std::size_t c = 0; c < departures.of.size(); ++c) {
-    const double size = step.omitted[static_cast<Eigen::Index>(c)] * departures.unit_of_size[c];
-    const bool is_first = c == 0 || departures.group[c] != departures.group[c - 1];
-    if (is_first)
-      test.apart = std::max(test.apart, Departures()[departures.of[c]].apart * std::abs(size));
-  }
   const Evidence evidence(data.counted, test.effective_samples);
   for (std::size_t group = 0; group < departures.groups; ++group) {
     std::vector<Eigen::Index> places;
@@ -187,16 +162,6 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
         FitOf(gram, departures, places, of_term, level, evidence, thresholds.cause));
   }
   return test;
-}
-
-double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
-              std::size_t parameter, const ParameterEstimate& estimate) {
-  const std::size_t place = problem.parameters.PlaceAmongFree(parameter);
-  if (place == fit.step.size() || !estimate.lower95 || !estimate.upper95) return 0.0;
-  const double half = (*estimate.upper95 - *estimate.lower95) / 2;
-  const double moved =
-      problem.parameters[parameter].ToValue(solution.theta[parameter] + fit.step[place]);
-  return half > 0 ? std::abs(moved - estimate.value) / half : 0.0;
 }
 
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
@@ -212,14 +177,10 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
       const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
       const auto [lower, upper] =
           std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
-      Include(estimates[k], {.source = IntervalSource::kOmittedTerms,
-                             .lower = p == kShape ? std::max(lower, 0.0) : lower,
-                             .upper = upper});
+      Include(estimates[k], {.lower = p == kShape ? std::max(lower, 0.0) : lower, .upper = upper});
     };
     if (place >= test.step.size()) continue;
-    const bool is_of_force = p == kStiffness || p == kSlipForce;
-    include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep) +
-                                  (is_of_force ? std::min(test.apart, kFarthestStep) : 0.0));
+    include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
     for (const DepartureFit& cause : causes) {
       if (place < cause.step.size()) include(cause.step[place], 0.0);
     }

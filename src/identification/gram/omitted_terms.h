@@ -21,11 +21,7 @@ struct DepartureFit {
   double p_value = 1.0;                       // that noise alone makes it
   double delta_aicc = 0.0;                    // against the fit without
   double explains = 0.0;                      // fraction of the sum of squares
-  double size = 0.0;                          // of its first column, in its unit
-  double size_p_value = 1.0;                  // that noise alone makes that
-  std::string_view unit = {};
-  bool is_measured = false;       // without the model, and fitted as it was
-  std::vector<double> step = {};  // of θ, one a free parameter
+  std::vector<double> step = {};              // of θ, one a free parameter
 };
 
 /// Holds what a fit's model may lack, all terms of Departures() together: r = −Jδ − Cγ + ε with
@@ -39,7 +35,6 @@ struct AdequacyTest {
   double effective_samples = 1.0;   // of it
   std::vector<double> step;         // E(δ), one a free parameter
   std::vector<double> error;        // standard deviation of δ, γ integrated out
-  double apart = 0.0;               // by how much σ and Tc of parts of the record leave the mean
   std::vector<DepartureFit> fits;   // of each term that the record can identify
 };
 
@@ -47,10 +42,6 @@ struct AdequacyTest {
 /// too
 AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
                           const Thresholds& thresholds, Response& response);
-
-/// Returns the shift of a parameter by a term, in halves of its 95 % interval; 0 where it is open.
-double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
-              std::size_t parameter, const ParameterEstimate& estimate);
 
 /// Extends intervals to what they are with γ integrated out. The error counts twice: a step
 /// to first order goes a part of the way to a law of another form.

@@ -84,130 +84,89 @@ enum DepartureRow : std::size_t {
   kClockDrift,
 };
 
-// Sizes are of the first column; where there are several, the meaning says what the others are.
 constexpr std::array<Departure, 24> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "delay of the force's channel",
-     .unit = "s",
      .group = "lag",
-     .term = "lag",
-     .unit_by_sample = "samples"},
+     .term = "lag"},
     {.code = "viscous_force",
      .meaning = "C of a force C·dδ/dt; it dissipates where positive",
-     .unit = "N s/m",
      .group = "viscous",
-     .term = "viscous",
-     .unit_by_sample = "N samples/m"},
+     .term = "viscous"},
     {.code = "plateau_slope",
      .meaning = "stiffness of a spring parallel to the contact",
-     .unit = "N/m",
      .group = "plateau_slope",
      .term = "plateau_slope"},
     {.code = "force_drift",
      .meaning = "rate of drift of the force, with the sign that it has in the file",
-     .unit = "N/s",
      .group = "force_drift",
-     .term = "force_drift",
-     .unit_by_sample = "N/sample"},
+     .term = "force_drift"},
     {.code = "normal_load",
      .meaning = "relative change of the contact's force over that of the measured load: 1 in "
-                "proportion",
-     .unit = "-"},
-    {.code = "shape_of_law", .meaning = "bulge of each branch, halfway to slip", .unit = ""},
+                "proportion"},
+    {.code = "shape_of_law", .meaning = "bulge of each branch, halfway to slip"},
     {.code = "guide_friction",
-     .meaning = "Coulomb friction parallel to the contact; it dissipates where positive",
-     .unit = "N"},
+     .meaning = "Coulomb friction parallel to the contact; it dissipates where positive"},
     {.code = "rig_in_series",
      .meaning = "compliance of a spring in series",
-     .unit = "m/N",
      .group = "rig_stiffness",
-     .term = "rig_stiffness",
-     .is_positive = true},
+     .term = "rig_stiffness"},
     {.code = "backlash",
      .meaning = "the whole travel that is lost at a reversal",
-     .unit = "m",
      .group = "backlash",
-     .term = "backlash",
-     .is_positive = true},
+     .term = "backlash"},
     {.code = "displacement_sensor",
-     .meaning = "the contact sees x + size·x²/L, x from the record's middle; and x³",
-     .unit = ""},
+     .meaning = "the contact sees x + size·x²/L, x from the record's middle; and x³"},
     {.code = "inertia",
      .meaning = "mass in front of the sensor of the force, m·d²δ/dt²",
-     .unit = "kg",
      .group = "inertia",
-     .term = "inertia",
-     .unit_by_sample = "N samples²/m",
-     .is_positive = true},
+     .term = "inertia"},
     {.code = "unequal_directions",
      .meaning = "force (1 ± size)·T, + where it acts along positive displacement; for a virgin "
                 "contact also slip forces Tc(1 ± A)",
-     .unit = "-",
      .group = "asymmetry",
-     .term = "asymmetry",
-     .apart = 1.0},
+     .term = "asymmetry"},
     {.code = "running_in",
      .meaning = "growth of the contact's force from the first record's beginning to its end",
-     .unit = "-",
      .group = "slip_trend",
-     .term = "slip_trend",
-     .apart = 0.5},
+     .term = "slip_trend"},
     {.code = "force_saturates",
-     .meaning = "fraction lost of the excess over nine tenths of the largest force; and T³",
-     .unit = "-"},
+     .meaning = "fraction lost of the excess over nine tenths of the largest force; and T³"},
     {.code = "slip_position",
      .meaning = "growth of the contact's force over L from the record's middle; and of |T|, which "
                 "differs by direction",
-     .unit = "-",
      .group = "slip_position",
-     .term = "slip_slope",
-     .simpler = {"plateau_slope"}},
-    {.code = "force_of_position", .meaning = "force size·Tc·(x/L)²; and x³", .unit = ""},
+     .term = "slip_slope"},
+    {.code = "force_of_position", .meaning = "force size·Tc·(x/L)²; and x³"},
     {.code = "covariate",
      .meaning = "C of a force C·column; each of up to 8 columns that no option names",
-     .unit = "N/unit",
      .group = "covariate",
      .term = "covariate"},
     {.code = "smoothing",
      .meaning =
          "standard deviation of the time window over which the force is averaged; of that of "
-         "the displacement where negative",
-     .unit = "s",
-     .unit_by_sample = "samples",
-     .is_square = true},
+         "the displacement where negative"},
     {.code = "held_displacement",
-     .meaning = "fraction of the motion between two readings of the displacement that is not read",
-     .unit = "-"},
+     .meaning = "fraction of the motion between two readings of the displacement that is not read"},
     {.code = "amplitude_dependence",
-     .meaning = "growth of the contact's force from the narrowest stroke to the widest",
-     .unit = "-",
-     .apart = 0.5},
+     .meaning = "growth of the contact's force from the narrowest stroke to the widest"},
     {.code = "displacement_drift",
      .meaning = "rate of drift of a fitted displacement, with the sign that it has in the file",
-     .unit = "m/s",
      .group = "displacement_drift",
-     .term = "displacement_drift",
-     .unit_by_sample = "m/sample"},
+     .term = "displacement_drift"},
     {.code = "speed_power",
      .meaning = "forces in proportion to the square root of the speed, along the motion, and to "
                 "the velocity",
-     .unit = "",
      .group = "slip_speed",
-     .term = "speed_exponent",
-     .simpler = {"viscous_force"}},
+     .term = "speed_exponent"},
     {.code = "slip_position_quadratic",
      .meaning = "growth of the contact's force over L from the record's middle; and over x², each "
                 "also of |T|, which differs by direction",
-     .unit = "-",
      .group = "slip_position_quadratic",
-     .term = "slip_slope",
-     .simpler = {"slip_position", "plateau_slope"}},
+     .term = "slip_slope"},
     {.code = "clock_drift",
      .meaning = "delay of the force that builds up from the first record's beginning to its end; "
-                "and a lag from there on",
-     .unit = "s",
-     .unit_by_sample = "samples",
-     .simpler = {"channel_lag"}},
+                "and a lag from there on"},
 }};
 
 /// Fraction of the travel to slip that the branch has covered.
@@ -424,39 +383,6 @@ void FillColumn(const ForceColumn& column, const models::LoadingPath& path,
   for (std::size_t i = 0; i < places.size(); ++i) values[i] *= record.LoadAt(i);
 }
 
-/// Returns the unit of a factor of one: forces are in units of the data, the contact's over Tc.
-/// @param clock  its unit
-double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock,
-                  double slip_force) {
-  const double newton = data.force;
-  switch (departure) {
-    case kLag:
-      return clock;
-    case kClockDrift:
-      return 2 * clock;  // time is from −1 to 1
-    case kSmoothing:
-      return clock * clock;
-    case kViscous:
-      return newton / data.length * clock;
-    case kPlateauSlope:
-      return newton / data.length;
-    case kDrift:
-      return data.sense * newton / clock;
-    case kGuide:
-      return newton;
-    case kCompliantRig:
-      return data.length / (newton * slip_force * slip_force);
-    case kBacklash:
-      return data.length / slip_force;
-    case kInertia:
-      return newton / data.length * clock * clock;
-    case kRunningIn:
-      return 2 / slip_force;
-    default:
-      return 1 / slip_force;
-  }
-}
-
 std::size_t FittedCovariates(const Problem& problem) {
   return static_cast<std::size_t>(std::ranges::count_if(
       problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
@@ -509,7 +435,6 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   if (problem.data->is_forced()) {
     return ColumnsOfDisplacementDepartures(problem, theta, response, most);
   }
-  const double slip_force = std::exp(theta[kSlipForce]);
   const std::pmr::vector<ScaledRecord>& records = problem.data->records;
   std::vector<Neighbours> neighbours;
   for (const ScaledRecord& record : records) neighbours.push_back(NeighboursOf(record));
@@ -520,7 +445,6 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !problem.data->load_varies;
   DepartureColumns result;
-  result.timed = clock.timed;
   std::vector<std::size_t> covariates;
   const std::size_t fitted = FittedCovariates(problem);
   for (std::size_t c = fitted; c < problem.data->covariates.size(); ++c) {
@@ -557,15 +481,12 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       wanted.push_back(&column);
       result.of.push_back(d);
       result.group.push_back(result.groups - 1);
-      result.unit_of_size.push_back(UnitOfSize(d, *problem.data, clock.unit, slip_force));
     }
   }
   for (const std::size_t c : covariates) {
     result.covariates.push_back(c);
     result.of.push_back(kCovariate);
     result.group.push_back(result.groups++);
-    result.unit_of_size.push_back(problem.data->sense * problem.data->force /
-                                  problem.data->covariates[c].scale);
   }
   const LawPoint point = PointAt(problem, theta);
   std::vector<double> force(problem.size());

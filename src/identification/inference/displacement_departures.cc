@@ -23,51 +23,31 @@ struct DisplacementPlace {
 
 using DisplacementDeparture = double (*)(const DisplacementPlace&);
 
-/// Names the unit of a factor of one, in units of the data.
-enum class Size { kOne, kTime, kCompliance, kLength, kRate };
-
 struct DisplacementColumn {
   std::string_view departure;
-  Size size;
   DisplacementDeparture value;
 };
 
 constexpr std::array<DisplacementColumn, 9> kDisplacementColumns = {{
     // A force that is read late meets the displacement of later.
-    {"channel_lag", Size::kTime, [](const DisplacementPlace& at) { return at.rate; }},
-    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[0]; }},
-    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[1]; }},
-    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[2]; }},
-    {"rig_in_series", Size::kCompliance, [](const DisplacementPlace& at) { return at.force; }},
-    {"backlash", Size::kLength, [](const DisplacementPlace& at) { return at.gap; }},
-    {"displacement_sensor", Size::kOne,
+    {"channel_lag", [](const DisplacementPlace& at) { return at.rate; }},
+    {"shape_of_law", [](const DisplacementPlace& at) { return at.bulges[0]; }},
+    {"shape_of_law", [](const DisplacementPlace& at) { return at.bulges[1]; }},
+    {"shape_of_law", [](const DisplacementPlace& at) { return at.bulges[2]; }},
+    {"rig_in_series", [](const DisplacementPlace& at) { return at.force; }},
+    {"backlash", [](const DisplacementPlace& at) { return at.gap; }},
+    {"displacement_sensor",
      [](const DisplacementPlace& at) { return -at.displacement * at.displacement; }},
-    {"displacement_sensor", Size::kOne,
+    {"displacement_sensor",
      [](const DisplacementPlace& at) {
        return -at.displacement * at.displacement * at.displacement;
      }},
-    {"displacement_drift", Size::kRate, [](const DisplacementPlace& at) { return at.time; }},
+    {"displacement_drift", [](const DisplacementPlace& at) { return at.time; }},
 }};
 
 std::size_t IndexOfDeparture(std::string_view code) {
   return static_cast<std::size_t>(std::ranges::find(Departures(), code, &Departure::code) -
                                   Departures().begin());
-}
-
-double UnitOf(Size size, const ScaledRecords& data, double clock) {
-  switch (size) {
-    case Size::kOne:
-      return 1.0;
-    case Size::kTime:
-      return clock;
-    case Size::kCompliance:
-      return data.length / data.force;
-    case Size::kLength:
-      return data.length;
-    case Size::kRate:
-      return data.length / clock;
-  }
-  return 1.0;
 }
 
 /// A branch as the force runs along it.
@@ -147,14 +127,12 @@ DepartureColumns ColumnsOfDisplacementDepartures(const Problem& problem,
   for (const ScaledRecord& record : data.records) neighbours.push_back(NeighboursOf(record));
   const Clock clock = ClockOf(data, neighbours);
   DepartureColumns result;
-  result.timed = clock.timed;
   const std::vector<const DisplacementColumn*> wanted = Wanted(problem, most);
   for (const DisplacementColumn* const column : wanted) {
     const std::size_t departure = IndexOfDeparture(column->departure);
     if (result.of.empty() || result.of.back() != departure) ++result.groups;
     result.of.push_back(departure);
     result.group.push_back(result.groups - 1);
-    result.unit_of_size.push_back(UnitOf(column->size, data, clock.unit));
   }
   result.columns.resize(static_cast<Eigen::Index>(problem.size()),
                         static_cast<Eigen::Index>(wanted.size()));

@@ -116,7 +116,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     if (*upper < *lower) std::swap(lower, upper);
   }
   if (p == kShape && lower) lower = std::max(*lower, 0.0);
-  SetInterval(estimate, {.source = IntervalSource::kParabola, .lower = lower, .upper = upper});
+  SetInterval(estimate, {.lower = lower, .upper = upper});
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
@@ -146,44 +146,6 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
   return white_variance_ * full_.white_factor(place, place) /
          (variance_ * full_.factor(place, place));
-}
-
-ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds) {
-  ParameterEstimate slip_force = result.parameters[kSlipForce];
-  const RecordFit& widest = result.WidestRecord();
-  if (result.response == loop::Channel::kDisplacement) return slip_force;  // never slips
-  if (IsScaledByLoad(result)) return slip_force;
-  const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
-  if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95)
-    return slip_force;
-  const double half_gap = *widest.facts.half_gap / widest.load_ratio;
-  Include(slip_force, {.source = IntervalSource::kPlateau, .lower = half_gap, .upper = half_gap});
-  return slip_force;
-}
-
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
-  ParameterEstimate slip_force = result.parameters[kSlipForce];
-  const RecordFit& widest = result.WidestRecord();
-  if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return slip_force;
-  if (IsScaledByLoad(result)) return slip_force;
-  const bool has_other = std::ranges::any_of(result.parameters, TurnsWithMotion);
-  constexpr std::array<std::string_view, 5> kTurnWithMotion = {
-      "viscous_force", "covariate", "guide_friction", "channel_lag", "normal_load"};
-  const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {
-    return std::ranges::find(kTurnWithMotion, cause.code) != kTurnWithMotion.end();
-  });
-  if (has_other || may_have_other || slip_force.includes_discrepancy) return slip_force;
-  const double carried = *widest.facts.half_gap -
-                         2 * widest.facts.half_gap_standard_deviation.value_or(0.0) -
-                         result.ResponseNoise();
-  if (!(carried > 0)) return slip_force;
-  const double least = carried / widest.load_ratio;
-  if (slip_force.value < least && !(slip_force.upper95 > least)) {
-    WithdrawInterval(slip_force);
-  } else {
-    RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, std::min(least, slip_force.value));
-  }
-  return slip_force;
 }
 
 }  // namespace mindahl::identification

@@ -82,17 +82,4 @@ struct FittedProblem {
 
 ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
 
-/// Intervals that cover what another reading of the record would have for the parameters.
-
-/// Returns Tc with its interval extended to half of the measured gap between the branches, where
-/// the shape of the loop is doubtful and the record slips.
-ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds);
-
-/// Returns Tc with the lower end of its interval raised to the half gap that was measured between
-/// the strokes, less two of its standard deviations between cycles and one of the noise: the
-/// contact carried that force in either direction, so that it slips at no less. Where the model has
-/// no other force that turns with the motion (a viscous one, a covariate, a lag), and no cause is
-/// one.
-ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
-
 }  // namespace mindahl::identification

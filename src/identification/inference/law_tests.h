@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identification/inference/estimates.h"
+#include "identification/intervals.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/search.h"
 #include "mindahl/identification/fit_options.h"
@@ -32,32 +33,15 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
                                      const MindlinTest& test, const FitOptions& options,
                                      SearchBuffers& buffers);
 
+/// Includes in the intervals of σ and α those that they have in a compliant rig: the record does
+/// not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the same
+/// curve, no other α.
+ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
+                              ParameterEstimates parameters);
+
 /// True if Mindlin's exponent is rejected for a smaller one on a rigid rig, so that a compliant rig
 /// may be the cause.
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
               const Thresholds& thresholds);
-
-/// True if all swings of the records are as wide as the widest, those to their ends no wider. Then
-/// a steady contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a
-/// Tc of its own (models/steady_loop.h).
-bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
-
-/// True if the record hardly distinguishes Masing's law from Dahl's own.
-/// @param delta_aicc  of the two
-bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds);
-
-/// A fit of the other law.
-struct OtherFit {
-  Problem problem;
-  Solution solution;
-};
-
-/// Masing's law against Dahl's own, whichever of them was fitted. The other is fitted too where the
-/// record may distinguish them, from where its loop at the widest amplitude would be the same; of
-/// one amplitude it follows in closed form.
-/// @returns empty where the laws are one (α = 0), and where they are not compared
-std::optional<LawChoice> CompareLaws(const Problem& problem, const Solution& best,
-                                     const FitResult& result, const FitOptions& options,
-                                     SearchBuffers& buffers);
 
 }  // namespace mindahl::identification

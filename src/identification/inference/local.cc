@@ -91,7 +91,6 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
 }
 
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
-                                  std::span<const unsigned char> tells,
                                   std::pmr::memory_resource* memory) {
   std::pmr::vector<std::span<const double>> residuals(memory);
   std::pmr::vector<std::span<const unsigned char>> counts(memory);
@@ -100,8 +99,7 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
   std::size_t begin = 0;
   for (const ScaledRecord& record : data.records) {
     residuals.push_back(residual.subspan(begin, record.size()));
-    counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
-                                   : tells.subspan(begin, record.size()));
+    counts.emplace_back(record.counts);
     begin += record.size();
   }
   return EstimateAutocorrelation(residuals, counts);
@@ -110,7 +108,7 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
                         std::pmr::memory_resource* memory) {
   return static_cast<double>(data.counted) /
-         AutocorrelationOf(data, residual, {}, memory).SquaredCorrelations();
+         AutocorrelationOf(data, residual, memory).SquaredCorrelations();
 }
 
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,

@@ -49,10 +49,8 @@ struct DisplacementEffect {
 
 /// Autocorrelation of the residuals of all records, one after the other.
 /// @param residual  of every sample
-/// @param tells     of every sample, 0 where it is left out; empty: those that count are used
 Autocorrelation AutocorrelationOf(
     const ScaledRecords& data, std::span<const double> residual,
-    std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 /// Returns the effective number of samples of residuals, weighted or not, one record after the

@@ -5,7 +5,6 @@
 
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
@@ -16,18 +15,9 @@ namespace mindahl::identification {
 /// user holds is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
-/// Returns the findings that no other makes needless, so that none of them has to know of another:
-///  - an open slip force is needless where its interval includes the discrepancy, and is closed;
-///  - a wide interval of a parameter that another finding calls not identifiable;
-///  - an energy that contradicts the law where no free parameter of the law has a closed interval
-///    and is identifiable by the other findings: there is no answer to contradict.
-/// Before WithoutInadequate().
-std::vector<Finding> WithoutNeedless(std::span<const ParameterEstimate> estimates,
-                                     std::vector<Finding> findings);
-
 /// Under a model that does not describe the record nothing of it is to be believed: takes back
 /// errors, limits, tests, and what the findings would have one do to know its parameters better;
 /// adds the finding model_inadequate. Before Judge().
-FitResult WithoutInadequate(FitResult result, const Thresholds& thresholds);
+FitResult WithoutInadequate(FitResult result);
 
 }  // namespace mindahl::identification

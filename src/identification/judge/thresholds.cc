@@ -22,7 +22,7 @@ constexpr std::array kTable = {
                  "the contact then takes 3 % of the travel before slip: the loop is that of a "
                  "Jenkins element, whatever α"},
     ThresholdRow{"poor_misfit", &Thresholds::poor_misfit, "rms over half gap or T*",
-                 "a repeatable misfit that is larger is reported",
+                 "a smaller misfit may be noise however long that remembers",
                  "two per cent of the force are visible next to the loop's line in a plot"},
     ThresholdRow{"quantitative_misfit", &Thresholds::quantitative_misfit,
                  "missed over half gap or T*",
@@ -32,14 +32,6 @@ constexpr std::array kTable = {
                  "a model that misses more gives no parameters of the shape",
                  "where the law carries half of Tc, an error of 0.15 is a third of the force: the "
                  "knee is elsewhere"},
-    ThresholdRow{
-        "repeats_when_poor", &Thresholds::repeats_when_poor, "fraction of variance",
-        "a poor misfit of which more repeats from stroke to stroke is systematic",
-        "noise of the same rms leaves 1 − 0.3 of the variance: the systematic part is then "
-        "√(0.3/0.7) = 0.65 of it"},
-    ThresholdRow{"repeats_when_failing", &Thresholds::repeats_when_failing, "fraction of variance",
-                 "the same for a failing misfit",
-                 "a failing misfit with 10 % that repeat is 3 % of the force by itself: poor"},
     ThresholdRow{"repeat_chance", &Thresholds::repeat_chance, "p",
                  "chance at which white noise passes for repeatable",
                  "in one loop in a thousand standard errors are then inflated needlessly"},
@@ -51,24 +43,11 @@ constexpr std::array kTable = {
     ThresholdRow{"main_stroke", &Thresholds::main_stroke, "of the longest",
                  "only strokes at least this long are compared with each other",
                  "shorter ones are nested loops, run-in or run-out; the same as for X and T*"},
-    ThresholdRow{"same_directions", &Thresholds::same_directions, "correlation",
-                 "above it the residuals of the two directions are called the same, or opposite",
-                 "with 20 places in a stroke chance exceeds 0.6 once in 200"},
-    ThresholdRow{"early_in_stroke", &Thresholds::early_in_stroke, "of the stroke",
-                 "a residual that peaks earlier is attributed to the reversal",
-                 "in a loop of twice the gross-slip displacement stick ends there"},
     ThresholdRow{
         "path_excess", &Thresholds::path_excess, "of the strokes",
         "a warning is given if the path through the samples exceeds the strokes by more",
         "white noise of 0.8 steps between samples makes this much: one step in five then goes "
         "backward, and the fit takes it for a reversal"},
-    ThresholdRow{"energy_difference", &Thresholds::energy_difference, "of the larger",
-                 "a larger difference between measured energy and the model's is a contradiction",
-                 "a model that misses a fifth of the loop's energy does not describe it: Tc would "
-                 "be off by as much"},
-    ThresholdRow{"energy_errors", &Thresholds::energy_errors, "standard errors",
-                 "the contradiction must also exceed so many errors of the measured energy",
-                 "far from slip the loop is thin, and noise alone makes a fifth of its energy"},
     ThresholdRow{"trend_size", &Thresholds::trend_size, "of the mean a cycle",
                  "a smaller trend is not mentioned in words",
                  "over ten cycles the first and the last then differ by a tenth"},
@@ -96,32 +75,17 @@ constexpr std::array kTable = {
     ThresholdRow{"parabola_mobilised", &Thresholds::parabola_mobilised, "T* over Tc",
                  "a loop that reaches less is always profiled",
                  "below it the parabola may miss the curved valley of α and Tc"},
-    ThresholdRow{"rigid_error", &Thresholds::rigid_error, "half interval of ln σ",
-                 "a σ that is less certain is compared with a rigid contact",
-                 "a contact a thousand times stiffer is then 45 standard errors away by the "
-                 "parabola, which is not trusted further"},
     ThresholdRow{"turning_point_shift", &Thresholds::turning_point_shift, "standard errors",
                  "turning points of the motion between samples are tried if they may move a "
                  "parameter by more",
                  "with a bias of this size a 95 % interval covers 94.5 %"},
-    ThresholdRow{"force_noise_share", &Thresholds::force_noise_share, "of a residual's variance",
-                 "samples in which force noise makes up less are left out of its model",
-                 "where displacement noise prevails, the residuals have the autocorrelation of its "
-                 "errors, not of the force's"},
     ThresholdRow{
         "most_absorbed", &Thresholds::most_absorbed, "of the samples",
         "a fit is assumed to absorb no more of autocorrelated noise",
         "beyond it the residuals no longer determine the noise: its variance is at most doubled"},
-    ThresholdRow{"redundant_gain", &Thresholds::redundant_gain, "2 ln Λ",
-                 "a model that gains less over a simpler one counts as the simpler one",
-                 "ten times what the solver may leave"},
     ThresholdRow{"jenkins_shape", &Thresholds::jenkins_shape, "α",
                  "a smaller shape exponent at its bound is that of a Jenkins element",
                  "the branches differ by less than 1 % of Tc"},
-    ThresholdRow{"known_together", &Thresholds::known_together, "correlation",
-                 "above it two parameters are known only in combination",
-                 "either alone is then 1/√(1 − 0.99²) = 7 times less certain than with the other "
-                 "known"},
     ThresholdRow{"doubt", &Thresholds::doubt, "p",
                  "residuals that noise alone makes less often are not noise alone",
                  "one adequate loop in two hundred is doubted"},
@@ -132,11 +96,6 @@ constexpr std::array kTable = {
                  "intervals also include causes that explain at least this much",
                  "omitted terms are tried to first order: the better of two imperfect models need "
                  "not be the true one"},
-    ThresholdRow{
-        "simpler_cause", &Thresholds::simpler_cause, "of what the other explains",
-        "a cause that is part of another and explains so much is named in its place",
-        "the rest is less than 15 % of the residuals' variance, 40 % of their rms; likewise a "
-        "cause with an option in place of one without"},
     ThresholdRow{"noise_memory", &Thresholds::noise_memory, "strokes",
                  "a poor misfit whose residuals stay correlated for longer is not taken for noise",
                  "within half a stroke the force passes through the whole law: noise of that "
@@ -145,16 +104,12 @@ constexpr std::array kTable = {
                  "one record of several is virgin, or steady, unlike the others if it gains more",
                  "evidence of e⁵ = 150 to 1: the two differ in a few samples only, where a single "
                  "odd reading decides"},
-    ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
-                 "if every cycle samples fewer, σ and α are not identifiable",
-                 "four each for σ, α, Tc and for where the motion turns between them"},
     ThresholdRow{"starts_unloaded", &Thresholds::starts_unloaded, "of X",
                  "a contact unloaded this near to the first sample was unloaded before it",
                  "the end of a record counts as a turning point within the same distance"},
     ThresholdRow{"mobilised_by_asymptote", &Thresholds::mobilised_by_asymptote, "T* over Tc",
-                 "a loop of α >= 1 that reaches less has its slip force from the law alone",
-                 "the last tenth of the force takes the longest travel: for α = 1 as long as all "
-                 "before it"},
+                 "a slip force of a loop that slides, and reaches less of it, ran away",
+                 "a loop that slides has carried its slip force, but for the last of an asymptote"},
     ThresholdRow{"one_amplitude", &Thresholds::one_amplitude, "of the narrowest",
                  "strokes that are wider by less have the same amplitude",
                  "Masing's and Dahl's loops of the two amplitudes, with one σ and Tc, then differ "

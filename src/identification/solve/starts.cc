@@ -229,24 +229,6 @@ void KeepBetter(Look& best, Plane& plane, Look look) {
   if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = look;
 }
 
-/// Looks closer between the best point's neighbours. A Jenkins element that does not slip does not
-/// depend on its slip force: a start that is only near the slipping one has no way to it.
-void Refine(Look& best, Plane& plane) {
-  constexpr int kSubdivisions = 5;
-  constexpr int kRounds = 3;
-  double step = std::log(2.0);
-  for (int round = 0; round < kRounds; ++round) {
-    const Look middle = best;
-    for (int i = -kSubdivisions + 1; i < kSubdivisions; ++i) {
-      if (i == 0) continue;
-      Look look = middle;
-      look.reach = middle.reach * std::exp(step * i / kSubdivisions);
-      KeepBetter(best, plane, look);
-    }
-    step /= kSubdivisions;
-  }
-}
-
 void LookForTerm(std::size_t term, Look& best, Plane& plane) {
   const TermOfLook& of = kTermsOfLook[term];
   const Parameter& parameter = plane.TermOf(term);
@@ -315,11 +297,6 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
        ++guess) {
     LookAround(plane, parameters, guess, hopeless, best);
   }
-  if (parameters[kShape].fixed) {
-    for (Look& look : best) {
-      if (std::isfinite(look.cost)) Refine(look, plane);
-    }
-  }
   for (Look& look : best) {
     for (std::size_t k = 0; std::isfinite(look.cost) && k < kTermsOfLook.size(); ++k) {
       if (!plane.TermOf(k).fixed) LookForTerm(k, look, plane);
@@ -334,23 +311,6 @@ constexpr SolverOptions kRough{.function_tolerance = 1e-2,
                                .parameter_tolerance = 1e-6,
                                .max_iterations = 30,
                                .is_rough = true};
-
-/// Adds the minimum with α free, where it is smooth: with α held the likelihood may have kinks (a
-/// Jenkins loop just past slip has a false minimum where none of its samples slips).
-void AddRelaxedStart(const Problem& thin, Solver& solver, Response& response, Solution& scratch,
-                     std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
-  Problem relaxed{thin.data, thin.model, thin.state, Parameters(thin.parameters, memory)};
-  relaxed.parameters.Release(kShape);
-  solver.Bind(relaxed, response);
-  solver.Solve(starts.front().theta, kRough, scratch);
-  StartingPoint& start = starts.emplace_back(
-      StartingPoint{.theta = {scratch.theta.begin(), scratch.theta.end(), memory}});
-  start.theta[kShape] = thin.parameters[kShape].theta;
-  solver.Bind(thin, response);
-  solver.Solve(start.theta, kRough, scratch);
-  start.theta.assign(scratch.theta.begin(), scratch.theta.end());
-  start.cost = scratch.sum_of_squares;
-}
 
 }  // namespace
 
@@ -407,9 +367,6 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
     start.theta.assign(scratch.theta.begin(), scratch.theta.end());
     start.cost = scratch.sum_of_squares;
     if (is_beaten) break;
-  }
-  if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
-    AddRelaxedStart(thin, solver, response, scratch, memory, starts);
   }
   // Sorts by insertion, as they are few: stable_sort would allocate.
   for (auto start = starts.begin(); start != starts.end(); ++start) {

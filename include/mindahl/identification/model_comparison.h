@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/loop/record.h"
+#include "mindahl/models/friction_model.h"
+
+namespace mindahl::identification {
+
+/// A model fitted to all samples that count, with its scores. By default it has none.
+struct ModelScore {
+  const models::FrictionModel* model = nullptr;
+  bool rig = false;        ///< with a fitted spring in series
+  bool converged = false;  ///< without it there are no scores
+  std::size_t free_parameters = 0;
+  double rms = 0.0;         ///< rms of the scored samples [N]
+  double aicc = 0.0;        ///< infinite where there is no fit
+  double delta_aicc = 0.0;  ///< above the least of the converged fits
+  /// Root mean square error [N] of the prediction of cycles that were held out; empty where there
+  /// is nothing to hold out or a fit without them failed.
+  std::optional<double> held_out_rms = {};
+};
+
+/// Fits every model that needs no amplitude (Masing–Dahl with free α, Mindlin, Jenkins, Dahl's own
+/// law) to the same records, each without and with a spring of the rig in series. The choice is the
+/// user's.
+///
+/// *Criterion*, for k free parameters and the variance of the noise:
+///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff: ResidualStatistics
+/// Akaike (1974) and Hurvich & Tsai (1989) but for n_eff, which weighs the likelihood: residuals
+/// that are autocorrelated, or repeat in every stroke, carry less information. n_eff is that of the
+/// candidate with the least rms, for all: a poor model's residuals are autocorrelated, which must
+/// not count in its favour. Differences of rms below the rounding of the data are none.
+///
+/// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt in turn to five
+/// folds, or as many as there are cycles; each fold is predicted by fits to the rest that start
+/// from the full fit, the samples held out still making history. Records with fewer than two closed
+/// cycles are never held out.
+///
+/// With a robust loss, samples that the best candidate puts beyond 4.685 robust standard deviations
+/// are not scored in any.
+/// @param options  of every fit; `model` and the term rig_stiffness are set here. A fixed rig
+///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
+///                 another
+/// @returns each model without, then with a rig, in the order of FrictionModels()
+/// @throws InvalidArgument as Fit does, or for a fit of the displacement
+/// Deterministic. Cost: 8 fits at Depth::kIntervals, and 8 a fold at Depth::kEstimate from where
+/// these are.
+std::vector<ModelScore> CompareModels(std::span<const loop::RecordView> records,
+                                      const FitOptions& options);
+std::vector<ModelScore> CompareModels(std::span<const loop::Record> records,
+                                      const FitOptions& options);
+
+}  // namespace mindahl::identification

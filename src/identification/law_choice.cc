@@ -1,0 +1,173 @@
+#include "identification/law_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "identification/diagnosis/residual_structure.h"
+#include "identification/held_out.h"
+#include "identification/inference/local.h"
+#include "identification/inference/noise.h"
+#include "identification/intervals.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl::identification {
+namespace {
+
+using models::InitialState;
+using models::Memory;
+
+/// True if the two laws can have a σ and a Tc of their own: not before the motion turns; σ and Tc
+/// that the user holds are of one law only.
+bool AreComparable(const FitOptions& options, const ScaledRecords& data, const FitResult& fit) {
+  if (fit.law.shape_exponent <= options.thresholds.jenkins_shape) return false;
+  // Dahl's own law does not model a load that varies, and slip forces that differ it models by
+  // directions that differ in stiffness too.
+  if (data.load_varies || fit.Find("asymmetry") != nullptr) return false;
+  if (std::ranges::all_of(data.records,
+                          [](const ScaledRecord& record) { return record.reversals.empty(); })) {
+    return false;
+  }
+  return std::ranges::none_of(std::array{"sigma", "slip_force"}, [&](const char* name) {
+    return options.fixed.contains(name) || options.bounds.contains(name);
+  });
+}
+
+/// True if a record starts inside the range of its strokes: then it may be virgin.
+bool StartsInside(const ScaledRecord& record) {
+  const auto [low, high] = std::ranges::minmax(record.excitation());
+  const double start = record.excitation().front();
+  constexpr double kInside = 0.1;  // of the range: what is nearer has turned there
+  return std::min(start - low, high - start) > kInside * (high - low);
+}
+
+/// Returns the options of a fit of the other law, from that of the same steady loop. α stays as it
+/// is held.
+FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
+                          const models::FrictionModel& other, const models::BranchLaw& law) {
+  FitOptions others = options;
+  others.model = &other;
+  others.start.clear();
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status != ParameterStatus::kFixed) others.start[estimate.name] = estimate.value;
+  }
+  others.start["sigma"] = law.tangential_stiffness;
+  others.start["slip_force"] = law.slip_force;
+  if (fit.Find("alpha")->status == ParameterStatus::kFixed) {
+    others.start.erase("alpha");
+    others.fixed["alpha"] = fit.law.shape_exponent;
+  } else {
+    others.start["alpha"] = law.shape_exponent;
+  }
+  return others;
+}
+
+/// Independent samples of a fit: where its residuals repeat in every stroke, those of one.
+double IndependentSamples(const ScaledRecords& data, const FitResult& fit,
+                          const Thresholds& thresholds) {
+  std::vector<double> residual;
+  double widening = 1.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const std::vector<double>& own = fit.records[r].residual;
+    residual.insert(residual.end(), own.begin(), own.end());
+    widening = std::max(widening,
+                        DescribeStructure(record.excitation(), record.reversals, own, record.counts,
+                                          {thresholds.main_stroke, thresholds.repeat_chance})
+                            .Widening());
+  }
+  return std::max(EffectiveSamples(data, residual) / widening, 1.0);
+}
+
+/// True if α, σ or Tc is at a bound, where the law turns into another one.
+bool LawIsAtBound(const FitResult& fit) {
+  return std::ranges::any_of(std::array{"sigma", "alpha", "slip_force"}, [&](const char* name) {
+    const ParameterStatus status = fit.Find(name)->status;
+    return status == ParameterStatus::kAtLowerBound || status == ParameterStatus::kAtUpperBound;
+  });
+}
+
+}  // namespace
+
+bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
+  double widest = 0.0;
+  double narrowest = std::numeric_limits<double>::infinity();
+  double longest_end = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    const auto at = [&](std::size_t reversal) {
+      return record.excitation()[record.reversals[reversal]];
+    };
+    if (record.reversals.empty()) return false;
+    for (std::size_t j = 1; j < record.reversals.size(); ++j) {
+      const double swing = std::abs(at(j) - at(j - 1));
+      widest = std::max(widest, swing);
+      narrowest = std::min(narrowest, swing);
+    }
+    longest_end =
+        std::max({longest_end, std::abs(at(0) - record.excitation().front()),
+                  std::abs(record.excitation().back() - at(record.reversals.size() - 1))});
+  }
+  const double wider = (1 + thresholds.one_amplitude) * narrowest;
+  return widest <= wider && longest_end <= wider;
+}
+
+bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds) {
+  return std::abs(delta_aicc) < thresholds.rival_law;
+}
+
+std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
+                                     const FitOptions& options, const ScaledRecords& data,
+                                     const FitResult& fit) {
+  if (!AreComparable(options, data, fit)) return std::nullopt;
+  const bool is_masing = fit.model->memory == Memory::kReturnPoint;
+  const double amplitude = ContactAmplitude(fit, fit.law, fit.WidestRecord().measures.amplitude);
+  LawChoice choice;
+  choice.alternative = models::FindFrictionModel(is_masing ? "dahl" : "mindlin-dahl");
+  choice.law = is_masing ? models::DahlEquivalent(fit.law, amplitude)
+                         : models::MasingEquivalent(fit.law, amplitude);
+  FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
+  // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
+  const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
+    return record.initial_state == InitialState::kSteady;
+  });
+  const bool is_one_curve = is_steady && HasOneAmplitude(data, options.thresholds);
+  if (is_one_curve) {
+    const bool is_open = !options.initial_state && options.initial_states.empty();
+    if (!is_open || std::ranges::none_of(data.records, StartsInside)) return choice;
+    others.initial_state = InitialState::kVirgin;
+  }
+  FitResult other;
+  try {
+    other = Fitter(others).Fit(records, Depth::kEstimate);
+  } catch (const InvalidArgument&) {
+    return choice;  // too few samples for it
+  }
+  if (!other.converged || LawIsAtBound(other)) {
+    choice.decided = !is_one_curve;
+    if (choice.decided) choice.preferred = fit.model;
+    return choice;
+  }
+  const ScoredSamples samples = CountedSamples(fit, records);
+  const double rms = LikelihoodRms(fit, samples);
+  const double rms_of_other = LikelihoodRms(other, samples);
+  const Evidence evidence(samples.count, IndependentSamples(data, rms_of_other < rms ? other : fit,
+                                                            options.thresholds));
+  const auto criterion = [&](const FitResult& of, double its_rms) {
+    return evidence.Aicc(SumOfSquares(its_rms, samples), CountFreeParameters(of));
+  };
+  const double delta = criterion(other, rms_of_other) - criterion(fit, rms);
+  // If the laws are one curve, a virgin start counts only if it is better.
+  const bool is_undecided = LawIsUndecided(delta, options.thresholds);
+  if (is_one_curve && (delta > 0 || is_undecided)) return choice;
+  choice.delta_aicc = delta;
+  choice.law = other.law;
+  choice.decided = !is_undecided;
+  if (choice.decided) choice.preferred = delta > 0 ? fit.model : choice.alternative;
+  return choice;
+}
+
+}  // namespace mindahl::identification
