@@ -65,6 +65,9 @@ def test_processes_fit_files_and_records():
     with ProcessPoolExecutor(2) as pool:
         assert [fit.parameters for fit in pool.map(mindahl.fit, loads)] == expected
         assert [fit.parameters for fit in pool.map(mindahl.fit, records)] == expected
+    joblib = pytest.importorskip("joblib")
+    fits = joblib.Parallel(2)(joblib.delayed(mindahl.fit)(record) for record in records)
+    assert [fit.parameters for fit in fits] == expected
 
 
 def test_a_record_is_copied_with_all_its_columns(tmp_path):
