@@ -200,12 +200,7 @@ TEST(ModelSelection, KnownPropertiesLimitTheCandidates) {
 TEST(ModelSelection, OptionsThatBreakARuleAreNamed) {
   const Record record = Measure({.cycles = 1.5}, 14);
   const auto refusal = [&](const FitOptions& options, const SelectionOptions& selection) {
-    try {
-      SelectModel({&record, 1}, options, selection);
-    } catch (const InvalidArgument& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return MessageOf([&] { SelectModel({&record, 1}, options, selection); });
   };
   EXPECT_EQ(refusal({}, {.folds = 1}), "folds [-] = 1 is invalid: must be >= 2");
   FitOptions options;
