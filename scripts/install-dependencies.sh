@@ -8,6 +8,7 @@
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
 #   install-dependencies.sh --clang     also the other compiler
 #   install-dependencies.sh --readers   also what reads other files and runs the notebooks, in Python
+#   install-dependencies.sh --workflow  also what runs campaigns, and a Slurm for them
 #   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
 set -euo pipefail
 
@@ -43,10 +44,11 @@ for group in "$@"; do
         python3-nbclient python3-nbformat python3-ipykernel python3-emcee
       )
       ;;
+    --workflow) packages+=(snakemake slurmctld slurmd slurm-client munge) ;;
     --site) packages+=(mkdocs reuse) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--coverage, --fuzz, --clang, --readers or --site" >&2
+        "--coverage, --fuzz, --clang, --readers, --workflow or --site" >&2
       exit 2
       ;;
   esac

@@ -2,7 +2,8 @@
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
 # their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; how
 # often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
-# another seed every night; the Debian packages, used on a clean root; a wheel that is complete.
+# another seed every night; a campaign through Slurm; the Debian packages, used on a clean root; a wheel
+# that is complete.
 # Some hours on two cores. Every part runs, whatever became of those before.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -13,8 +14,9 @@ part() {
   "$@" || failed+=("$*")
 }
 
-./scripts/install-dependencies.sh --checks --packages --peers --readers --clang || exit
+./scripts/install-dependencies.sh --checks --packages --peers --readers --clang --workflow || exit
 part ./scripts/test.sh ci
+part ./scripts/slurm.sh
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough
 part ./scripts/clang.sh

@@ -18,13 +18,15 @@ LAW = {"sigma": 5e7, "alpha": 1 / 3, "slip_force": 20.0}
 WALKERS, STEPS, BURN_IN = 32, 1500, 500
 
 
-def sample(likelihood, seed, log_prior=lambda values: 0.0):
+def sample(result, seed, log_prior=lambda values: 0.0):
     """Draws from the posterior: flat in every parameter within the bounds of the fit, unless
-    log_prior says more of a dict of values."""
+    log_prior says more of a dict of values. With them, by columns, their names."""
+    likelihood = result.log_likelihood()
+    free = [result.parameters[name] for name in likelihood.names]
+    values = np.array([parameter.value for parameter in free])
+    spread = np.array([parameter.standard_error or 1e-3 * abs(parameter.value) for parameter in free])
     rng = np.random.default_rng(seed)
-    spread = np.where(np.isfinite(likelihood.standard_errors), likelihood.standard_errors,
-                      1e-3 * np.abs(likelihood.values))
-    start = likelihood.values + 0.1 * spread * rng.standard_normal((WALKERS, len(spread)))
+    start = values + 0.1 * spread * rng.standard_normal((WALKERS, len(spread)))
 
     def log_posterior(values):
         of_data = likelihood(values)
@@ -35,7 +37,7 @@ def sample(likelihood, seed, log_prior=lambda values: 0.0):
     sampler = emcee.EnsembleSampler(WALKERS, len(spread), log_posterior)
     sampler.random_state = np.random.RandomState(seed).get_state()
     sampler.run_mcmc(start, STEPS)
-    return sampler.get_chain(discard=BURN_IN, flat=True)
+    return sampler.get_chain(discard=BURN_IN, flat=True), likelihood.names
 
 
 def compare(result, chain, names):
@@ -65,13 +67,12 @@ def draw(result, chain, names, path):
 
 def one_record(path, picture):
     result = mindahl.fit(path, terms="none")
-    likelihood = result.log_likelihood()
-    chain = sample(likelihood, seed=1)
-    for name, interval, drawn in compare(result, chain, likelihood.names):
+    chain, names = sample(result, seed=1)
+    for name, interval, drawn in compare(result, chain, names):
         print(f"{name:<12} fit {interval[0]:.5g} … {interval[1]:.5g}   "
               f"posterior {drawn[0]:.5g} … {drawn[1]:.5g}")
     if picture:
-        draw(result, chain, likelihood.names, picture)
+        draw(result, chain, names, picture)
 
 
 def many_loops(count, picture):
@@ -86,16 +87,15 @@ def many_loops(count, picture):
         force = force + 0.01 * np.max(np.abs(force)) * rng.standard_normal(force.size)
         result = mindahl.fit(displacement, force, initial_state="virgin", displacement_noise=0.0,
                              terms="none")
-        likelihood = result.log_likelihood()
-        chain = sample(likelihood, seed)
-        for name, interval, drawn in compare(result, chain, likelihood.names):
+        chain, names = sample(result, seed)
+        for name, interval, drawn in compare(result, chain, names):
             if None in interval:
                 continue
             half = (interval[1] - interval[0]) / 2
             apart[name].append(np.subtract(drawn, interval) / half)
             ratio[name].append((drawn[1] - drawn[0]) / (2 * half))
         if seed == count and picture:
-            draw(result, chain, likelihood.names, picture)
+            draw(result, chain, names, picture)
     print("parameter    loops  lower end        upper end        width over the interval's")
     for name in LAW:
         ends = np.array(apart[name])

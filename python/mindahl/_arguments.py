@@ -90,10 +90,6 @@ def column_text(name: str, value: Any, unit: Optional[str] = None) -> str:
     return f"{column} [{unit}]" if unit else column
 
 
-def path_text(path: Union[str, os.PathLike[str]]) -> str:
-    return os.fspath(path)
-
-
 def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
     """A contiguous array of float64, the one given where it is one.
 

@@ -8,13 +8,12 @@ import threading
 import warnings
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
-from html import escape
 from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import count, in_executor, path_text
+from ._arguments import count, in_executor
 from ._fit import fit, prepared, request_and_arguments
 from ._records import is_path
 from ._result import FitWarning, Report, Table, Told
@@ -36,12 +35,6 @@ class BatchTable(Told, Table):
     def to_csv(self) -> str:
         """What `mindahl batch --output` writes."""
         return self._csv
-
-    def _repr_html_(self) -> str:
-        rows = [list(self._columns), *zip(*self._columns.values())]
-        cells = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>"
-                        for row in rows)
-        return f"<table>{cells}</table><pre>{escape(self.text())}</pre>"
 
 
 def _column(cells: list[Any]) -> Any:
@@ -104,7 +97,7 @@ Task = tuple[Any, str, str, dict[str, Any], Any]
 def _fit_one(task: Task) -> _mindahl.BatchEntry:
     source, name, strictness, given, stops = task
     if is_path(source):
-        name = path_text(source)
+        name = os.fspath(source)
     try:
         records, request, _ = prepared({**given, "source": source})
         if len(records) != 1:

@@ -3,6 +3,7 @@ library excitation() and simulate()."""
 
 from __future__ import annotations
 
+import os
 import re
 import tempfile
 import warnings
@@ -12,10 +13,9 @@ from typing import Any, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (Floats, Uncertain, array, number, optional_number,
-                         path_text, words)
+from ._arguments import Floats, Uncertain, array, is_pair, number, optional_number, words
 from ._mindahl import Record
-from ._records import RecordArguments, columns_by_name, is_path, records_of, si_columns
+from ._records import columns_by_name, is_path, si_columns
 from ._result import FitWarning, Report
 
 
@@ -30,7 +30,8 @@ def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] =
     """What a command of the program answers, and what it writes to the outputs that are named by their
     options. What it warns of and assumes is a FitWarning of the caller's caller.
 
-    files: an option, "" for none, with a path, a Record or the columns of a file that is written.
+    files: an option, "" for none, with a path, or a Record, the columns or the pair of arrays of a
+        file that is written.
     Raises InputError where the program refuses.
     """
     with tempfile.TemporaryDirectory() as folder:
@@ -38,7 +39,7 @@ def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] =
         asked = [*options, *(f"--{name}={folder}/{name}" for name in written)]
         for k, (option, given) in enumerate(files):
             name = option or ("record" if len(files) == 1 else f"record {k + 1}")
-            path = path_text(given) if is_path(given) else _written(f"{folder}/{name}", given)
+            path = os.fspath(given) if is_path(given) else _written(f"{folder}/{name}", given)
             asked.append(f"--{option}={path}" if option else path)
         # What is written for this call has a name, and no folder.
         out, said, is_done = _run(command, asked, f"{folder}/")
@@ -62,9 +63,11 @@ def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, l
 
 
 def _written(path: str, source: Any) -> str:
-    """A CSV file of columns or of a record, of as many digits as they have."""
+    """A CSV file of columns, of a record or of arrays, of as many digits as they have."""
     if isinstance(source, Record):
         source = list(si_columns(source).values())
+    elif is_pair(source):
+        source = list(zip(("displacement [m]", "force [N]"), source))
     with open(path, "w", encoding="utf-8") as file:
         file.write(",".join(name for name, _ in source) + "\n")
         file.writelines(",".join(row) + "\n"
@@ -82,13 +85,6 @@ class Conversion(Report):
     """A conversion: sections of the program's JSON, and the lines that the target reads."""
 
     input_lines: Optional[list[str]] = None
-
-
-def restored(kind: Any, arguments: dict[str, Any], memory: list[float]) -> Any:
-    """A ContactState or JointState that was pickled."""
-    state = kind(**arguments)
-    state._remember(memory)
-    return state
 
 
 def contact(
@@ -189,19 +185,6 @@ def simulate(
         reference_load=number("reference_load", reference_load))
 
 
-def _one_record(source: Any) -> Any:
-    """A path, or a record from a frame, a Record or a pair of arrays."""
-    if is_path(source):
-        return source
-    arguments = RecordArguments({})
-    records = records_of(source, None, arguments)
-    if len(records) != 1:
-        raise ValueError(f"record: {len(records)} records: give one")
-    for note in arguments.assumed:
-        warnings.warn(_mindahl.with_keywords(note), FitWarning, stacklevel=3)
-    return records[0]
-
-
 def plan(
     record: Any = None, *, sigma: Optional[float] = None, alpha: Optional[float] = None,
     slip_force: Optional[float] = None, rig_stiffness: Optional[float] = None,
@@ -232,7 +215,7 @@ def plan(
     """
     given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
     given.update(amplitude=_several(amplitude), load_ratio=_several(load_ratio))
-    files = [] if record is None else [("record", _one_record(record))]
+    files = [] if record is None else [("record", columns_by_name(record) or record)]
     return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
 
 

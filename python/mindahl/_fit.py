@@ -19,7 +19,7 @@ Asked = Union[float, str]
 def fit(
     source: Any = None, force: Any = None, *, displacement: Any = None, time: Any = None,
     normal_load: Union[None, Uncertain, Sequence[Uncertain]] = None,
-    normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
+    normal_load_column: Any = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
     encoding: str = "", sample_rate: Optional[float] = None,
@@ -62,7 +62,6 @@ def fit(
         "skip". join: a list is one record in pieces, as of a logger that begins a file with every
         stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
-    columns: further arrays by name beside displacement and force, for covariate.
 
     The model
         model: "auto", Masing's law or Dahl's own, whichever the record supports; "mindlin-dahl",
@@ -113,7 +112,7 @@ def fit(
 
 def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest, RecordArguments]:
     """What the arguments of fit() ask for, and how they say that records are to be read."""
-    of_records = ("source", "force", "columns", *ROLES, *UNITS, *OF_FILES)
+    of_records = ("source", "force", *ROLES, *UNITS, *OF_FILES)
     request = _mindahl.FitRequest(words({name: value for name, value in given.items()
                                          if name not in of_records}))
     return request, RecordArguments(given, request.covariate_columns())
@@ -122,5 +121,5 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
 def prepared(given: Mapping[str, Any]) -> tuple[list[_mindahl.Record], _mindahl.FitRequest, list[str]]:
     """The records and the request that the arguments of fit() say, and what was assumed."""
     request, arguments = request_and_arguments(given)
-    records = records_of(given["source"], given["force"], arguments, given["columns"])
+    records = records_of(given["source"], given["force"], arguments)
     return records, request, arguments.assumed

@@ -11,7 +11,7 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import array, path_text
+from ._arguments import array
 from ._mindahl import Record
 from ._records import read_csv, reading
 
@@ -32,9 +32,9 @@ def read_mat(path: Path, *, within: Optional[str] = None, **options: Any) -> Rec
     from scipy.io import loadmat
 
     try:
-        found = loadmat(path_text(path), squeeze_me=True, struct_as_record=True)
+        found = loadmat(os.fspath(path), squeeze_me=True, struct_as_record=True)
     except NotImplementedError:
-        raise ValueError(f"{path_text(path)}: is a MAT file of version 7.3, which is HDF5: read it "
+        raise ValueError(f"{os.fspath(path)}: is a MAT file of version 7.3, which is HDF5: read it "
                          "with read_hdf5()") from None
     variables = {name: value for name, value in found.items() if not name.startswith("__")}
     return _record(path, dict(_vectors(variables)), within, options)
@@ -63,7 +63,7 @@ def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Re
         for column, values in _vectors({name: np.squeeze(node[()])}):
             columns[f"{column} [{unit}]" if unit else column] = values
 
-    with h5py.File(path_text(path), "r") as file:
+    with h5py.File(os.fspath(path), "r") as file:
         file.visititems(visit)
     return _record(path, columns, within, options)
 
@@ -95,7 +95,7 @@ def _record(path: Path, columns: Columns, within: Optional[str],
               if within is None or re.match(re.escape(within.rstrip("/.")) + r"([/. ]|$)", name)}
     lengths = [len(values) for values in chosen.values() if len(values) > 1]
     if not lengths:
-        raise ValueError(f"{path_text(path)}: holds no vector of numbers"
+        raise ValueError(f"{os.fspath(path)}: holds no vector of numbers"
                          + ("" if within is None else f" within {within!r}")
                          + f": it has {', '.join(columns) or 'none'}")
     length = max(set(lengths), key=lambda size: (lengths.count(size), size))
@@ -110,11 +110,11 @@ def _record(path: Path, columns: Columns, within: Optional[str],
     bound = inspect.signature(read_csv).bind(path, **given)  # TypeError for what it has not
     bound.apply_defaults()
     record = _mindahl.record_of_columns(
-        path_text(path), list(headers.values()),
+        os.fspath(path), list(headers.values()),
         [array(name, chosen[name], keep_missing=True) for name in headers],
         reading(bound.arguments, list(map(str, bound.arguments["covariates"]))))
     # Of a text the columns have an order, which some go by; variables have none.
     if any("in their order" in note for note in record.notes):
-        raise ValueError(f"{path_text(path)}: no name says which is the displacement and which the force: "
+        raise ValueError(f"{os.fspath(path)}: no name says which is the displacement and which the force: "
                          f"give displacement and force, of {', '.join(headers)}")
     return record

@@ -11,8 +11,8 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_text, is_array, is_frame, is_pair, is_quantity, path_text,
-                         several, with_unit, words)
+from ._arguments import (array, column_text, is_array, is_frame, is_pair, is_quantity, several,
+                         with_unit, words)
 from ._mindahl import Record
 
 Column = Union[str, int]
@@ -60,7 +60,7 @@ def read_csv(
     Raises InputError naming file, line and column.
     """
     given = dict(locals())
-    return _mindahl.read_csv(path_text(path), reading(given, list(map(str, covariates))))
+    return _mindahl.read_csv(os.fspath(path), reading(given, list(map(str, covariates))))
 
 
 class RecordArguments:
@@ -85,11 +85,6 @@ class RecordArguments:
     def columns(self, roles: Optional[Mapping[str, Any]] = None) -> _mindahl.FitRequest:
         return _mindahl.FitRequest(self.words(roles))
 
-    def refuse_choices(self, what: str) -> None:
-        given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
-        if given:
-            raise ValueError(f"{given[0]} has no effect on {what}: leave it out")
-
     def of_table(self, name: str, names: Sequence[str], arrays: Sequence[Any],
                  request: _mindahl.FitRequest) -> Record:
         if self.of_files["with_file"] is not None:
@@ -110,8 +105,7 @@ class RecordArguments:
                 copy.write(content.encode() if isinstance(content, str) else content)
             return _mindahl.read_csv(path, self.columns())
 
-    def of_arrays(self, columns: Mapping[str, Any], name: str,
-                  covariates: Mapping[str, Any]) -> Record:
+    def of_arrays(self, columns: Mapping[str, Any], name: str) -> Record:
         # In SI units, unless one is stated; an angle and a torque have units of their own.
         torsional = any(self.units[unit] is not None for unit in ("displacement_unit", "force_unit"))
         names, arrays = [], []
@@ -125,14 +119,11 @@ class RecordArguments:
             names.append(role.replace("normal_load_column", "normal load") + (f" [{unit}]" if unit else ""))
             arrays.append(array(role, values))
         roles = {role: k + 1 for k, role in enumerate(role for role in columns if columns[role] is not None)}
-        names += covariates
-        arrays += [array(covariate, values) for covariate, values in covariates.items()]
         for header, values in zip(names, arrays):
             if len(values) != len(arrays[0]):
                 raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
                                  f"{len(arrays[0])}: give as many of both")
-        return self.of_table(name, names, arrays,
-                             self.columns(roles))
+        return self.of_table(name, names, arrays, self.columns(roles))
 
 
 def si_columns(record: Record) -> dict[str, tuple[str, Any]]:
@@ -175,8 +166,7 @@ def is_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
-def records_of(source: Any, force: Any, arguments: RecordArguments,
-               covariates: Optional[Mapping[str, Any]] = None) -> list[Record]:
+def records_of(source: Any, force: Any, arguments: RecordArguments) -> list[Record]:
     """The records that the arguments of fit() and track() say."""
     roles = arguments.roles
     if source is None:
@@ -187,7 +177,7 @@ def records_of(source: Any, force: Any, arguments: RecordArguments,
     if force is not None:
         roles["force"] = force
     if is_array(source):
-        return [_record_of_arrays(source, roles, arguments, covariates or {})]
+        return [_record_of_arrays(source, roles, arguments)]
     elements = several(source)
     if elements is None:
         return [_record_of(source, arguments, "record")]
@@ -196,8 +186,7 @@ def records_of(source: Any, force: Any, arguments: RecordArguments,
     return [_record_of(element, arguments, f"record {k + 1}") for k, element in enumerate(elements)]
 
 
-def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: RecordArguments,
-                      covariates: Mapping[str, Any]) -> Record:
+def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: RecordArguments) -> Record:
     if roles.get("displacement") is not None:
         raise ValueError("displacement is given twice: give it once")
     if roles.get("force") is None:
@@ -206,7 +195,7 @@ def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: Re
         if isinstance(value, (str, int)):
             raise ValueError(f"{role} = {value!r} names a column, but the displacement is an array: "
                              "give an array")
-    return arguments.of_arrays({**roles, "displacement": displacement}, "record", covariates)
+    return arguments.of_arrays({**roles, "displacement": displacement}, "record")
 
 
 def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
@@ -217,12 +206,14 @@ def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
 
 def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
     if isinstance(source, Record):
-        arguments.refuse_choices("a record that is read already")
+        for choice, value in {**arguments.roles, **arguments.units}.items():
+            if value is not None:
+                raise ValueError(f"{choice} has no effect on a record that is read already: leave it out")
         return source
     if is_path(source):
-        return _mindahl.read_csv(path_text(source), arguments.columns())
+        return _mindahl.read_csv(os.fspath(source), arguments.columns())
     if is_pair(source):
-        return arguments.of_arrays({**arguments.roles, "displacement": source[0], "force": source[1]}, name, {})
+        return arguments.of_arrays({**arguments.roles, "displacement": source[0], "force": source[1]}, name)
     columns = columns_by_name(source)
     if columns is not None:
         return arguments.of_columns(columns, name)

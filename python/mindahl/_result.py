@@ -217,31 +217,6 @@ class FittedRecord:
     residual: Optional[Floats]
 
 
-class LogLikelihood:
-    """ln L of the free parameters of a fit but for a constant: -(n_eff/n) sum((r/s)^2)/2, with the
-    noise s and the effective samples n_eff that the fit states. Priors are not in it.
-
-    names: of the free parameters. values, standard_errors: those of the fit [unit of each]; an error
-        that the fit does not state is NaN.
-    """
-
-    def __init__(self, likelihood: _mindahl.Likelihood, parameters: Mapping[str, Parameter]) -> None:
-        self._likelihood = likelihood
-        self.names: tuple[str, ...] = tuple(likelihood.names)
-        fitted = [parameters[name] for name in self.names]
-        self.values: Floats = np.array([parameter.value for parameter in fitted], dtype=np.float64)
-        self.standard_errors: Floats = np.array(
-            [np.nan if parameter.standard_error is None else parameter.standard_error
-             for parameter in fitted], dtype=np.float64)
-
-    def __call__(self, values: Any) -> float:
-        """ln L at a value of each of names [unit of each]; -inf outside the bounds of the fit.
-
-        Costs one evaluation of the law: microseconds for hundreds of samples.
-        """
-        return self._likelihood(np.ascontiguousarray(values, dtype=np.float64))
-
-
 class Covariance(NamedTuple):
     """Covariances of the free parameters [product of their units], in the order of names; NaN where
     one has no standard error."""
@@ -271,7 +246,7 @@ class FitResult(Told):
     def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
         """Reads a result that save() wrote, or `mindahl fit --json` or to_json().
 
-        One of save() is complete but for log_likelihood() and residuals_csv(); the other has parameters,
+        One of save() is complete but for log_likelihood(); the other has parameters,
         sections and warnings, and neither records nor figures.
         Raises ValueError for another document.
         """
@@ -393,12 +368,6 @@ class FitResult(Told):
         return pandas.json_normalize([{"name": name, **values} for name, values in
                                       (self._report.get("parameters") or {}).items()], sep="_")
 
-    def residuals_csv(self) -> str:
-        """What `mindahl fit --residuals` writes."""
-        if self._fitted is None:
-            raise ValueError("a result that was read or pickled has no residuals of its own: fit its records again")
-        return self._fitted.residuals_csv()
-
     def __repr__(self) -> str:
         if not self.parameters:
             return f"<mindahl.FitResult: {self.text().strip()}>"
@@ -440,7 +409,7 @@ class FitResult(Told):
         """What `mindahl fit` prints, as text()."""
         return self.text()
 
-    def log_likelihood(self) -> LogLikelihood:
+    def log_likelihood(self) -> _mindahl.LogLikelihood:
         """The log-likelihood of the free parameters, for a sampler of their posterior.
 
         Raises ValueError for a fit that failed, was read or was pickled, and for one with a robust loss,
@@ -448,7 +417,7 @@ class FitResult(Told):
         """
         if self._fitted is None:
             raise ValueError("a result that was read or pickled has no likelihood: fit its records again")
-        return LogLikelihood(_mindahl.Likelihood(self._fitted), self.parameters)
+        return self._fitted.log_likelihood()
 
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""

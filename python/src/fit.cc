@@ -17,17 +17,13 @@
 namespace mindahl::python {
 
 namespace py = pybind11;
+using identification::LogLikelihood;
 using report::Report;
 using request::FitRequest;
 
 namespace {
 
-/// A report, held where Python finds its arrays.
-struct Fitted {
-  Report report;
-};
-
-std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
+std::shared_ptr<Report> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
   const Running running;
   request.files.clear();
   std::vector<io::RecordFile> files;
@@ -36,12 +32,12 @@ std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest 
   for (const NamedRecord& record : records) {
     request::KeepTimeWindow(request, record.name, files.emplace_back(record.file));
   }
-  return std::make_shared<Fitted>(Fitted{request::FitRecords(request, std::move(files))});
+  return std::make_shared<Report>(request::FitRecords(request, std::move(files)));
 }
 
-std::string TextOf(const Fitted& fitted) {
-  if (fitted.report.failed()) return "the fit failed: " + fitted.report.fit.solver.message + '\n';
-  return report::ToText(fitted.report);
+std::string TextOf(const Report& report) {
+  if (report.failed()) return "the fit failed: " + report.fit.solver.message + '\n';
+  return report::ToText(report);
 }
 
 /// One dict a record: its arrays, and those of the fit where it did not fail.
@@ -65,47 +61,32 @@ py::list RecordsOf(const Report& report, const py::handle& owner) {
 }
 
 py::dict KeptOf(const py::object& self) {
-  const auto& fitted = self.cast<const Fitted&>();
+  const auto& report = self.cast<const Report&>();
   std::string document;
   std::string text;
   {
     const py::gil_scoped_release others_may_run;
-    document = report::ToJson(fitted.report);
-    text = TextOf(fitted);
+    document = report::ToJson(report);
+    text = TextOf(report);
   }
   py::dict kept;
   kept["document"] = document;
   kept["text"] = text;
-  kept["notes"] = fitted.report.notes;
-  kept["units"] = std::pair(std::string(fitted.report.units.displacement),
-                            std::string(fitted.report.units.force));
-  kept["records"] = RecordsOf(fitted.report, self);
+  kept["notes"] = report.notes;
+  kept["units"] =
+      std::pair(std::string(report.units.displacement), std::string(report.units.force));
+  kept["records"] = RecordsOf(report, self);
   return kept;
 }
 
-/// The log-likelihood of a fit, which keeps its records.
-class Likelihood {
- public:
-  explicit Likelihood(std::shared_ptr<const Fitted> fitted)
-      : fitted_(std::move(fitted)), of_(LikelihoodOf(*fitted_)) {}
-
-  [[nodiscard]] std::vector<std::string> names() const {
-    return {of_.names().begin(), of_.names().end()};
-  }
-  double operator()(const Array& values) { return of_(SpanOf(values, "values")); }
-
- private:
-  static identification::LogLikelihood LikelihoodOf(const Fitted& fitted) {
-    const Report& report = fitted.report;
-    if (report.failed()) throw InputError("a fit that failed has no likelihood");
-    std::vector<loop::RecordView> views;
-    for (const io::RecordFile& input : report.records) views.emplace_back(input.record);
-    return {views, report.options, report.fit};
-  }
-
-  std::shared_ptr<const Fitted> fitted_;
-  identification::LogLikelihood of_;
-};
+/// The log-likelihood of a fit, which reads its records.
+LogLikelihood LikelihoodOf(const Report& report) {
+  if (report.failed()) throw InputError("a fit that failed has no likelihood");
+  std::vector<loop::RecordView> views;
+  views.reserve(report.records.size());
+  for (const io::RecordFile& input : report.records) views.emplace_back(input.record);
+  return {views, report.options, report.fit};
+}
 
 /// Returns the request that the options of `mindahl fit` make, without files.
 FitRequest RequestOf(const std::vector<std::string>& words) {
@@ -124,20 +105,30 @@ void AddFit(py::module_& module) {
       .def(py::init(&RequestOf), py::arg("words"))
       .def("covariate_columns", &request::CovariateColumns)
       .def("check", [](const FitRequest& request) { request::MakeFitOptions(request); });
-  py::class_<Fitted, std::shared_ptr<Fitted>>(module, "Fitted")
+  py::class_<LogLikelihood>(module, "LogLikelihood",
+                            R"(ln L of the free parameters of a fit but for a constant.
+
+-(n_eff/n) sum((r/s)^2)/2, with the noise s and the effective samples n_eff that the fit states; priors
+are not in it. Called with a value of each of names [unit of each]: -inf outside the bounds of the fit.)")
+      .def_property_readonly("names",
+                             [](const LogLikelihood& likelihood) {
+                               return std::vector(likelihood.names().begin(),
+                                                  likelihood.names().end());
+                             })
+      .def(
+          "__call__",
+          [](LogLikelihood& likelihood, const Array& values) {
+            return likelihood(SpanOf(values, "values"));
+          },
+          py::arg("values"));
+  py::class_<Report, std::shared_ptr<Report>>(module, "Fitted")
       .def("page",
-           [](const Fitted& fitted) {
+           [](const Report& report) {
              const py::gil_scoped_release others_may_run;
-             return report::ToPage(fitted.report);
+             return report::ToPage(report);
            })
-      .def("residuals_csv",
-           [](const Fitted& fitted) { return report::ResidualsCsv(fitted.report); })
+      .def("log_likelihood", &LikelihoodOf, py::keep_alive<0, 1>())
       .def_property_readonly("kept", &KeptOf, "what a result is without its C++ part");
-  py::class_<Likelihood>(module, "Likelihood")
-      .def(py::init([](const std::shared_ptr<Fitted>& fitted) { return Likelihood(fitted); }),
-           py::arg("fitted"))
-      .def_property_readonly("names", &Likelihood::names)
-      .def("__call__", &Likelihood::operator(), py::arg("values"));
   module.def("fit", &Fit, py::arg("records"), py::arg("request"));
 }
 

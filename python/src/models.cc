@@ -23,7 +23,6 @@ using namespace py::literals;  // NOLINT(google-build-using-namespace)
 using models::BranchLaw;
 using models::ContactState;
 using models::FrictionModel;
-using models::JointState;
 
 namespace {
 
@@ -77,28 +76,15 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   return force;
 }
 
-/// A state with the arguments that it was made of: it is pickled and copied by these and its
+/// A contact with the arguments that it was made of: it is pickled and copied by these and its
 /// memory.
-template <typename State>
-struct Made : State {
+struct MadeState : ContactState {
   py::dict arguments;
 };
 
-template <typename State>
-void AddPickling(py::class_<Made<State>>& added) {
-  added.def("_remember",
-            [](Made<State>& state, const std::vector<double>& memory) { state.Remember(memory); });
-  added.def("__reduce__", [](const py::object& self) {
-    const auto& state = self.cast<const Made<State>&>();
-    const py::object restored = py::module_::import("mindahl._commands").attr("restored");
-    return py::make_tuple(restored,
-                          py::make_tuple(py::type::of(self), state.arguments, state.Memory()));
-  });
-}
-
-Made<ContactState> MakeState(double sigma, double slip_force, std::optional<double> alpha,
-                             const std::string& model_name, double unloaded_displacement,
-                             std::optional<double> rig_stiffness) {
+MadeState MakeState(double sigma, double slip_force, std::optional<double> alpha,
+                    const std::string& model_name, double unloaded_displacement,
+                    std::optional<double> rig_stiffness) {
   const FrictionModel& model = RequireModel(model_name);
   return {
       ContactState(model, LawOf(model, sigma, alpha, slip_force),
@@ -108,15 +94,10 @@ Made<ContactState> MakeState(double sigma, double slip_force, std::optional<doub
                "rig_stiffness"_a = rig_stiffness)};
 }
 
-Made<JointState> MakeJoint(double sigma, double slip_force, double alpha, double asymmetry,
-                           double reference_load, double unloaded_displacement) {
-  return {JointState({.law = LawOf(RequireModel("dahl"), sigma, alpha, slip_force),
-                      .reference_load = reference_load,
-                      .asymmetry = asymmetry},
-                     unloaded_displacement),
-          py::dict("sigma"_a = sigma, "slip_force"_a = slip_force, "alpha"_a = alpha,
-                   "asymmetry"_a = asymmetry, "reference_load"_a = reference_load,
-                   "unloaded_displacement"_a = unloaded_displacement)};
+MadeState RestoredState(const py::dict& arguments, const std::vector<double>& memory) {
+  auto state = py::type::of<MadeState>()(**arguments).cast<MadeState>();
+  state.Remember(memory);
+  return state;
 }
 
 }  // namespace
@@ -125,8 +106,8 @@ void AddModels(py::module_& module) {
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"),
              py::arg("asymmetry"), py::arg("load"), py::arg("reference_load"));
-  py::class_<Made<ContactState>> contact(module, "ContactState",
-                                         R"(A contact that is moved step by step.
+  py::class_<MadeState>(module, "ContactState",
+                        R"(A contact that is moved step by step.
 
 Exact for a motion that does not turn within a step, however long the step; no time enters.
 
@@ -136,9 +117,7 @@ alpha: shape exponent [-]; by default the model's own, or 1/3.
 model: "mindlin-dahl", "mindlin", "dahl" or "jenkins".
 unloaded_displacement: [m], where the force is 0 before any motion.
 rig_stiffness: of a spring [N/m] in series, by default rigid.
-Raises ValueError naming the quantity, its value and the rule.)");
-  AddPickling(contact);
-  contact
+Raises ValueError naming the quantity, its value and the rule.)")
       .def(py::init(&MakeState), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
            py::arg("alpha") = py::none(), py::arg("model") = "mindlin-dahl",
            py::arg("unloaded_displacement") = 0.0, py::arg("rig_stiffness") = py::none())
@@ -153,31 +132,12 @@ Raises ValueError naming the quantity, its value and the rule.)");
       .def_property_readonly("tangent_stiffness", &ContactState::TangentStiffness,
                              "dT/dδ [N/m] onward in the direction of the last motion")
       .def_property_readonly("remembered_extremes", &ContactState::RememberedExtremes,
-                             "the depth of nesting");
-  py::class_<Made<JointState>> joint(module, "JointState",
-                                     R"(Friction of a joint that is moved step by step.
-
-dz/dx = (sigma/slip_force)·(1 - s·z)^alpha, force = slip_force·(|N|·z + asymmetry·N·z²)/reference_load;
-exact for a motion that does not turn within a step, whatever the load does in between.
-
-sigma: tangential stiffness [N m/rad], > 0, and slip_force: Tc [N m], > 0, under the reference load.
-alpha: shape exponent [-]. asymmetry: in (-1, 1). reference_load: [N m], > 0.
-unloaded_displacement: [rad], where the force is 0 before any motion.
-Raises ValueError naming the quantity, its value and the rule.)");
-  AddPickling(joint);
-  joint
-      .def(py::init(&MakeJoint), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
-           py::arg("alpha") = 1.0, py::arg("asymmetry") = 0.0, py::arg("reference_load") = 1.0,
-           py::arg("unloaded_displacement") = 0.0)
-      .def("move", &JointState::Move, py::arg("displacement"), py::arg("load"),
-           "Moves on to a displacement and returns the force there under a load.")
-      .def("peek", &JointState::Peek, py::arg("displacement"), py::arg("load"),
-           "The force that move() would return, without moving.")
-      .def("reset", &JointState::Reset, "Back to the start.")
-      .def("tangent_stiffness", &JointState::TangentStiffness, py::arg("load"),
-           "dT/dx under a load, onward in the direction of the last motion")
-      .def_property_readonly("state", &JointState::State, "z [-]")
-      .def_property_readonly("displacement", &JointState::Displacement, "[rad]");
+                             "the depth of nesting")
+      .def(py::pickle(
+          [](const MadeState& state) { return std::pair(state.arguments, state.Memory()); },
+          [](const std::pair<py::dict, std::vector<double>>& kept) {
+            return RestoredState(kept.first, kept.second);
+          }));
 }
 
 }  // namespace mindahl::python

@@ -84,9 +84,9 @@ void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console,
                      options.request.files);
   const Messages messages{console.err, "fit"};
-  const request::FittedSweep fitted = request::FitSweepFile(
-      options.request, options.sweep, options.response, /*response_noise=*/std::nullopt,
-      [&](std::string_view note) { messages.Note(note); });
+  const request::FittedSweep fitted =
+      request::FitSweepFile(options.request, options.sweep, options.response,
+                            [&](std::string_view note) { messages.Note(note); });
   console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
   WriteAnswer(options.json_path, console, fitted);
 }

@@ -74,11 +74,11 @@ report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& cons
     const std::string name = "--" + NameOf(*option);
     if (option->count() == 0 || std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
     if (IsFlag(*option)) {
-      provenance.command += " " + name;
+      provenance.command.append(" ").append(name);
       continue;
     }
     for (const std::string& value : option->results()) {
-      provenance.command += " " + name + " " + ShellWord(value);
+      provenance.command.append(" ").append(name).append(" ").append(ShellWord(value));
     }
   }
   return provenance;

@@ -142,7 +142,6 @@ class SweepProblem {
   [[nodiscard]] bool is_fixed(std::size_t k) const { return fixed_[k].has_value(); }
   [[nodiscard]] double lower(std::size_t k) const { return lower_[k]; }
   [[nodiscard]] double upper(std::size_t k) const { return upper_[k]; }
-  [[nodiscard]] double scale() const { return scale_; }
   /// True at a bound of the search, and not at one of the law: α = 0, and over forces the least Tc.
   [[nodiscard]] bool IsAtSearchBound(std::size_t k, double value) const {
     constexpr double kNearBoundOfSweep = 1e-6;
@@ -351,7 +350,6 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
       ThrowInvalid(name.c_str(), value, "must be finite and > 0, alpha >= 0");
     }
   }
-  if (options.response_noise) RequirePositive("noise of the response", *options.response_noise);
   const SweepProblem problem(amplitude, response, options);
   const std::size_t free = problem.free();
   if (amplitude.size() <= free) {
@@ -384,11 +382,8 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
   fit.correlation_p_value = CorrelationPValue(amplitude, residuals);
 
   // Sums of squares are over the scale², and so is the variance.
-  const double known = options.response_noise.value_or(0.0) / problem.scale();
-  const double variance = options.response_noise ? known * known : best.sum_of_squares / degrees;
-  const double chance = 1 - options.confidence;
-  const double quantile_of_one =
-      options.response_noise ? ChiSquaredQuantile(1, chance) : FQuantile(1, degrees, chance);
+  const double variance = best.sum_of_squares / degrees;
+  const double quantile_of_one = FQuantile(1, degrees, 1 - options.confidence);
   const double limit = best.sum_of_squares + quantile_of_one * variance;
   const std::array<std::optional<double>, 3> errors = problem.Errors(best.point);
   for (std::size_t k = 0; k < kSweepNames.size(); ++k) {

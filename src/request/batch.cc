@@ -147,13 +147,13 @@ std::optional<StatedErrors> ErrorsOf(const BatchEntry& fit, const Repeated& quan
   const Json of_parameter = ValueOf(fit, parameter);
   if (!value.is_number() || !of_parameter.is_number()) return std::nullopt;
   const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
-  Json own = ValueOf(fit, parameter + "_error");
+  Json own = ValueOf(fit, fmt::format("{}_error", parameter));
   if (estimate != fit.parameters.end() && estimate->repeat_error) own = *estimate->repeat_error;
   if (!own.is_number() || !(own.get<double>() > 0)) return std::nullopt;
   const double scale = value.get<double>() / of_parameter.get<double>();
   StatedErrors errors{.own = own.get<double>() * scale};
-  const Json lower = ValueOf(fit, name + "_lower95");
-  const Json upper = ValueOf(fit, name + "_upper95");
+  const Json lower = ValueOf(fit, fmt::format("{}_lower95", name));
+  const Json upper = ValueOf(fit, fmt::format("{}_upper95", name));
   if (!lower.is_number() || !upper.is_number()) return errors;
   constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
   const double whole = (upper.get<double>() - lower.get<double>()) / kWidth;

@@ -43,8 +43,7 @@ bool FittedSweep::established(Strictness strictness) const {
 }
 
 FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::SweepFile sweep,
-                     const std::string& kind, std::optional<double> response_noise,
-                     const Tell& note) {
+                     const std::string& kind, const Tell& note) {
   constexpr std::array<std::string_view, 2> kKinds = {"secant", "tangent"};
   RequireOneOf("--sweep", kind, kKinds);
   const std::string model = request.model == kAutomatic ? "mindlin-dahl" : request.model;
@@ -60,7 +59,6 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
   asked.over_force = fitted.sweep.over_force;
   asked.is_compliance = fitted.sweep.is_compliance;
   asked.confidence = request.confidence;
-  asked.response_noise = response_noise;
   if (model == "mindlin") asked.fixed["alpha"] = 1.0 / 3.0;
   if (model == "jenkins") asked.fixed["alpha"] = 0.0;
   for (const auto& [name, value] : MakeFitOptions(request).fixed) asked.fixed[name] = value;
@@ -69,14 +67,12 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
 }
 
 FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
-                         const std::string& response, std::optional<double> response_noise,
-                         const Tell& note) {
+                         const std::string& response, const Tell& note) {
   if (request.files.size() != 1) {
     throw InputError("--sweep: takes one file: fit each by itself");
   }
   const std::string& file = request.files.front();
-  return FitSweep(request, file, io::ReadSweep(file, request.columns, response), kind,
-                  response_noise, note);
+  return FitSweep(request, file, io::ReadSweep(file, request.columns, response), kind, note);
 }
 
 std::string ToJson(const FittedSweep& fitted) {

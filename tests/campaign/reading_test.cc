@@ -69,12 +69,7 @@ TEST(Reading, AsksForFewerCyclesToAverageOnlyWhereThereAreSome) {
   const auto message = [](std::size_t turns) -> std::string {
     Reading reading;
     reading.gate.count = turns;
-    try {
-      RequireCycles(0, 5, reading, 0.0, "loop");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<InputError>([&] { RequireCycles(0, 5, reading, 0.0, "loop"); });
   };
   EXPECT_EQ(message(4), "--average 5: loop has only 4 reversals, two a cycle: average fewer");
   EXPECT_NE(message(1).find("loop: no whole cycle"), std::string::npos);

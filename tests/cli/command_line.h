@@ -62,4 +62,9 @@ inline std::string SampleRecord() {
   return std::string(MINDAHL_SOURCE_DIR) + "/data/mindlin_sphere_on_plane.csv";
 }
 
+/// Value of a parameter in the JSON of a fit.
+inline double Value(const nlohmann::json& fit, const char* parameter) {
+  return fit.at("parameters").at(parameter).at("value");
+}
+
 }  // namespace mindahl::testing

@@ -71,10 +71,6 @@ class FitTerms : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-double Value(const json& fit, const char* parameter) {
-  return fit.at("parameters").at(parameter).at("value");
-}
-
 void ExpectContact(const json& fit, double tolerance) {
   EXPECT_NEAR(Value(fit, "sigma") / kSigma, 1, tolerance);
   EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, tolerance);

@@ -51,10 +51,6 @@ class LoadStepsOfFit : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
-double Value(const json& fit, const char* parameter) {
-  return fit.at("parameters").at(parameter).at("value");
-}
-
 double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
 
 TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {

@@ -40,9 +40,6 @@ class MeasuredRecord : public ::testing::Test {
   static double RelativeRms(const json& fit) {
     return fit["residuals"]["rms"].get<double>() / Value(fit, "slip_force");
   }
-  static double Value(const json& fit, const char* parameter) {
-    return fit["parameters"][parameter]["value"];
-  }
 };
 
 #define SKIP_WITHOUT(file) \

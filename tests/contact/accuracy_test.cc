@@ -7,7 +7,6 @@
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 namespace mindahl::contact::accuracy_test {

@@ -1,7 +1,6 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 
 #include "printed_equations.h"
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 namespace mindahl::contact::cattaneo_mindlin_test {

@@ -1,6 +1,5 @@
 #include "mindahl/contact/hertz.h"
 
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 namespace mindahl::contact::hertz_test {

@@ -3,7 +3,6 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 namespace mindahl::contact::mindlin_dahl_mapping_test {

@@ -1,6 +1,5 @@
 #include "mindahl/contact/shape_under_load.h"
 
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 // What a stiffness under a load says of a contact of a known kind of shape: a contact is made

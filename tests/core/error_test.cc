@@ -7,16 +7,6 @@ namespace {
 
 using ::testing::StrEq;
 
-template <typename Action>
-std::string MessageOf(Action action) {
-  try {
-    action();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 TEST(Error, NamesQuantityValueAndRule) {
   EXPECT_THAT(MessageOf([] { RequirePositive("slip force [N]", -3); }),
               StrEq("slip force [N] = -3 is invalid: must be finite and > 0"));

@@ -69,6 +69,12 @@ foreach(file IN LISTS files)
     list(APPEND errors "${file}: only src/core/instruction_sets.h and ceres_problem.h may have: ${lines}")
   endif()
 endforeach()
+# Linux alone has malloc.h.
+file(READ ${SOURCE_DIR}/src/core/platform.cc text)
+string(REPLACE "#ifdef __GLIBC__\n#include <malloc.h>\n#endif" "" text "${text}")
+if(text MATCHES "malloc[.]h")
+  list(APPEND errors "src/core/platform.cc: only with __GLIBC__ is there a malloc.h")
+endif()
 # Pages are written in src/report/templates: words and layout change without C++.
 set(elements "html|head|body|main|header|div|span|p|h[1-6]|[uo]l|li|table|caption|thead|tbody|t[rhd]|figure|pre|code|strong|wbr")
 foreach(file IN LISTS files)

@@ -10,6 +10,12 @@ foreach(line "CITATION.cff|version: ${VERSION}\n" "codemeta.json|\"version\": \"
   endif()
 endforeach()
 
+# What runs where the project is published is what runs here.
+file(STRINGS ${SOURCE_DIR}/.github/workflows/ci.yml run REGEX "- run: bash [.]ci/run$")
+if(NOT run)
+  message(FATAL_ERROR ".github/workflows/ci.yml does not run .ci/run")
+endif()
+
 file(STRINGS ${SOURCE_DIR}/src/io/plot.cc started REGEX "rsvg-convert")
 file(READ ${SOURCE_DIR}/SECURITY.md page)
 string(FIND "${page}" "starts rsvg-convert alone" at)

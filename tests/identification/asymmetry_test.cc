@@ -36,15 +36,6 @@ FitOptions WithAsymmetry() {
   return options;
 }
 
-std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
-  try {
-    Fit(records, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(Asymmetry, IsRecoveredWithBothOffsetsFromVirginContact) {
   for (const double alpha : {0.2, 1.0 / 3, 0.7}) {
     const BranchLaw law{5e7, alpha, 60.0};

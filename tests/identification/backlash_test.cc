@@ -138,12 +138,7 @@ TEST(Backlash, IsRefusedWhereItCannotBe) {
   const Record record =
       BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 1.3, kSamplesPerCycle), kGap);
   const auto message = [&](FitOptions options) -> std::string {
-    try {
-      FitOne(record, options);
-    } catch (const InvalidArgument& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf([&] { FitOne(record, options); });
   };
   FitOptions late = WithBacklash();
   late.fixed["lag"] = 0.5;

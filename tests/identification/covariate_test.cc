@@ -83,15 +83,6 @@ TEST(Covariate, OfAJointFitIsOneOfAllRecords) {
   EXPECT_NEAR(fit.Find("covariate_p")->value, kPerBar, kNoiseFree * kLaw.slip_force);
 }
 
-std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
-  try {
-    Fit(records, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
   FitOptions options;
   options.covariates = {"p"};

@@ -39,12 +39,6 @@ Record Counted(Record record, double step, Generator& generator) {
   return record;
 }
 
-FitOptions Virgin() {
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  return options;
-}
-
 /// Over seeded loops: the share of 95 % intervals that cover the truth and the mean error over its
 /// scatter, of σ, α and Tc.
 struct Honesty {

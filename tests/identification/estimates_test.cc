@@ -25,12 +25,6 @@ Record NoisyLoop(double noise = 0.01, std::uint64_t seed = 5) {
   return WithForceNoise(Loop(), noise * kLaw.slip_force, generator);
 }
 
-FitOptions Virgin() {
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  return options;
-}
-
 FitResult IntervalsOf(const Record& record, const FitOptions& options) {
   const RecordView view = record;
   return Fitter(options).Fit(view, Depth::kIntervals);

@@ -12,15 +12,6 @@ namespace {
 using namespace loop;
 using namespace models;
 
-std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
-  try {
-    Fit(records, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
   struct Case {
     std::function<void(FitOptions&)> spoil;

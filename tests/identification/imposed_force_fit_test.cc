@@ -4,7 +4,6 @@
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/models/response.h"
-#include "support/message_of.h"
 #include "support/prelude.h"
 
 // Fits of the displacement that answers an imposed force.

@@ -199,15 +199,6 @@ TEST(Lag, OfOneToThreeSamplesOf200IsTheFirstCauseOfADoubt) {
   }
 }
 
-std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
-  try {
-    Fit(records, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 TEST(Lag, IsRefusedWhereItCannotBeCounted) {
   const Record timed = LateRecord(LawOf(1.0 / 3), TimesOf(2.25), 0.0);
   Record without = timed;

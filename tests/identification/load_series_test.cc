@@ -144,25 +144,16 @@ TEST(LoadSeriesFit, IsNoneOfRecordsUnderOneLoad) {
   EXPECT_EQ(Fit(same, options).Find("load_exponent"), nullptr);
 }
 
-std::string MessageOfFit(const std::vector<Record>& records, const FitOptions& options) {
-  try {
-    Fit(records, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(LoadSeriesFit, RefusesWhatHasNoMeaning) {
   const std::vector<Record> records = Series(1.0 / 3);
   FitOptions options;
   options.normal_loads = {25.0, 50.0};
-  EXPECT_NE(MessageOfFit(records, options).find("2 normal loads for 3 records"), std::string::npos);
+  EXPECT_NE(RefusalOf(records, options).find("2 normal loads for 3 records"), std::string::npos);
   options.normal_loads = {25.0, 50.0, -1.0};
-  EXPECT_NE(MessageOfFit(records, options).find("normal load [N] = -1"), std::string::npos);
+  EXPECT_NE(RefusalOf(records, options).find("normal load [N] = -1"), std::string::npos);
   options = {};
   options.fixed["load_exponent"] = 0.5;
-  EXPECT_NE(MessageOfFit(records, options).find("load_exponent has no effect"), std::string::npos);
+  EXPECT_NE(RefusalOf(records, options).find("load_exponent has no effect"), std::string::npos);
 }
 
 }  // namespace

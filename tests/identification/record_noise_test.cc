@@ -16,12 +16,6 @@ using models::InitialState;
 constexpr double kQuiet = 0.2;  // [N]
 constexpr double kLoud = 2.0;
 
-FitOptions Virgin() {
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  return options;
-}
-
 std::vector<loop::Record> Noisy(double one, double other, std::uint64_t seed = 7) {
   Generator generator(seed);
   return {WithForceNoise(Loop(), one, generator), WithForceNoise(Loop(), other, generator)};

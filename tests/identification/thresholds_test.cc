@@ -31,10 +31,6 @@ constexpr double kGrossSlip = 1.5e-6;  // [m]
 constexpr double kBelow = 0.75;
 constexpr double kAbove = 1.33;
 
-Record LoopOf(const BranchLaw& law, const History& displacement) {
-  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
-}
-
 FitOptions With(const Thresholds& thresholds) {
   FitOptions options;
   options.thresholds = thresholds;

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/message_of.h"
+
 namespace mindahl {
 
 /// A directory for one test, removed with all it holds.
@@ -46,18 +48,6 @@ class TemporaryDirectory {
 inline std::string FileContent(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// The message of the exception that `action` must throw.
-template <typename Exception, typename Action>
-std::string MessageOf(Action&& action) {
-  try {
-    action();
-  } catch (const Exception& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
 }
 
 }  // namespace mindahl

@@ -8,15 +8,6 @@
 namespace mindahl::loop::displacement_noise_test {
 namespace {
 
-History Sine(double cycles, std::size_t samples_per_cycle) {
-  const auto per_cycle = static_cast<double>(samples_per_cycle);
-  History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    history[i] = std::sin(2 * std::numbers::pi * static_cast<double>(i) / per_cycle);
-  }
-  return history;
-}
-
 History Triangle(std::size_t samples) {
   constexpr std::size_t kQuarter = 50;
   History history(samples);
@@ -24,16 +15,6 @@ History Triangle(std::size_t samples) {
     const auto turn = static_cast<double>((i + kQuarter) % (4 * kQuarter)) / (2.0 * kQuarter);
     history[i] = 2 * (1 - std::abs(turn - 1)) - 1;
   }
-  return history;
-}
-
-History WithNoise(Generator& generator, History history, double deviation) {
-  for (double& displacement : history) displacement += deviation * Normal(generator);
-  return history;
-}
-
-History Quantised(History history, double step) {
-  for (double& displacement : history) displacement = step * std::round(displacement / step);
   return history;
 }
 

@@ -90,12 +90,7 @@ TEST(Preparation, CyclesAndSamplesCountFromOneAndTheRestMakesHistory) {
 }
 
 std::string RefusalOf(const PreparationOptions& options) {
-  try {
-    PrepareAll({Made()}, options);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return MessageOf([&] { PrepareAll({Made()}, options); });
 }
 
 TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {

@@ -9,25 +9,6 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-History Sine(double cycles, std::size_t samples_per_cycle, double phase = 0.0) {
-  const auto per_cycle = static_cast<double>(samples_per_cycle);
-  History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    history[i] = std::sin(phase + 2 * std::numbers::pi * static_cast<double>(i) / per_cycle);
-  }
-  return history;
-}
-
-History WithNoise(Generator& generator, History history, double deviation) {
-  for (double& displacement : history) displacement += deviation * Normal(generator);
-  return history;
-}
-
-History Quantised(History history, double step) {
-  for (double& displacement : history) displacement = step * std::round(displacement / step);
-  return history;
-}
-
 std::size_t CountGated(const History& history) { return ChooseReversalGate(history).count; }
 
 TEST(FindReversals, FindsEveryChangeOfDirectionWithoutAGate) {

@@ -235,16 +235,6 @@ TEST(CostOf, IsWhatAMethodDoesAlongTheDrive) {
 
 // --- Preconditions --------------------------------------------------------------------------
 
-template <typename Call>
-std::string MessageOf(Call&& call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(Method, RefusesAModelThatItsElementsCannotRemember) {
   for (const std::string_view method : {"iwan"}) {
     for (const std::string_view model : {"dahl", "simplified-dahl"}) {

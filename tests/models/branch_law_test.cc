@@ -101,12 +101,7 @@ TEST(BranchLaw, NeverSlipsFullyFromOneOn) {
 
 TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
   const auto message = [](const BranchLaw& law) -> std::string {
-    try {
-      Validate(law);
-    } catch (const InvalidArgument& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf([&] { Validate(law); });
   };
   EXPECT_EQ(message({1.0, 0.5, 1.0}), "");
   EXPECT_EQ(message({0.0, 0.5, 1.0}),

@@ -5,7 +5,6 @@
 #include <new>
 
 #include "../support/histories.h"
-#include "../support/message_of.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"

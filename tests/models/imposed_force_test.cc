@@ -3,7 +3,6 @@
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
-#include "../support/message_of.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"

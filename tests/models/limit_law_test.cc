@@ -34,16 +34,6 @@ TEST(LimitLaw, IsFoundByItsNameOnly) {
   EXPECT_EQ(FindLimitLaw(""), nullptr);
 }
 
-template <typename Call>
-std::string MessageOf(Call&& call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(LimitLaw, RefusesWhatItCannotServe) {
   std::vector<double> force(2);
   const std::vector<double> three = {0, 1, 2};

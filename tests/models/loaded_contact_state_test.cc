@@ -1,7 +1,6 @@
 
 
 #include "../support/histories.h"
-#include "../support/message_of.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/variable_load.h"
 #include "support/prelude.h"

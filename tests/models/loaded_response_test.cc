@@ -1,7 +1,6 @@
 
 
 #include "../support/histories.h"
-#include "../support/message_of.h"
 #include "mindahl/models/normalized_response.h"
 #include "mindahl/models/variable_load.h"
 #include "support/prelude.h"

@@ -60,9 +60,11 @@ Real ExactShape(double alpha, double kappa, double total, double guess) {
   Real high = -1;  // none yet
   Real at = guess < 1 ? Real(-log1p(Real(-Real(guess)))) : Real(37);
   for (int i = 0; i < 200; ++i) {
-    const Real excess = decay(beta, at) + kappa * decay(1, at) - total;
+    const Real contact = decay(beta, at);
+    const Real spring = decay(1, at);
+    const Real excess = contact + kappa * spring - total;
     (excess < 0 ? low : high) = at;
-    Real next = at - excess / (exp(Real(-beta * at)) + kappa * exp(Real(-at)));
+    Real next = at - excess / (1 - beta * contact + kappa * (1 - spring));
     if (!(next > low && (high < 0 || next < high))) {
       next = high < 0 ? Real(2 * at + 1) : Real((low + high) / 2);
     }

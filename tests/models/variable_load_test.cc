@@ -400,12 +400,7 @@ TEST(VariableLoad, KeepsEveryDigitOfASmallVirginDisplacement) {
 }
 
 std::string RefusalOf(const LoadDependentLaw& law, const LoadedHistory& path) {
-  try {
-    Respond(law, path);
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return {};
+  return MessageOf([&] { Respond(law, path); });
 }
 
 TEST(VariableLoad, RefusesASampleByItsNumber) {

@@ -214,8 +214,8 @@ def test_a_further_array_can_be_a_covariate(sphere):
     _, displacement, force = sphere
     pressure = np.sin(np.arange(len(force)) / 7.0)
     factor = 2.0
-    result = mindahl.fit(displacement, force + factor * pressure, columns={"pressure": pressure},
-                         covariate="pressure")
+    columns = {"x [m]": displacement, "F [N]": force + factor * pressure, "pressure": pressure}
+    result = mindahl.fit(columns, covariate="pressure")
     # The truth lies within five standard errors but once in two million.
     fitted = result.covariate_pressure
     assert abs(fitted.value - factor) < 5 * fitted.standard_error
@@ -363,14 +363,15 @@ def test_a_sampler_of_the_log_likelihood_finds_the_intervals():
     result = mindahl.fit(displacement, force + 0.3 * rng.standard_normal(force.size),
                          force_noise=0.3, displacement_noise=0.0, terms="none")
     likelihood = result.log_likelihood()
-    highest = likelihood(likelihood.values)
-    assert likelihood(likelihood.values + likelihood.standard_errors) < highest
-    assert likelihood(-likelihood.values) == -np.inf
+    free = [result.parameters[name] for name in likelihood.names]
+    values = np.array([parameter.value for parameter in free])
+    errors = np.array([parameter.standard_error for parameter in free])
+    assert likelihood(values + errors) < likelihood(values)
+    assert likelihood(-values) == -np.inf
     with pytest.raises(ValueError):
-        likelihood(likelihood.values[1:])
+        likelihood(values[1:])
     walkers = 24
-    start = likelihood.values + 0.5 * likelihood.standard_errors * rng.standard_normal(
-        (walkers, len(likelihood.names)))
+    start = values + 0.5 * errors * rng.standard_normal((walkers, len(values)))
     sampler = emcee.EnsembleSampler(walkers, len(likelihood.names), likelihood)
     sampler.random_state = np.random.RandomState(3).get_state()
     sampler.run_mcmc(start, 600)
@@ -379,7 +380,7 @@ def test_a_sampler_of_the_log_likelihood_finds_the_intervals():
         low, high = np.percentile(chain[:, k], [2.5, 97.5])
         expected = result.parameters[name].interval
         # 24 walkers over 400 steps are some 200 independent draws: 0.25 of an error at either end.
-        assert [low, high] == pytest.approx(expected, abs=likelihood.standard_errors[k]), name
+        assert [low, high] == pytest.approx(expected, abs=errors[k]), name
 
 
 def test_every_option_of_the_program_s_fit_is_a_keyword():

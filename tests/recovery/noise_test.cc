@@ -15,10 +15,6 @@ using namespace models;
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // Tc/(σ(1 − α))
 
-Record LoopOf(const BranchLaw& law, const History& displacement) {
-  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
-}
-
 bool Holds(const ParameterEstimate& estimate, double truth) {
   return (!estimate.lower95 || *estimate.lower95 <= truth) &&
          (!estimate.upper95 || truth <= *estimate.upper95);

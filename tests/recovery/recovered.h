@@ -13,6 +13,7 @@
 #include "mindahl/loop/record.h"
 #include "mindahl/models/branch_law.h"
 #include "support/histories.h"
+#include "support/message_of.h"
 
 /// Records of known contacts, and how far a fit is from what made them.
 namespace mindahl::testing {
@@ -52,6 +53,15 @@ inline loop::Record MakeRecord(History displacement, std::vector<double> force) 
   record.displacement = std::move(displacement);
   record.force = std::move(force);
   return record;
+}
+
+/// A Masing contact from its unloaded state.
+inline loop::Record LoopOf(const models::BranchLaw& law, const History& displacement) {
+  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
+}
+
+inline identification::FitOptions Virgin() {
+  return {.initial_state = models::InitialState::kVirgin};
 }
 
 /// The samples from `begin` on.
@@ -97,6 +107,12 @@ inline loop::Record SprungLoop(const models::BranchLaw& law, double stiffness) {
 inline identification::FitResult FitOne(const loop::Record& record,
                                         const identification::FitOptions& options = {}) {
   return identification::Fit({&record, 1}, options);
+}
+
+/// Message of the InvalidArgument of a fit; empty when it throws none.
+inline std::string RefusalOf(const std::vector<loop::Record>& records,
+                             const identification::FitOptions& options) {
+  return MessageOf([&] { identification::Fit(records, options); });
 }
 
 /// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.

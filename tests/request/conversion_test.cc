@@ -51,12 +51,7 @@ TEST(MakeConversion, TakesLawAndAmplitudeFromAFit) {
   EXPECT_EQ(MakeConversion(given).options.amplitude, 1e-6);
   EXPECT_EQ(MakeConversion(given).from, "masing");
   const auto refusal = [&](const std::string& text) -> std::string {
-    try {
-      MakeConversion(written(text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<InputError>([&] { MakeConversion(written(text)); });
   };
   EXPECT_THAT(refusal(R"({"schema": "mindahl.fit/2", "parameters": {"sigma": {"value": null}}})"),
               ::testing::HasSubstr("--sigma missing: "));
@@ -155,12 +150,7 @@ TEST(MakeConversion, RefusesWhatItsTargetHasNot) {
   const auto refusal = [](const char* to, const convert::NormalContact& normal) -> std::string {
     ConversionRequest request = Request(0.5, 1e-6, to);
     request.normal = normal;
-    try {
-      MakeConversion(request);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<std::exception>([&] { MakeConversion(request); });
   };
   for (const convert::TargetRow& row : convert::Targets()) {
     const char* name = row.name.data();

@@ -29,12 +29,7 @@ std::string RefusalOf(const std::vector<io::RecordFile>& files, FitRequest reque
   for (std::size_t k = 0; k < files.size(); ++k) {
     request.files.push_back(std::string(1, static_cast<char>('a' + k)) + ".csv");
   }
-  try {
-    FitRecords(request, files);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf<InputError>([&] { FitRecords(request, files); });
 }
 
 TEST(FitRecords, RefusesADisplacementThatNeverChanges) {

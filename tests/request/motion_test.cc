@@ -92,12 +92,7 @@ TEST(Simulate, AJointUnderAColumnOfLoadHasForcesInProportionToIt) {
 // --- what a simulation takes from its request
 
 std::string SimulationRefusal(const SimulationRequest& request) {
-  try {
-    Simulate(request);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf<std::exception>([&] { Simulate(request); });
 }
 
 /// A path of three strokes with a load of its own at each row, for a law that is known.

@@ -233,12 +233,7 @@ TEST(MakePlan, RefusesWhatItCannotPlan) {
   const auto refusal = [](const auto& change) -> std::string {
     PlanRequest request = Known();
     change(request);
-    try {
-      Made(request);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
+    return MessageOf<std::exception>([&] { Made(request); });
   };
   EXPECT_THAT(refusal([](PlanRequest& r) { r.with = {"inertia"}; }),
               HasSubstr("--with: 'inertia' cannot be planned for"));

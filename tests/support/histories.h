@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <span>
 #include <string_view>
@@ -29,6 +30,26 @@ inline double Normal(Generator& generator) {  // Box and Muller
   constexpr double kTwoPi = 6.283185307179586;
   const double radius = std::sqrt(-2 * std::log(1 - Uniform(generator, 0, 1)));
   return radius * std::cos(kTwoPi * Uniform(generator, 0, 1));
+}
+
+/// Of amplitude 1 and mean 0, samples at both ends.
+inline History Sine(double cycles, std::size_t samples_per_cycle, double phase = 0.0) {
+  const auto per_cycle = static_cast<double>(samples_per_cycle);
+  History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    history[i] = std::sin(phase + 2 * std::numbers::pi * static_cast<double>(i) / per_cycle);
+  }
+  return history;
+}
+
+inline History WithNoise(Generator& generator, History history, double deviation) {
+  for (double& displacement : history) displacement += deviation * Normal(generator);
+  return history;
+}
+
+inline History Quantised(History history, double step) {
+  for (double& displacement : history) displacement = step * std::round(displacement / step);
+  return history;
 }
 
 /// Log-uniform between two positive numbers.

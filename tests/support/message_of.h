@@ -6,12 +6,12 @@
 
 namespace mindahl {
 
-/// Message of the InvalidArgument that the call throws; empty when it throws none.
-template <typename Call>
-std::string MessageOf(Call call) {
+/// Message of what the call throws; empty when it throws nothing.
+template <typename Error = InvalidArgument, typename Call>
+std::string MessageOf(Call&& call) {
   try {
     call();
-  } catch (const InvalidArgument& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return {};

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "support/message_of.h"
 
 // Includes what nearly every test needs, and lets it name the helpers of the tests and the common
 // matchers without their namespace.

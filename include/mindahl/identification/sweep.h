@@ -23,7 +23,6 @@ struct SweepOptions {
   bool is_compliance = false;  ///< responses are 1/K [m/N]
   /// Fixed parameters, "sigma" [N/m], "alpha" and "slip_force" [N].
   std::map<std::string, double> fixed = {};
-  std::optional<double> response_noise = std::nullopt;  ///< standard deviation; else estimated
   double confidence = 0.95;
 };
 
@@ -52,8 +51,7 @@ double SweepStiffnessAt(const SweepOptions& options, double sigma, double alpha,
 
 /// Fits σ, α and Tc to stiffness or compliance over the amplitude, by least squares of the
 /// response (ceres::Solve, from nine starts). Intervals are those of the profile likelihood, F(1,
-/// n − p) where the noise is estimated; a parameter whose interval does not close is bounded on
-/// one side, or not identifiable.
+/// n − p); a parameter whose interval does not close is bounded on one side, or not identifiable.
 /// @param amplitude  [m] or [N], > 0
 /// @param response   [N/m] or [m/N], > 0, likewise
 /// @throws InvalidArgument for sizes that differ, values beyond these and fewer points than free

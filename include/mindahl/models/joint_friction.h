@@ -73,10 +73,6 @@ class JointState {
   /// Returns to z = 0 at the displacement of the start.
   void Reset() { state_.Reset(); }
 
-  /// Returns the memory of the contact, as ContactState::Memory() does.
-  [[nodiscard]] std::vector<double> Memory() const { return state_.Memory(); }
-  void Remember(std::span<const double> memory) { state_.Remember(memory); }
-
  private:
   [[nodiscard]] double ForceOf(double state, double load) const;
 

@@ -27,14 +27,12 @@ struct FittedSweep {
 /// @param kind  "secant" or "tangent"
 /// @throws InputError for a model that is no Masing law
 FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::SweepFile sweep,
-                     const std::string& kind, std::optional<double> response_noise,
-                     const Tell& note);
+                     const std::string& kind, const Tell& note);
 
 /// Fits the request's one file, whose columns the request has too.
 /// @throws InputError likewise, and for more than one file
 FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
-                         const std::string& response, std::optional<double> response_noise,
-                         const Tell& note);
+                         const std::string& response, const Tell& note);
 
 /// Returns the JSON of schema mindahl.sweep/1, as `mindahl fit --sweep --json` writes it.
 std::string ToJson(const FittedSweep& fitted);
