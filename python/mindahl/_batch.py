@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import os
 import threading
 import warnings
@@ -27,8 +28,9 @@ class BatchTable(Told, Table):
     """
 
     def __init__(self, entries: list[_mindahl.BatchEntry]) -> None:
-        columns, self._csv, self._document, self._text, self.established = _mindahl.batch(entries)
-        self._columns = {name: _column(cells) for name, cells in columns.items()}
+        table, self._csv, self._document, self._text, self.established = _mindahl.batch(entries)
+        rows = json.loads(table)
+        self._columns = {name: _column([row[name] for row in rows]) for name in (rows[0] if rows else ())}
         self.report = Report(self._document, self._text, self.established, "batch")
         self.faults = {name: fault for name, fault, *_ in entries if fault}
 
@@ -39,6 +41,7 @@ class BatchTable(Told, Table):
 
 def _column(cells: list[Any]) -> Any:
     """Numbers as float64 or int64, with NaN for None; texts as objects."""
+    cells = [("no", "yes")[cell] if isinstance(cell, bool) else cell for cell in cells]
     if any(isinstance(cell, str) for cell in cells):
         return np.array(cells, dtype=object)
     if all(isinstance(cell, int) for cell in cells):

@@ -3,6 +3,7 @@ library excitation() and simulate()."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tempfile
@@ -47,6 +48,8 @@ def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] =
             if message.startswith(("note: ", "warning: ")):
                 warnings.warn(_mindahl.with_keywords(message.partition(": ")[2]), FitWarning, stacklevel=3)
         document, *texts = [_content(f"{folder}/{name}").replace(f"{folder}/", "") for name in written]
+        for note in json.loads(document).get("notes", []):
+            warnings.warn(_mindahl.with_keywords(note), FitWarning, stacklevel=3)
         return Answer(document, out, is_done), texts
 
 

@@ -36,8 +36,7 @@ class CycleTable(Told, Table):
         self.headline: str = document["headline"]
         self.energy_counts: dict[str, int] = document["energy_counts"]
         self.quantities: dict[str, dict[str, Any]] = document["quantities"]
-        _, _, changes = self._text.partition("\nChanges beyond chance:\n")
-        self.changes = tuple(line.strip() for line in changes.splitlines())
+        self.changes = tuple(document["changes"])
         header, *rows = csv.reader(io.StringIO(table))
         self.units: dict[str, str] = {}
         self._columns = {}

@@ -94,15 +94,12 @@ py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
   return StateOf(entry);
 }
 
-/// The columns of the table, the table, JSON and text of a batch, and whether all is done.
+/// The rows of the table, the table, JSON and text of a batch, and whether all is done.
 py::tuple BatchOf(const std::vector<py::tuple>& states) {
   const std::vector<BatchEntry> entries = EntriesOf(states);
-  py::dict columns;
-  for (const request::BatchColumn& column : request::TableOf(entries)) {
-    columns[py::str(std::string(column.name))] = column.cells;
-  }
-  return py::make_tuple(columns, request::TableCsv(entries), request::ToJson(entries, ""),
-                        request::ToText(entries, ""), request::AllDone(entries));
+  return py::make_tuple(request::TableJson(entries), request::TableCsv(entries),
+                        request::ToJson(entries, ""), request::ToText(entries, ""),
+                        request::AllDone(entries));
 }
 
 }  // namespace

@@ -143,7 +143,8 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     if (!course.changed()) {
-      text += report::Quantity(course.first, evolution.unit, 3) + ", unchanged";
+      // What differs between the first and the last cycle is scatter.
+      text += report::Quantity(course.first, evolution.unit, 3) + " throughout, but for scatter";
     } else {
       text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);
     }

@@ -40,11 +40,11 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
 std::string InWords(const EnergyCounts& counts) {
   std::vector<std::string> parts;
   if (counts.replaced > 0) {
-    parts.push_back(
-        fmt::format("{} unclosed cycles by the median of those before them", counts.replaced));
+    parts.push_back(fmt::format(
+        "cycles that do not close, {}, count as the median of those before them", counts.replaced));
   }
-  if (counts.left_out > 0) parts.push_back(fmt::format("{} as zero", counts.left_out));
-  return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
+  if (counts.left_out > 0) parts.push_back(fmt::format("{} count as zero", counts.left_out));
+  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
 std::string Repeats::InWords() const {

@@ -6,9 +6,15 @@
 #include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "mindahl/core/version.h"
 #include "mindahl/request/contact_request.h"
+#include "report/table.h"
 
 namespace mindahl::cli {
+
+using report::Json;
+using report::NumberOrNull;
+
 namespace {
 
 struct ContactCommandOptions {
@@ -16,10 +22,41 @@ struct ContactCommandOptions {
   std::string json_path;
 };
 
+struct ContactAnswer : request::ContactParameters {};
+
+/// Returns the quantities of a section: as rows of the text, with what they are.
+Json SectionOf(const ContactAnswer& contact, std::string_view section) {
+  Json rows = Json::object();
+  for (const request::ContactQuantity& quantity : contact.quantities) {
+    if (quantity.section != section) continue;
+    rows[quantity.name] = {{"value", NumberOrNull(quantity.value.value)},
+                           {"standard_error", NumberOrNull(quantity.value.standard_error)},
+                           {"unit", quantity.unit},
+                           {"meaning", quantity.meaning}};
+  }
+  return rows;
+}
+
+// G* is said wherever it is used: many texts write it for the inverse.
+std::string ToJson(const ContactAnswer& contact) {
+  return report::Dump({{"schema", "mindahl.contact/1"},
+                       {"version", Version()},
+                       {"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
+                       {"compliance_unit", "1/Pa"},
+                       {"contact", SectionOf(contact, "contact")},
+                       {"parameters", SectionOf(contact, "parameters")}});
+}
+
+std::string ToText(const ContactAnswer& contact) {
+  Json rows = SectionOf(contact, "contact");
+  rows.update(SectionOf(contact, "parameters"));
+  return report::TableText(rows);
+}
+
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
-  const request::ContactParameters contact = ResolveContact(options.contact);
+  const ContactAnswer contact{ResolveContact(options.contact)};
   WarnOfDoubts(options.contact, "contact", console);
   WriteAnswer(options.json_path, console, contact);
 }

@@ -1,41 +1,237 @@
-#include <limits>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "core/text.h"
+#include "mindahl/convert/conversion.h"
 #include "mindahl/core/error.h"
-#include "mindahl/request/conversion.h"
+#include "mindahl/core/version.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/steady_loop.h"
+#include "report/table.h"
 
 namespace mindahl::cli {
+
+using convert::LoopError;
+using convert::Parameter;
+using convert::TargetRow;
+using report::Json;
+using report::NumberOrNull;
+
 namespace {
 
 constexpr std::size_t kMostElements = 10'000;
 
-struct ConvertCommandOptions {
-  request::ConversionRequest asked;
+struct ConvertOptions {
+  std::string fit;              // file of `mindahl fit --json`: law and amplitude, unless given
+  std::optional<double> sigma;  // [N/m]
+  std::optional<double> alpha;  // default 1/3
+  std::optional<double> slip_force;  // [N]
+  std::optional<double> amplitude;   // X [m] of the contact's steady loop
+  std::string from;                  // "masing", "dahl" or "": that of the fit, else masing
+  std::string to;
+  convert::ConversionOptions options = {};
+  convert::NormalContact normal = {};
   std::string tolerance = "1%";
   std::string json_path;
   std::string input_lines_path;
 };
 
-void RunConvert(const ConvertCommandOptions& options, Console& console) {
+/// A contact written for a target.
+struct ConvertedContact {
+  models::BranchLaw law;
+  std::string from;
+  convert::TargetRow target;
+  convert::ConversionOptions options = {};
+  convert::NormalContact normal = {};
+  convert::Conversion conversion = {};
+  std::vector<Parameter> parameters = {};
+};
+
+/// A fit as `mindahl fit --json` wrote it.
+class WrittenFit {
+ public:
+  explicit WrittenFit(const std::string& file) : file_(file) {
+    std::ifstream stream(file);
+    if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
+    json_ = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+    const std::string schema = TextAt("/schema");
+    if (!schema.starts_with("mindahl.fit/")) {
+      throw InputError(fmt::format(
+          "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
+    }
+  }
+
+  [[nodiscard]] std::string TextAt(const std::string& path) const {
+    const Json::json_pointer pointer(path);
+    return json_.contains(pointer) && json_[pointer].is_string() ? json_[pointer].get<std::string>()
+                                                                 : "";
+  }
+
+  [[nodiscard]] std::optional<double> NumberAt(const std::string& path) const {
+    const Json::json_pointer pointer(path);
+    if (!json_.contains(pointer) || !json_[pointer].is_number()) return std::nullopt;
+    return json_[pointer].get<double>();
+  }
+
+ private:
+  std::string file_;
+  Json json_;
+};
+
+/// Takes law and amplitude from a fit where they are not given.
+void TakeFit(const WrittenFit& fit, ConvertOptions& request) {
+  const std::string model = fit.TextAt("/model");
+  if (request.from.empty()) request.from = model == "dahl" ? "dahl" : "masing";
+  const auto take = [&](std::optional<double>& value, const std::string& name) {
+    const std::string path = "/parameters/" + name;
+    const std::string known = fit.TextAt(path + "/identifiability");
+    const bool is_held = fit.TextAt(path + "/status") == "fixed";
+    if (value || (!is_held && (known == "not_identifiable" || known == "bounded_below"))) return;
+    value = fit.NumberAt(path + "/value");
+  };
+  take(request.sigma, "sigma");
+  take(request.alpha, "alpha");
+  take(request.slip_force, "slip_force");
+  if (request.amplitude || !request.sigma || !request.slip_force) return;
+  request.amplitude = fit.NumberAt("/measured/amplitude");
+  const std::optional<double> rig = fit.NumberAt("/parameters/rig_stiffness/value");
+  if (!rig || !request.amplitude) return;
+  // The rest of the amplitude is the rig's.
+  request.amplitude = models::ContactAmplitude(
+      *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl"),
+      {*request.sigma, request.alpha.value_or(1.0 / 3), *request.slip_force}, {.stiffness = *rig},
+      *request.amplitude);
+}
+
+double Require(const std::optional<double>& value, std::string_view option,
+               const ConvertOptions& request) {
+  if (value) return *value;
+  throw InputError(
+      request.fit.empty()
+          ? fmt::format("{} missing: give it, or the JSON file of a fit", option)
+          : fmt::format("{} missing: {} does not determine it: give it", option, request.fit));
+}
+
+/// Returns an error in percent; what rounding leaves of two curves that are one is 0.
+std::string Percent(double error) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(error) < kRounding ? "0 %" : fmt::format("{:.3g} %", 100 * error);
+}
+
+/// States the errors at the amplitude; an energy has none where the contact loses nothing.
+std::string ErrorAtAmplitude(const ConvertedContact& made) {
+  const LoopError& error = made.conversion.at_amplitude;
+  return fmt::format("at {:.6g} m the force is within {} of T*, the energy {}",
+                     made.options.amplitude, Percent(error.force),
+                     std::isfinite(error.energy) ? "off by " + Percent(error.energy)
+                                                 : "lost where the contact loses none");
+}
+
+ConvertedContact MakeConversion(const ConvertOptions& asked) {
+  ConvertOptions request = asked;
+  RequireOneOf("--to", request.to, NamesOf(convert::Targets(), &TargetRow::name));
+  if (!request.fit.empty()) {
+    TakeFit(WrittenFit(request.fit), request);
+    Require(request.alpha, "--alpha", request);
+  }
+  if (request.from.empty()) request.from = "masing";
+  RequireOneOf("--from", request.from, std::array<std::string_view, 2>{"masing", "dahl"});
+  ConvertedContact made{
+      .law = {Require(request.sigma, "--sigma", request), request.alpha.value_or(1.0 / 3),
+              Require(request.slip_force, "--slip-force", request)},
+      .from = request.from,
+      .target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name),
+      .options = request.options,
+      .normal = request.normal};
+  made.options.amplitude = Require(request.amplitude, "--amplitude", request);
+  Validate(made.normal, made.target);
+  const char* const model = made.from == "dahl" ? "dahl" : "mindlin-dahl";
+  made.conversion =
+      convert::Convert({models::FindFrictionModel(model), made.law}, made.target, made.options);
+  made.parameters = ParametersOf(made.conversion, made.target, made.normal);
+  return made;
+}
+
+Json ParametersJson(const ConvertedContact& made) {
+  Json parameters = Json::object();
+  for (const Parameter& parameter : made.parameters) {
+    parameters[parameter.name] = {
+        {"value", parameter.value}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
+  }
+  return parameters;
+}
+
+Json ElementsJson(const ConvertedContact& made) {
+  Json rows = Json::array();
+  if (const auto* elements = std::get_if<methods::IwanElements>(&made.conversion.law)) {
+    for (std::size_t j = 0; j < elements->size(); ++j) {
+      rows.push_back(
+          {{"stiffness", elements->stiffness[j]}, {"slip_force", elements->slip_force[j]}});
+    }
+  }
+  return rows;
+}
+
+std::string ToJson(const ConvertedContact& made) {
+  const convert::Conversion& conversion = made.conversion;
+  Json json = {{"schema", "mindahl.convert/1"},
+               {"version", Version()},
+               {"from",
+                {{"law", made.from},
+                 {"sigma", made.law.tangential_stiffness},
+                 {"alpha", made.law.shape_exponent},
+                 {"slip_force", made.law.slip_force}}},
+               {"to", made.target.name},
+               {"amplitude", made.options.amplitude},
+               {"tolerance", made.options.tolerance}};
+  json["parameters"] = ParametersJson(made);
+  json["elements"] = ElementsJson(made);
+  json["error_at_amplitude"] = {{"force", NumberOrNull(conversion.at_amplitude.force)},
+                                {"energy", NumberOrNull(conversion.at_amplitude.energy)}};
+  json["within"] = nullptr;
+  if (conversion.within) json["within"] = {conversion.within->lower, conversion.within->upper};
+  return report::Dump(json);
+}
+
+std::string ToText(const ConvertedContact& made) {
+  const auto& within = made.conversion.within;
+  return fmt::format(
+      "{}; {}\n\n{}{}\n{}\n", made.target.title, ErrorAtAmplitude(made),
+      report::TableText(ParametersJson(made)), report::TableText(ElementsJson(made)),
+      within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
+                           Percent(made.options.tolerance), within->lower, within->upper)
+             : fmt::format("not within {} at the amplitude", Percent(made.options.tolerance)));
+}
+
+void RunConvert(const ConvertOptions& options, Console& console) {
   if (options.json_path == "-" && options.input_lines_path == "-") {
     throw InputError("--json - and --input-lines - both write to standard output: give a file");
   }
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
-                     console, {options.asked.fit});
-  request::ConversionRequest asked = options.asked;
+                     console, {options.fit});
+  ConvertOptions asked = options;
   asked.options.tolerance = ParseTolerance(options.tolerance);
-  const request::ConvertedContact converted = request::MakeConversion(asked);
+  const ConvertedContact converted = MakeConversion(asked);
   if (!options.input_lines_path.empty()) {
     std::string lines;
-    for (const std::string& line : InputLines(converted)) lines += line + '\n';
+    for (const std::string& line :
+         convert::InputLines(converted.conversion, converted.target, converted.normal,
+                             ErrorAtAmplitude(converted))) {
+      lines += line + '\n';
+    }
     WriteText(lines, options.input_lines_path, console);
   }
   if (!options.json_path.empty()) WriteText(ToJson(converted), options.json_path, console);
@@ -47,7 +243,7 @@ void RunConvert(const ConvertCommandOptions& options, Console& console) {
 }  // namespace
 
 void AddConvertCommand(CLI::App& app, Console& console) {
-  const auto options = std::make_shared<ConvertCommandOptions>();
+  const auto options = std::make_shared<ConvertOptions>();
   CLI::App& command = AddCommand(
       app, "convert",
       "Converts a contact's steady loop to another law or program: the\n"
@@ -57,35 +253,35 @@ void AddConvertCommand(CLI::App& app, Console& console) {
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
        "    --input-lines contact.tcl"});
   const OptionGroup contact(command, "The contact");
-  contact.Add("fit", options->asked.fit,
+  contact.Add("fit", options->fit,
               "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
-  contact.Add("--sigma", options->asked.sigma, "tangential stiffness [N/m]", "N/M");
-  contact.Add("--alpha", options->asked.alpha, "shape exponent [-], default 1/3", "ALPHA");
-  contact.Add("--slip-force", options->asked.slip_force, "slip force Tc [N]", "N");
+  contact.Add("--sigma", options->sigma, "tangential stiffness [N/m]", "N/M");
+  contact.Add("--alpha", options->alpha, "shape exponent [-], default 1/3", "ALPHA");
+  contact.Add("--slip-force", options->slip_force, "slip force Tc [N]", "N");
   contact
-      .Add("--from", options->asked.from,
+      .Add("--from", options->from,
            "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
            "fit's, "
            "else masing")
       ->check(OneOf({"masing", "dahl"}));
-  contact.Add("--amplitude", options->asked.amplitude,
+  contact.Add("--amplitude", options->amplitude,
               "amplitude X of the contact's steady loop [m], without the rig's travel", "M");
   const OptionGroup result(command, "What it becomes");
-  result.Add("--to", options->asked.to, "law or program")
+  result.Add("--to", options->to, "law or program")
       ->required()
       ->check(OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name)));
   result.AddShown("--tolerance", options->tolerance,
                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
                   "E");
-  result.AddShown("--elements", options->asked.options.elements, "number of elements of --to iwan")
+  result.AddShown("--elements", options->options.elements, "number of elements of --to iwan")
       ->check(WholeNumber(1, kMostElements));
-  result.AddShown("--beta", options->asked.options.beta,
+  result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
-  result.Add("--normal-load", options->asked.normal.normal_load,
+  result.Add("--normal-load", options->normal.normal_load,
              "normal load [N] for --to lammps, liggghts and yade: friction\ncoefficient Tc/N", "N");
-  result.Add("--contact-radius", options->asked.normal.contact_radius,
+  result.Add("--contact-radius", options->normal.contact_radius,
              "contact radius [m] for --to lammps: the stiffness follows it", "M");
-  result.Add("--viscous", options->asked.normal.viscous,
+  result.Add("--viscous", options->normal.viscous,
              "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/app.h"
@@ -10,89 +14,423 @@
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "core/from_chars.h"
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/identification/plan.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/request/plan.h"
+#include "report/table.h"
 
 namespace mindahl::cli {
 
+using identification::Expectation;
+using identification::ExpectedFit;
+using identification::ParameterEstimate;
 using identification::Precision;
+using identification::Protocol;
 using identification::WantedPrecision;
+using models::InitialState;
+using report::Json;
+using report::NumberOrNull;
 
 namespace {
 
 struct PlanOptions {
-  request::PlanRequest plan;
+  LawOptions law;
   std::string record;
   io::RecordColumns columns;
+  Expectation expected;
+  std::optional<double> rig_stiffness;
+  std::optional<double> force_noise;
+  std::optional<double> load_exponent;
+  std::vector<double> amplitudes;
+  Protocol protocol;
   std::string initial_state = "both";
+  std::vector<std::string> with;
   std::vector<std::string> want;
   std::string json;
   std::string plot;
+
+  [[nodiscard]] bool fits_rig() const {
+    return std::ranges::find(with, "rig_stiffness") != with.end();
+  }
 };
 
-Precision ParsePrecision(const std::string& text, const std::string& whole) {
-  std::size_t end = 0;
-  Precision precision;
-  try {
-    precision.value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = 0;
+/// The loops that start from one initial state, in the order of their amplitudes.
+struct PlannedLoops {
+  std::string_view initial_state;
+  std::vector<ExpectedFit> loops;
+  std::optional<ExpectedFit> reached;  // at the least amplitude that suffices
+  Protocol fewest;                     // sufficient, with the fewest cycles
+};
+
+struct Plan {
+  Expectation expected;
+  Protocol protocol;
+  WantedPrecision wanted;
+  double slip = 0.0;  // displacement [m] of λ = 1
+  std::vector<PlannedLoops> columns = {};
+  std::vector<std::string> notes = {};
+};
+
+/// Returns gross slip behind the rig, or three elastic limits where slip is only approached.
+double SlipReach(const Expectation& expected) {
+  const double slip = models::GrossSlipDisplacement(expected.law, expected.rig);
+  return std::isfinite(slip) ? slip
+                             : 3 * expected.law.slip_force / expected.law.tangential_stiffness +
+                                   expected.law.slip_force / expected.rig.stiffness;
+}
+
+identification::FitOptions PlannedFit(const PlanOptions& options) {
+  const std::vector<std::string_view> planned = identification::PlannedTerms();
+  for (const std::string& name : options.with) RequireOneOf("--with", name, planned);
+  return {.terms = options.with};
+}
+
+/// Takes law and noise from the fit of a record. Where it does not identify α, that is --alpha or
+/// Mindlin's: the record has the other parameters to it.
+void ExpectFromRecord(const PlanOptions& options, Plan& plan) {
+  const io::RecordFile file = io::ReadRecord(options.record, options.columns);
+  plan.notes = file.notes;
+  identification::FitOptions fit_options = PlannedFit(options);
+  if (options.law.alpha) fit_options.fixed["alpha"] = *options.law.alpha;
+  if (options.rig_stiffness && !options.fits_rig()) {
+    RequirePositive("--rig-stiffness [N/m]", *options.rig_stiffness);
+    fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   }
-  const std::string rest = end > 0 ? text.substr(end) : "?";
-  precision.is_relative = rest == "%";
-  if (precision.is_relative) precision.value /= 100;
-  if ((!rest.empty() && !precision.is_relative) || !(precision.value > 0) ||
-      !std::isfinite(precision.value)) {
-    throw InputError(fmt::format(
-        "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
-        "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
-        whole));
+  identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
+  const auto is_inadequate = [&] {
+    return fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
+  };
+  const auto is_known = [&](std::string_view name) { return fit.Find(name)->is_known(); };
+  if (fit.converged && !is_inadequate() && !is_known("alpha")) {
+    plan.notes.emplace_back(
+        "alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
+    fit_options.fixed["alpha"] = 1.0 / 3;
+    fit = identification::Fit({&file.record, 1}, fit_options);
   }
-  return precision;
+  if (!fit.converged) {
+    throw InputError(
+        fmt::format("--record: {}: the fit does not converge: see mindahl fit", options.record));
+  }
+  if (is_inadequate()) {
+    plan.notes.emplace_back(
+        "the model does not describe this record: the plan holds for a contact that it describes");
+  } else {
+    for (const std::string_view name : {"sigma", "slip_force"}) {
+      if (is_known(name)) continue;
+      plan.notes.push_back(fmt::format("{} is not identified: its value is a guess", name));
+    }
+  }
+  plan.expected.law = fit.law;
+  plan.expected.rig = fit.rig;
+  plan.expected.force_noise = fit.force_noise;
+  plan.expected.displacement_noise = fit.records.front().displacement_noise;
+}
+
+void SetExpectation(const PlanOptions& options, Plan& plan) {
+  Expectation& expected = plan.expected;
+  const double displacement_noise = expected.displacement_noise;
+  RequireNonNegative("--displacement-noise [m]", displacement_noise);
+  if (!options.record.empty()) {
+    if (IsAnythingGiven(options.law)) {
+      throw InputError(
+          "--record excludes --sigma, --slip-force and other options that describe a contact");
+    }
+    ExpectFromRecord(options, plan);
+  } else {
+    RequireNoColumns(options.columns);
+    if (!options.force_noise) {
+      throw InputError("--force-noise missing: give the standard deviation of the force [N]");
+    }
+    expected.law = ResolveLaw(options.law);
+    plan.notes = DoubtsAbout(options.law.contact);
+  }
+  if (options.force_noise) expected.force_noise = *options.force_noise;
+  if (displacement_noise > 0) expected.displacement_noise = displacement_noise;
+  if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
+  if (options.load_exponent && plan.protocol.loads.empty()) {
+    throw InputError("--load-exponent needs --load-ratio: it has no effect with one load");
+  }
+  expected.load_exponent = options.load_exponent.value_or(expected.load_exponent);
+  if (options.fits_rig() && std::isinf(expected.rig.stiffness)) {
+    throw InputError("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
+  }
 }
 
 WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   WantedPrecision wanted;
   for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
+    const std::size_t equals = std::min(text.find('='), text.size());
     const std::string name = text.substr(0, equals);
-    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    if (!wanted.emplace(name, ParsePrecision(value, text)).second) {
+    std::string_view number = std::string_view(text).substr(std::min(equals + 1, text.size()));
+    Precision precision{.is_relative = number.ends_with('%')};
+    if (precision.is_relative) number.remove_suffix(1);
+    const std::optional<double> value = NumberIn<double>(number);
+    if (!value || !(*value > 0) || !std::isfinite(*value)) {
+      throw InputError(fmt::format(
+          "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
+          "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
+          text));
+    }
+    precision.value = precision.is_relative ? *value / 100 : *value;
+    if (identification::FindTerm(name) == nullptr) {
+      std::vector<std::string> names;
+      for (const auto& term : identification::Terms()) names.emplace_back(term.name);
+      throw InputError(
+          fmt::format("--want: '{}' is no parameter{} must be sigma, alpha, slip_force "
+                      "or a term that --with names",
+                      name, DidYouMean(name, names)));
+    }
+    if (!wanted.emplace(name, precision).second) {
       throw InputError(fmt::format("--want: {} is given twice: give it once", name));
     }
   }
   return wanted;
 }
 
+Plan MakePlan(const PlanOptions& options) {
+  Plan plan{.expected = options.expected,
+            .protocol = options.protocol,
+            .wanted = ParseWanted(options.want)};
+  SetExpectation(options, plan);
+  plan.slip = SlipReach(plan.expected);
+  const identification::FitOptions fit_options = PlannedFit(options);
+  std::vector<double> amplitudes = options.amplitudes;
+  constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
+  if (amplitudes.empty()) {
+    for (const double share : kShares) amplitudes.push_back(share * plan.slip);
+  }
+  for (const auto& [state, name] :
+       {std::pair(InitialState::kVirgin, "virgin"), {InitialState::kSteady, "steady"}}) {
+    if (options.initial_state != "both" && options.initial_state != name) continue;
+    PlannedLoops& column = plan.columns.emplace_back();
+    column.initial_state = name;
+    Protocol protocol = plan.protocol;
+    protocol.initial_state = state;
+    for (const double amplitude : amplitudes) {
+      protocol.amplitude = amplitude;
+      column.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
+    }
+    if (plan.wanted.empty()) continue;
+    column.reached = identification::LeastAmplitude(
+        plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
+        kShares.back() * plan.slip, fit_options, &column.fewest);
+  }
+  return plan;
+}
+
+/// Names a parameter that the table and the figure show.
+struct ShownError {
+  std::string_view parameter;
+  std::string_view name;
+  bool is_exponent;  // its error as it is; of the others over the value
+};
+
+constexpr std::array<ShownError, 5> kShownErrors = {{{"sigma", "sigma", false},
+                                                     {"alpha", "alpha", true},
+                                                     {"slip_force", "Tc", false},
+                                                     {"load_exponent", "p", true},
+                                                     {"rig_stiffness", "rig", false}}};
+
+/// Returns the error as it is shown; empty beyond 1, where the bound determines little.
+std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
+  const ParameterEstimate* estimate = fit.Find(shown.parameter);
+  if (estimate == nullptr || !estimate->standard_error) return std::nullopt;
+  const double error =
+      shown.is_exponent ? *estimate->standard_error : *estimate->standard_error / estimate->value;
+  return error < 1 ? std::optional(error) : std::nullopt;
+}
+
+bool IsFitted(const Plan& plan, const ShownError& shown) {
+  const ParameterEstimate* estimate = plan.columns.front().loops.front().Find(shown.parameter);
+  return estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
+}
+
+bool IsLawDecided(const ExpectedFit& fit) {
+  return fit.law_evidence > identification::Thresholds().rival_past;
+}
+
+Json ErrorRows(const Plan& plan) {
+  Json rows = Json::array();
+  for (const PlannedLoops& column : plan.columns) {
+    for (const ExpectedFit& fit : column.loops) {
+      Json row = {{"start", column.initial_state},
+                  {"X [m]", fit.protocol.amplitude},
+                  {"X/slip", fit.protocol.amplitude / plan.slip}};
+      for (const ShownError& each : kShownErrors) {
+        if (!IsFitted(plan, each)) continue;
+        const std::optional<double> error = ErrorOf(fit, each);
+        row[each.name] = !error             ? "-"
+                         : each.is_exponent ? fmt::format("{:.2g}", *error)
+                                            : fmt::format("{:.2g} %", 100 * *error);
+      }
+      row["law"] = IsLawDecided(fit) ? "decided" : "open";
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+std::string WantedInWords(const WantedPrecision& wanted) {
+  std::vector<std::string> parts;
+  for (const auto& [name, precision] : wanted) {
+    parts.push_back(precision.is_relative ? fmt::format("{} to {:g} %", name, 100 * precision.value)
+                                          : fmt::format("{} to {:g}", name, precision.value));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string ToText(const Plan& plan) {
+  const Expectation& expected = plan.expected;
+  const models::BranchLaw& law = expected.law;
+  std::string text = fmt::format("expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N",
+                                 law.tangential_stiffness, law.shape_exponent, law.slip_force);
+  if (!std::isinf(expected.rig.stiffness)) {
+    text += fmt::format(", rig {:.6g} N/m", expected.rig.stiffness);
+  }
+  text += fmt::format("; noise {:.4g} N and {:.4g} m a\nsample", expected.force_noise,
+                      expected.displacement_noise);
+  if (expected.autocorrelation > 0) {
+    text += fmt::format(", autocorrelated by {:g} from one to the next", expected.autocorrelation);
+  }
+  text += fmt::format("; a sine of {:g} cycles, {} samples each\n", plan.protocol.cycles,
+                      plan.protocol.samples_per_cycle);
+  if (!plan.protocol.loads.empty()) {
+    text += fmt::format("at {:g} times the load of this contact, sigma as the load to {:.4g}\n",
+                        fmt::join(plan.protocol.loads, ", "), expected.load_exponent);
+  }
+  for (const std::string& note : plan.notes) text += "note: " + note + '\n';
+  text += fmt::format(
+      "\nstandard errors\n{}"
+      "  -: error larger than the value; law: is this loop expected to distinguish Mindlin's "
+      "memory\n  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} "
+      "m{}.\n",
+      report::TableText(ErrorRows(plan)), identification::Thresholds().rival_past, plan.slip,
+      plan.protocol.loads.empty() ? "" : " at that load");
+  if (plan.wanted.empty()) return text;
+  text += fmt::format("\nwanted: {}\n", WantedInWords(plan.wanted));
+  for (const PlannedLoops& column : plan.columns) {
+    text += fmt::format("  {}: ", column.initial_state);
+    if (column.reached) {
+      const double amplitude = column.reached->protocol.amplitude;
+      text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n", amplitude,
+                          amplitude / plan.slip);
+    } else if (column.fewest.amplitude > 0) {
+      text +=
+          fmt::format("no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
+                      plan.protocol.cycles, column.fewest.amplitude, column.fewest.cycles);
+    } else {
+      text += "no amplitude determines it\n";
+    }
+  }
+  return text;
+}
+
+Json LoopsJson(const Plan& plan) {
+  Json loops = Json::array();
+  for (const PlannedLoops& column : plan.columns) {
+    for (const ExpectedFit& fit : column.loops) {
+      Json entry = {{"initial_state", column.initial_state},
+                    {"amplitude", fit.protocol.amplitude},
+                    {"peak_force", fit.peak_force}};
+      for (const ParameterEstimate& estimate : fit.parameters) {
+        entry["parameters"][estimate.name] = {
+            {"value", estimate.value},
+            {"unit", estimate.unit},
+            {"standard_error", NumberOrNull(estimate.standard_error)}};
+      }
+      entry["law_evidence"] = fit.law_evidence;
+      entry["law_decided"] = IsLawDecided(fit);
+      loops.push_back(std::move(entry));
+    }
+  }
+  return loops;
+}
+
+std::string ToJson(const Plan& plan) {
+  const Expectation& expected = plan.expected;
+  Json json = {
+      {"schema", "mindahl.plan/1"},
+      {"version", Version()},
+      {"expected",
+       {{"sigma", expected.law.tangential_stiffness},
+        {"alpha", expected.law.shape_exponent},
+        {"slip_force", expected.law.slip_force},
+        {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
+        {"force_noise", expected.force_noise},
+        {"displacement_noise", expected.displacement_noise},
+        {"autocorrelation", expected.autocorrelation},
+        {"load_exponent", plan.protocol.loads.empty() ? Json() : Json(expected.load_exponent)},
+        {"gross_slip_displacement", plan.slip}}},
+      {"protocol",
+       {{"cycles", plan.protocol.cycles},
+        {"samples_per_cycle", plan.protocol.samples_per_cycle},
+        {"load_ratios", plan.protocol.loads}}},
+      {"loops", LoopsJson(plan)},
+      {"wanted", Json::object()},
+      {"reached", Json::array()},
+      {"notes", plan.notes}};
+  for (const auto& [name, precision] : plan.wanted) {
+    json["wanted"][name] = {{"standard_error", precision.value},
+                            {"relative", precision.is_relative}};
+  }
+  for (const PlannedLoops& column : plan.columns) {
+    if (plan.wanted.empty()) break;
+    const bool any = column.fewest.amplitude > 0;
+    json["reached"].push_back(
+        {{"initial_state", column.initial_state},
+         {"least_amplitude", column.reached ? Json(column.reached->protocol.amplitude) : nullptr},
+         {"fewest_cycles", any ? Json(column.fewest.cycles) : nullptr},
+         {"amplitude_of_fewest_cycles", any ? Json(column.fewest.amplitude) : nullptr}});
+  }
+  return report::Dump(json);
+}
+
+/// Draws the expected errors against the amplitude, one panel per initial state.
+io::Plot ToPlot(const Plan& plan) {
+  io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
+  for (const PlannedLoops& column : plan.columns) {
+    io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
+                        .y_label = "standard error [-]",
+                        .log_x = true,
+                        .log_y = true,
+                        .title = std::string(column.initial_state)};
+    for (const ShownError& each : kShownErrors) {
+      io::PlotSeries series{
+          .label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
+          .style = io::PlotStyle::kLineAndPoints};
+      for (const ExpectedFit& fit : column.loops) {
+        const std::optional<double> error = ErrorOf(fit, each);
+        if (!error || *error <= 0) continue;
+        series.x.push_back(fit.protocol.amplitude / plan.slip);
+        series.y.push_back(*error);
+      }
+      if (!series.x.empty()) panel.series.push_back(std::move(series));
+    }
+    if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
+  }
+  if (plot.panels.empty()) {
+    throw InputError("--plot: no amplitude determines a parameter: there is nothing to draw");
+  }
+  return plot;
+}
+
 void RunPlan(const PlanOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}, {"--plot", options.plot}},
                      console, {options.record});
-  const Messages messages{console.err, "plan"};
-  request::PlanRequest asked = options.plan;
-  asked.wanted = ParseWanted(options.want);
-  if (options.initial_state != "both") {
-    asked.initial_state = options.initial_state == "virgin" ? models::InitialState::kVirgin
-                                                            : models::InitialState::kSteady;
-  }
-  if (options.record.empty()) {
-    RequireNoColumns(options.columns);
-  } else {
-    asked.record_name = options.record;
-    asked.record = [&] {
-      io::RecordFile file = io::ReadRecord(options.record, options.columns);
-      for (const std::string& note : file.notes) {
-        messages.Note(fmt::format("{}: {}", options.record, note));
-      }
-      return file;
-    };
-  }
-  const request::Plan plan =
-      request::MakePlan(asked, [&](std::string_view warning) { messages.Warn(warning); });
+  const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
   WriteAnswer(options.json, console, plan);
-  if (!plan.established()) console.exit_status = kNotEstablished;
+  const bool is_reached =
+      plan.wanted.empty() || std::ranges::any_of(plan.columns, [](const PlannedLoops& column) {
+        return column.reached.has_value();
+      });
+  if (!is_reached) console.exit_status = kNotEstablished;
 }
 
 }  // namespace
@@ -107,7 +445,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
        "mindahl plan --record loop.csv --cycles 10 --json plan.json",
        "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
-  AddLawOptions(command, options->plan.law);
+  AddLawOptions(command, options->law);
   const OptionGroup expected(command, "What is expected");
   expected.Add("--record", options->record,
                "take contact and noise from a fit of this record; --alpha is used\n"
@@ -115,40 +453,39 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                "FILE");
   AddColumnOptions(command, options->columns);
   expected
-      .Add("--rig-stiffness", options->plan.rig_stiffness,
+      .Add("--rig-stiffness", options->rig_stiffness,
            "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
            "unless --with fits it",
            "K")
       ->transform(InUnit("N/m"));
   expected
-      .Add("--force-noise", options->plan.force_noise, "standard deviation of the force noise [N]",
-           "S")
+      .Add("--force-noise", options->force_noise, "standard deviation of the force noise [N]", "S")
       ->transform(InUnit("N"));
   expected
-      .Add("--displacement-noise", options->plan.displacement_noise,
+      .Add("--displacement-noise", options->expected.displacement_noise,
            "standard deviation of the displacement noise [m], white; default 0", "S")
       ->transform(InUnit("m"));
-  expected.Add("--autocorrelation", options->plan.autocorrelation,
+  expected.Add("--autocorrelation", options->expected.autocorrelation,
                "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0",
                "RHO");
-  expected.Add("--load-exponent", options->plan.load_exponent,
+  expected.Add("--load-exponent", options->load_exponent,
                "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P");
   const OptionGroup loop(command, "The loop");
-  loop.Add("--amplitude", options->plan.amplitudes,
+  loop.Add("--amplitude", options->amplitudes,
            "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
       ->transform(InUnit("m"));
-  loop.Add("--load-ratio", options->plan.load_ratios,
+  loop.Add("--load-ratio", options->protocol.loads,
            "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
       ->delimiter(',');
-  loop.AddShown("--cycles", options->plan.cycles, "cycles of the sine, >= 1", "M");
-  loop.AddShown("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
+  loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
+  loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
       ->check(WholeNumber(4, 1'000'000));
   loop.AddShown("--initial-state", options->initial_state,
                 "virgin: the loop includes the first loading; steady: it does not")
       ->check(OneOf({"virgin", "steady", "both"}));
   const OptionGroup fit(command, "The fit");
-  fit.Add("--with", options->plan.with,
-          "further terms that are fitted: rig_stiffness, plateau_slope …", "TERM")
+  fit.Add("--with", options->with, "further terms that are fitted: rig_stiffness, plateau_slope …",
+          "TERM")
       ->delimiter(',');
   fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
       ->delimiter(',');

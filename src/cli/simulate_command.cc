@@ -1,9 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/app.h"
@@ -11,21 +19,276 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "core/text.h"
+#include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/loop/reversals.h"
 #include "mindahl/methods/method.h"
-#include "mindahl/request/motion.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/joint_friction.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+#include "mindahl/models/variable_load.h"
+#include "mindahl/tradeoff/approximation.h"
 
 namespace mindahl::cli {
 
+using methods::Method;
+using models::FrictionModel;
+using tradeoff::Approximation;
+
 namespace {
 
-using methods::Method;
+/// What is asked for the motion of a contact: a waveform, or a file.
+struct DriveOptions {
+  std::string waveform = "sine";
+  std::optional<double> lambda;
+  std::optional<double> amplitude;
+  models::ExcitationOptions excitation{.cycles = 1.0};
+  std::string path;
+  std::string displacement;  // column of that file; "": the first, or by its name
+  std::string load_column;   // likewise, of the normal load; "": the load is constant
+  std::string force_path;    // a file that imposes the force instead
+  std::string force;         // column of that file, likewise
+  std::uint64_t seed = 1;
+};
 
 struct SimulateOptions {
-  request::SimulationRequest simulation;
+  std::string model = "mindlin";
+  LawOptions law;
+  DriveOptions drive;
+  double asymmetry = 0.0;           // A of slip forces Tc(1 ± A) [-]
+  double force_noise = 0.0;         // standard deviation [N]
+  double displacement_noise = 0.0;  // standard deviation [m]
+  std::string method = "exact";
+  std::optional<std::size_t> steps;
+  std::optional<double> tolerance;
   std::string output;
 };
 
-void AddDriveOptions(CLI::App& command, request::DriveRequest& request) {
+/// One entry a row of output.
+struct ImposedMotion {
+  std::vector<double> time = {};          // [s]
+  std::vector<double> displacement = {};  // [m]
+  std::vector<double> envelope = {};      // [m]; empty unless the amplitude changes along the way
+  std::vector<double> normal_load = {};   // [N]; empty unless a file gives it
+};
+
+struct Simulation {
+  ImposedMotion motion = {};
+  std::vector<double> force = {};  // [N]
+};
+
+/// Time counts rows.
+std::vector<double> CountRows(std::size_t rows) {
+  std::vector<double> time(rows);
+  std::iota(time.begin(), time.end(), 0.0);
+  return time;
+}
+
+ImposedMotion MotionFromFile(const DriveOptions& request) {
+  ImposedMotion motion;
+  const io::CsvTable table = io::ReadCsvTable(request.path);
+  motion.displacement = io::ImposedColumn(table, io::Imposed::kDisplacement, request.displacement);
+  if (!request.load_column.empty()) {
+    motion.normal_load = io::ImposedColumn(table, io::Imposed::kNormalLoad, request.load_column);
+  }
+  motion.time = CountRows(motion.displacement.size());
+  return motion;
+}
+
+ImposedMotion MotionFromWaveform(const DriveOptions& request, const models::BranchLaw& law) {
+  models::ExcitationOptions excitation = request.excitation;
+  excitation.waveform = *models::FindWaveform(request.waveform);
+  excitation.seed = request.seed;
+  if (request.lambda.has_value() == request.amplitude.has_value()) {
+    throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
+  }
+  if (request.lambda) {
+    RequirePositive("--lambda [-]", *request.lambda);
+    const double gross_slip = GrossSlipDisplacement(law);
+    if (!std::isfinite(gross_slip)) {
+      throw InputError(fmt::format(
+          "--lambda needs a finite gross-slip displacement, which does not exist for alpha = {} >= "
+          "1: give --amplitude",
+          law.shape_exponent));
+    }
+    excitation.amplitude = *request.lambda * gross_slip;
+  } else {
+    RequirePositive("--amplitude [m]", *request.amplitude);
+    excitation.amplitude = *request.amplitude;
+  }
+  models::Excitation made = models::MakeExcitation(excitation);
+  ImposedMotion motion{std::move(made.time), std::move(made.displacement)};
+  if (excitation.waveform == models::Waveform::kGrowingSine)
+    motion.envelope = std::move(made.envelope);
+  return motion;
+}
+
+ImposedMotion MakeMotion(const DriveOptions& request, const models::BranchLaw& law) {
+  return request.path.empty() ? MotionFromWaveform(request, law) : MotionFromFile(request);
+}
+
+/// Returns a force within the slip force, which a file imposes.
+std::vector<double> ReadImposedForce(const DriveOptions& request, const models::BranchLaw& law) {
+  const io::CsvTable table = io::ReadCsvTable(request.force_path);
+  std::vector<double> force = io::ImposedColumn(table, io::Imposed::kForce, request.force);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (std::abs(force[i]) < law.slip_force) continue;
+    throw InputError(fmt::format(
+        "{}:{}: a force of {} N is not within the slip force, {} N, at which the contact slides "
+        "any distance: keep forces below it, or impose the displacement with --path",
+        request.force_path, table.lines[i], force[i], law.slip_force));
+  }
+  return force;
+}
+
+Approximation ResolveMethod(const SimulateOptions& options) {
+  const methods::Method& method = *methods::FindMethod(options.method);
+  if (options.steps && method.steps.empty()) {
+    throw InputError(fmt::format(
+        "--steps {} has no effect with --method {}, which takes no steps: choose another method",
+        *options.steps, method.name));
+  }
+  if (options.tolerance && !method.adaptive) {
+    throw InputError(
+        fmt::format("--tolerance {} has no effect with --method {}: it belongs to --method dopri5",
+                    *options.tolerance, method.name));
+  }
+  const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
+  if (is_limit && method.name != "exact") {
+    throw InputError(fmt::format("--method {} cannot compute --model {}, which has no branches",
+                                 method.name, options.model));
+  }
+  Approximation approximation{options.model, is_limit ? "" : options.method, {}};
+  approximation.resolution.steps = options.steps.value_or(method.default_steps);
+  if (options.tolerance) approximation.resolution.tolerance = *options.tolerance;
+  return approximation;
+}
+
+/// Returns the model of an option that needs the closed form of a law, by the exact method.
+const FrictionModel& RequireClosedForm(const SimulateOptions& options, std::string_view option) {
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  if (model != nullptr && !model->scaled_by_peak && options.method == "exact") return *model;
+  throw InputError(
+      fmt::format("{} cannot be used with --model {} --method {}: use --model mindlin, "
+                  "mindlin-dahl, jenkins or dahl and --method exact",
+                  option, options.model, options.method));
+}
+
+/// Returns the law at the reference load, for which σ and the slip force are given.
+models::BranchLaw LawOf(const SimulateOptions& options, bool at_reference) {
+  LawOptions law = options.law;
+  if (at_reference && (law.sigma || law.slip_force)) law.contact.known.normal_load.reset();
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  return ResolveLaw(law, options.model, model == nullptr ? std::nullopt : model->shape_exponent);
+}
+
+/// Computes the displacement that an imposed force makes.
+Simulation FollowForce(const SimulateOptions& options) {
+  const FrictionModel& model = RequireClosedForm(options, "--force-path");
+  if (options.asymmetry != 0) {
+    throw InputError("--asymmetry cannot be used with --force-path: leave one of the two out");
+  }
+  const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
+  Simulation made{.force = ReadImposedForce(options.drive, law)};
+  made.motion.time = CountRows(made.force.size());
+  made.motion.displacement.resize(made.force.size());
+  models::EvaluateDisplacement(model, law, made.force, made.motion.displacement);
+  return made;
+}
+
+/// Computes the force of a contact whose slip force follows a load, or differs between the
+/// directions: Dahl's own law does both.
+Simulation FollowLoad(const SimulateOptions& options) {
+  const bool is_loaded = !options.drive.load_column.empty();
+  const FrictionModel& model =
+      RequireClosedForm(options, is_loaded ? "--normal-load-column" : "--asymmetry");
+  const std::optional<contact::UncertainValue>& given = options.law.contact.known.normal_load;
+  if (is_loaded && !given) {
+    throw InputError(
+        "--normal-load missing: with --normal-load-column it is the load for which sigma and the "
+        "slip force are given");
+  }
+  const models::BranchLaw law = LawOf(options, is_loaded);
+  const double load = is_loaded ? given->value : 1.0;
+  Simulation made{.motion = MakeMotion(options.drive, law)};
+  const std::vector<double>& displacement = made.motion.displacement;
+  made.force.resize(displacement.size());
+  if (model.memory == models::Memory::kNone) {
+    const std::vector<double> constant(displacement.size(), load);
+    models::EvaluateJointFriction(
+        {.law = law, .reference_load = load, .asymmetry = options.asymmetry}, displacement,
+        is_loaded ? made.motion.normal_load : constant, made.force);
+  } else if (!is_loaded) {
+    models::EvaluateForce(
+        model, law,
+        models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), model.memory,
+                                {.asymmetry = options.asymmetry}),
+        displacement, made.force);
+  } else if (options.asymmetry != 0) {
+    throw InputError(
+        "--asymmetry cannot be used with --normal-load-column: leave one of the two out");
+  } else {
+    models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / load,
+                                    .reference_load = load,
+                                    .reference_stiffness = law.tangential_stiffness,
+                                    .shape_exponent = law.shape_exponent},
+                                   displacement, made.motion.normal_load, made.force);
+  }
+  return made;
+}
+
+void AddNoise(std::vector<double>& values, double standard_deviation,
+              boost::random::mt19937_64& engine) {
+  if (standard_deviation == 0) return;
+  boost::random::normal_distribution<double> normal(0.0, standard_deviation);
+  for (double& value : values) value += normal(engine);
+}
+
+Simulation Simulate(const SimulateOptions& options) {
+  Validate(options.law.contact);
+  RequireNonNegative("--noise-force [N]", options.force_noise);
+  RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
+  if (!(std::abs(options.asymmetry) < 1)) {
+    ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
+  }
+  const Approximation approximation = ResolveMethod(options);
+  Simulation made;
+  if (!options.drive.force_path.empty()) {
+    made = FollowForce(options);
+  } else if (options.asymmetry != 0 || !options.drive.load_column.empty()) {
+    made = FollowLoad(options);
+  } else {
+    const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
+    made.motion = MakeMotion(options.drive, law);
+    made.force.resize(made.motion.displacement.size());
+    Prepare(approximation, law)({made.motion.displacement, made.motion.envelope}, made.force);
+  }
+  boost::random::mt19937_64 engine(options.drive.seed);
+  AddNoise(made.force, options.force_noise, engine);
+  AddNoise(made.motion.displacement, options.displacement_noise, engine);
+  return made;
+}
+
+std::string ToCsv(const Simulation& simulation) {
+  const auto& [motion, force] = simulation;
+  std::vector<io::CsvColumn> columns = {
+      {"time [s]", motion.time}, {"displacement [m]", motion.displacement}, {"force [N]", force}};
+  if (!motion.normal_load.empty()) columns.push_back({"normal load [N]", motion.normal_load});
+  return io::CsvText(columns);
+}
+
+std::vector<std::string> SimulatedModels() {
+  std::vector<std::string> names;
+  for (const FrictionModel& model : models::FrictionModels()) names.emplace_back(model.name);
+  for (const models::LimitLaw& law : models::LimitLaws()) names.emplace_back(law.name);
+  return names;
+}
+
+void AddDriveOptions(CLI::App& command, DriveOptions& request) {
   const OptionGroup group(command, "Excitation");
   group.AddShown("--waveform", request.waveform, "imposed displacement")
       ->check(OneOf(models::WaveformNames()));
@@ -78,11 +341,10 @@ std::string MethodHelp() {
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  const request::SimulationRequest& asked = options.simulation;
   RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, console,
-                     {asked.drive.path, asked.drive.force_path});
-  const request::Simulation simulation = request::Simulate(asked);
-  WarnOfDoubts(asked.law.contact, "simulate", console);
+                     {options.drive.path, options.drive.force_path});
+  const Simulation simulation = Simulate(options);
+  WarnOfDoubts(options.law.contact, "simulate", console);
   WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
 }
 
@@ -101,31 +363,27 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
        "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
        "    --path path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddShown("--model", options->simulation.model, "friction model")
-      ->check(OneOf(request::SimulatedModels()));
-  AddLawOptions(command, options->simulation.law);
+  plain.AddShown("--model", options->model, "friction model")->check(OneOf(SimulatedModels()));
+  AddLawOptions(command, options->law);
   plain.AddShown(
-      "--asymmetry", options->simulation.asymmetry,
+      "--asymmetry", options->asymmetry,
       "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]", "A");
-  AddDriveOptions(command, options->simulation.drive);
+  AddDriveOptions(command, options->drive);
 
   const OptionGroup noise(command, "Noise");
-  noise.Add("--noise-force", options->simulation.force_noise, "standard deviation [N]", "N");
-  noise.Add("--noise-displacement", options->simulation.displacement_noise,
-            "standard deviation [m]", "M");
-  noise
-      .AddShown("--seed", options->simulation.drive.seed,
-                "seed of the noise and of the random waveform")
+  noise.Add("--noise-force", options->force_noise, "standard deviation [N]", "N");
+  noise.Add("--noise-displacement", options->displacement_noise, "standard deviation [m]", "M");
+  noise.AddShown("--seed", options->drive.seed, "seed of the noise and of the random waveform")
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
   const OptionGroup method(command, "Method");
-  method.AddShown("--method", options->simulation.method, MethodHelp())
+  method.AddShown("--method", options->method, MethodHelp())
       ->check(OneOf(NamesOf(methods::Methods(), &Method::name)));
   method
-      .Add("--steps", options->simulation.steps,
-           "substeps a sample, elements of iwan, intervals of table", "N")
+      .Add("--steps", options->steps, "substeps a sample, elements of iwan, intervals of table",
+           "N")
       ->check(WholeNumber(1, 1'000'000'000));
-  method.Add("--tolerance", options->simulation.tolerance,
+  method.Add("--tolerance", options->tolerance,
              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
   plain.Add("-o,--output", options->output, "CSV file; default standard output", "FILE");
   command.callback([options, &console] { RunSimulate(*options, console); });

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,8 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -27,19 +30,31 @@
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
+#include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/interruption.h"
+#include "mindahl/core/version.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
+#include "mindahl/io/record_stream.h"
+#include "mindahl/report/units.h"
 #include "mindahl/request/fit_request.h"
-#include "mindahl/request/track.h"
+#include "report/table.h"
+#include "report/template.h"
 
 namespace mindahl::cli {
-namespace {
 
 using campaign::CycleFit;
+using campaign::Evolution;
+using report::Json;
+
+namespace {
 
 struct TrackCommandOptions {
-  request::TrackRequest track{.threads = std::max(1U, std::thread::hardware_concurrency())};
+  FitRequest fit;           // model of each cycle, and what is known of the contact
+  std::size_t average = 1;  // cycles in a row that are fitted together
+  std::size_t every = 1;    // one fit of so many that there could be
+  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string broken_rows = "refuse";
   std::string output;
   std::string json_path;
@@ -49,8 +64,214 @@ struct TrackCommandOptions {
   bool overwrite = false;
 };
 
+/// Holds the answer for a test of many cycles, apart from its rows.
+struct TrackedTest {
+  std::vector<std::string> files = {};
+  std::string output = {};
+  bool is_torsional = false;
+  std::size_t samples = 0;
+  std::size_t cycles = 0;
+  std::size_t unused_samples = 0;  // at the ends, part of no whole cycle
+  std::size_t broken_rows = 0;     // rows skipped
+  double reversal_gate = 0.0;      // [m]
+  bool is_gate_certain = true;
+  std::size_t fits = 0;
+  std::size_t flagged = 0;
+  std::size_t resumed = 0;  // fits that the table had already
+  std::map<std::string, std::size_t, std::less<>> flags = {};
+  campaign::TrackedCourses courses = {};
+  campaign::DissipatedEnergy energy;
+  std::vector<campaign::Cycle> log = {};   // loops of the cycles 1, 10, 100, …
+  std::vector<Evolution> evolutions = {};  // of the courses, in the end
+  std::vector<std::string> notes = {};     // what was assumed, one sentence each
+
+  /// Adds a fit, in their order, but for its energy: of rows that are made again that counts once.
+  void Add(const CycleFit& fit) {
+    ++fits;
+    flagged += fit.flags.empty() ? 0 : 1;
+    for (const std::string& flag : fit.flags) ++flags[flag];
+    courses.Add(fit);
+  }
+  /// False where no fit converged.
+  [[nodiscard]] bool established() const {
+    const auto failed = flags.find("not_converged");
+    return failed == flags.end() || failed->second != fits;
+  }
+};
+
+// --- the answer
+
+Json QuantityRows(const TrackedTest& test) {
+  Json quantities = Json::object();
+  for (const Evolution& evolution : test.evolutions) {
+    const campaign::CourseDescription& course = evolution.description;
+    Json steps = Json::array();
+    for (const campaign::Step& step : course.steps) {
+      steps.push_back({{"cycle", step.cycle},
+                       {"before", step.before},
+                       {"after", step.after},
+                       {"p_value", step.p_value}});
+    }
+    Json trends = Json::array();
+    for (const campaign::Trend& trend : course.trends) {
+      trends.push_back({{"first_cycle", trend.first_cycle},
+                        {"last_cycle", trend.last_cycle},
+                        {"from", trend.from},
+                        {"to", trend.to},
+                        {"p_value", trend.p_value}});
+    }
+    quantities[std::string(evolution.quantity->name)] = {
+        {"first", course.first},
+        {"last", course.last},
+        {"unit", evolution.unit},
+        {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
+        {"steps", std::move(steps)},
+        {"trends", std::move(trends)}};
+  }
+  return quantities;
+}
+
+Json FlagCounts(const TrackedTest& test) {
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(flag.name);
+    flags[flag.name] = found == test.flags.end() ? 0 : found->second;
+  }
+  return flags;
+}
+
+/// Returns the flags that a cycle has, with what they say.
+Json FlagRows(const TrackedTest& test) {
+  Json rows = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(flag.name);
+    if (found == test.flags.end()) continue;
+    rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};
+  }
+  return rows;
+}
+
+std::string ToJson(const TrackedTest& test) {
+  const campaign::EnergyCounts& counts = test.energy.counts();
+  return report::Dump(
+      {{"schema", "mindahl.track/1"},
+       {"version", Version()},
+       {"input",
+        {{"files", test.files},
+         {"samples", test.samples},
+         {"cycles", test.cycles},
+         {"unused_samples", test.unused_samples},
+         {"broken_rows", test.broken_rows}}},
+       {"reversals", {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}}},
+       {"output", test.output},
+       {"fits", test.fits},
+       {"flagged", test.flagged},
+       {"flags", FlagCounts(test)},
+       {"accumulated_energy", test.energy.total()},
+       {"energy_counts",
+        {{"measured", counts.measured},
+         {"replaced", counts.replaced},
+         {"left_out", counts.left_out}}},
+       {"headline", campaign::Headline(test.evolutions)},
+       {"changes", campaign::ChangeStatements(test.evolutions)},
+       {"quantities", QuantityRows(test)},
+       {"notes", test.notes}});
+}
+
+/// Returns what was read, fitted and dissipated, one sentence each.
+std::vector<std::string> Facts(const TrackedTest& test) {
+  std::vector<std::string> facts = {
+      fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
+                  test.output),
+      fmt::format("{} dissipated in all{}", report::Quantity(test.energy.total(), "J", 6),
+                  campaign::InWords(test.energy.counts()))};
+  if (test.resumed > 0) facts.push_back(fmt::format("{} fits existed already", test.resumed));
+  if (test.unused_samples > 0) {
+    facts.push_back(
+        fmt::format("{} samples at the ends belong to no whole cycle", test.unused_samples));
+  }
+  for (const std::string& note : test.notes) facts.push_back("note: " + note);
+  return facts;
+}
+
+std::string ToText(const TrackedTest& test) {
+  std::string text = campaign::Headline(test.evolutions) + '\n' +
+                     fmt::format("{}\n", fmt::join(Facts(test), "\n"));
+  if (test.flagged > 0) {
+    text +=
+        fmt::format("\n{} a flag:\n{}",
+                    test.flagged == 1 ? "1 cycle has" : fmt::format("{} cycles have", test.flagged),
+                    report::TableText(FlagRows(test)));
+  }
+  if (test.evolutions.empty()) return text;
+  text += '\n' + report::TableText(QuantityRows(test));
+  const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
+  if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
+  return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
+}
+
+std::vector<io::PlotPanel> PanelsOf(const TrackedTest& test) {
+  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
+  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
+  return panels;
+}
+
+std::string ToPage(const TrackedTest& test, const report::Provenance& provenance) {
+  const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
+  Json figures = Json::array();
+  for (io::PlotPanel& panel : PanelsOf(test)) {
+    const std::string id = fmt::format("evolution-{}", figures.size() + 1);
+    std::string quantity = panel.y_label;
+    figures.push_back({{"id", id},
+                       {"quantity", std::move(quantity)},
+                       {"figure", report::FigureData(std::move(panel), id)}});
+  }
+  const bool is_failed = !test.established();
+  return report::RenderPage(
+      "track",
+      {{"title", fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles)},
+       {"verdict", is_failed ? report::VerdictData("bad", "failed", "no fit of a cycle converged")
+                             : report::VerdictData(changes.empty() ? "good" : "poor",
+                                                   changes.empty() ? "steady" : "changed",
+                                                   campaign::Headline(test.evolutions))},
+       {"changes", is_failed ? Json() : Json(changes)},
+       {"facts", Facts(test)},
+       {"ends", report::TableData("first and last row of the table of cycles", QuantityRows(test))},
+       {"evolutions", std::move(figures)},
+       {"flags", report::TableData("cycles with a flag", FlagRows(test))},
+       {"provenance", report::ProvenanceData(provenance)}});
+}
+
+/// Draws the time histories, one below the other.
+io::Plot ToPlot(const TrackedTest& test) {
+  constexpr int kPanelHeight = 230;  // [px]
+  io::Plot plot{.title = report::NameOf(test.files), .panels = PanelsOf(test)};
+  if (plot.panels.empty()) {
+    throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
+  }
+  plot.panels.front().title = campaign::Headline(test.evolutions);
+  plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
+  return plot;
+}
+
+// --- the run
+
+/// Returns the compliance G* [1/Pa], where it or the materials are known.
+std::optional<double> ComplianceOf(const contact::KnownContact& known) {
+  if (known.tangential_compliance) return known.tangential_compliance->value;
+  const contact::KnownBody& one = known.body_1;
+  const contact::KnownBody& two = known.body_2;
+  if (!one.youngs_modulus || !one.poisson_ratio || !two.youngs_modulus || !two.poisson_ratio) {
+    return std::nullopt;
+  }
+  return contact::TangentialCompliance(
+      {.youngs_modulus = one.youngs_modulus->value, .poisson_ratio = one.poisson_ratio->value},
+      {.youngs_modulus = two.youngs_modulus->value, .poisson_ratio = two.poisson_ratio->value});
+}
+
 void RequireTrackOptions(const TrackCommandOptions& options) {
-  request::Validate(options.track);
+  MakeCycleFitOptions(options.fit);
+  Validate(options.fit.contact);
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
   }
@@ -130,71 +351,142 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
   return kept;
 }
 
+/// Reads a test of many cycles piece by piece, fits each, and appends its row to the table.
 class TrackRun {
  public:
-  TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+  TrackRun(const TrackCommandOptions& options, const CLI::App& command)
       : options_(options),
         command_(command),
-        console_(console),
-        messages_{console.err, "track"},
-        run_(options.track, {.fits = [this](std::span<const CycleFit> fits) { Take(fits); },
-                             .note = [this](std::string_view text) { messages_.Note(text); },
-                             .warn = [this](std::string_view text) { messages_.Warn(text); },
-                             .begins = [this](campaign::TrackOptions& made) { Begin(made); },
-                             .piece_is_read = [this] { RequireNoSignal(); }}) {}
+        test_{.output = options.output,
+              .energy = campaign::DissipatedEnergy(options.average * options.every)} {}
 
-  void Go();
+  /// @throws InputError naming the place in a file; rows that are finished are kept
+  TrackedTest Track();
 
  private:
-  void Track();
-  void Begin(campaign::TrackOptions& made);
-  void RequireNoSignal() const;
+  void Read();
+  void ReadFile(const std::string& file);
+  void BeginSource(const io::RecordFile& layout, const std::string& name);
+  void BeginFits(const loop::RecordView& head, std::string_view source);
+  void Resume(campaign::TrackOptions& made);
+  void RequireNoSignal() const {
+    if (signals_->noted() != 0) throw InputError("stopped by a signal");
+  }
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther() const;
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
-  Console& console_;
-  Messages messages_;
-  request::TrackRun run_;
+  TrackedTest test_;
+  identification::FitOptions fit_;
+  campaign::Reading reading_;  // of the head
+  io::JoinedTimes times_;
+  std::optional<io::RecordFile> layout_;
+  std::optional<campaign::Tracker> tracker_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::optional<io::AppendedFile> output_;
   bool has_write_failed_ = false;               // or is at work
   std::optional<io::DeferredSignals> signals_;  // while rows are written
 };
 
-void TrackRun::Begin(campaign::TrackOptions& made) {
-  request::TrackedTest& test = run_.test();
-  if (!run_.chosen_terms().empty()) messages_.Note(run_.chosen_terms());
-  const double gate = *made.fit.preparation.reversal_gate;
-  if (!run_.reading().gate_is_given && gate > 0) {
-    messages_.Note(
+void TrackRun::BeginSource(const io::RecordFile& layout, const std::string& name) {
+  test_.files.push_back(name);
+  if (!layout_) {
+    layout_ = layout;
+    layout_->record = {};
+    test_.is_torsional = layout.is_torsional;
+  }
+  test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
+  if (options_.fit.join) io::RequireJoinable(*layout_, test_.files.front(), layout, name);
+  if (layout.is_torsional == test_.is_torsional) return;
+  throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", test_.files.front(),
+                               test_.is_torsional ? "torque" : "force", name,
+                               layout.is_torsional ? "torque" : "force"));
+}
+
+void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) {
+  fit_ = MakeCycleFitOptions(options_.fit);
+  const contact::KnownContact& known = options_.fit.contact.known;
+  if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
+  reading_ = campaign::ChooseReading(head, fit_);
+  const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
+  if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
+  const double gate = *fit_.preparation.reversal_gate;
+  if (!reading_.gate_is_given && gate > 0) {
+    test_.notes.push_back(
         fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
                     "says another",
-                    gate, run_.reading().samples));
+                    gate, reading_.samples));
   }
-  std::error_code error;
-  if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
-    campaign::DissipatedEnergy energy = test.energy;
-    kept_ = ReadKeptCycles(options_.output, test.is_torsional, [&](const CycleFit& fit) {
-      if (test.fits % campaign::kBatch == 0) test.energy = energy;  // before the last batch
-      energy.Add(fit);
-      test.Add(fit);
-    });
-    test.resumed = kept_->fits;
-    if (kept_->fits == 0) kept_.reset();
+  campaign::TrackOptions options{
+      .fit = fit_,
+      .compliance = test_.is_torsional ? std::nullopt : ComplianceOf(known),
+      .together = options_.average,
+      .every = options_.every,
+      .threads = options_.threads};
+  Resume(options);
+  if (const auto doubt = campaign::DoubtAbout(reading_, source)) test_.notes.push_back(*doubt);
+  tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
+}
+
+void TrackRun::ReadFile(const std::string& file) {
+  io::RecordStream stream(file, options_.fit.columns);
+  BeginSource(stream.layout(), file);
+  io::Samples piece;
+  if (tracker_) {
+    stream.Next(piece);
+  } else {
+    piece = campaign::ReadHead(stream);
+    BeginFits(campaign::ViewOf(piece), file);
   }
-  made.skipped = kept_ ? kept_->fits - campaign::kBatch : 0;
+  while (piece.size() > 0) {
+    test_.samples += piece.size();
+    times_.Shift(piece.time);
+    tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    AskWhetherToGoOn();
+    RequireNoSignal();
+    if (!stream.Next(piece)) break;
+  }
+  if (options_.fit.join) {
+    times_.NextFile();
+  } else {
+    test_.unused_samples += tracker_->NextFile();
+    times_ = {};
+  }
+  const io::LeftOutRows left_out = stream.left_out();
+  if (left_out.count == 0) return;
+  const bool skips = options_.fit.columns.skip_broken_rows;
+  if (skips) test_.broken_rows += left_out.count;
+  test_.notes.push_back(
+      skips ? fmt::format("{}: {} broken row{} skipped, the first: {}", file, left_out.count,
+                          left_out.count == 1 ? "" : "s", left_out.fault)
+            : fmt::format("{}: {} rows have no number in a column that is used and are left out, "
+                          "the first in line {}",
+                          file, left_out.count, left_out.first_line));
+}
+
+/// Takes over what the table has already, where that is asked for.
+void TrackRun::Resume(campaign::TrackOptions& made) {
   made.seed = SeedOf(command_);
+  std::error_code error;
+  if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error) return;
+  campaign::DissipatedEnergy energy = test_.energy;
+  kept_ = ReadKeptCycles(options_.output, test_.is_torsional, [&](const CycleFit& fit) {
+    if (test_.fits % campaign::kBatch == 0) test_.energy = energy;  // before the last batch
+    energy.Add(fit);
+    test_.Add(fit);
+  });
+  test_.resumed = kept_->fits;
+  if (kept_->fits == 0) kept_.reset();
+  made.skipped = kept_ ? kept_->fits - campaign::kBatch : 0;
 }
 
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
 void TrackRun::Take(std::span<const CycleFit> fits) {
-  request::TrackedTest& test = run_.test();
   std::string rows;
   for (const CycleFit& fit : fits) {
-    test.energy.Add(fit);
-    rows += campaign::CycleTableRow(fit, test.energy.total(), test.is_torsional);
+    test_.energy.Add(fit);
+    rows += campaign::CycleTableRow(fit, test_.energy.total(), test_.is_torsional);
   }
   if (kept_ && rows != kept_->last_batch) ThrowOther();
   has_write_failed_ = true;
@@ -204,10 +496,10 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   } else {
     if (!output_) {
       output_.emplace(options_.output, 0);
-      output_->Append(campaign::CycleTableHeader(test.is_torsional));
+      output_->Append(campaign::CycleTableHeader(test_.is_torsional));
     }
     output_->Append(rows);
-    for (const CycleFit& fit : fits) test.Add(fit);
+    for (const CycleFit& fit : fits) test_.Add(fit);
   }
   has_write_failed_ = false;
 }
@@ -220,65 +512,64 @@ void TrackRun::ThrowOther() const {
       options_.output, kept_->fits - campaign::kBatch + 1, kept_->fits));
 }
 
-void TrackRun::RequireNoSignal() const {
-  if (signals_->noted() != 0) throw InputError("stopped by a signal");
+/// Reads and fits all cycles.
+void TrackRun::Read() {
+  for (const std::string& file : options_.fit.files) ReadFile(file);
+  if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
+  tracker_->Finish();
+  if (kept_) ThrowOther();  // a record that ends before them
+  has_write_failed_ = true;
+  if (output_) output_->Finish();
+  has_write_failed_ = false;
+  RequireNoSignal();
 }
 
-void TrackRun::Track() {
+TrackedTest TrackRun::Track() {
   signals_.emplace();
   try {
-    run_.Read();
-    if (kept_) ThrowOther();  // a record that ends before them
-    has_write_failed_ = true;
-    if (output_) output_->Finish();
-    has_write_failed_ = false;
-    RequireNoSignal();
+    Read();
   } catch (const InputError& error) {
     // Finished rows are kept, unless they are another run's, or there are none.
     const bool is_stopped = signals_->noted() != 0;
-    if (!run_.has_begun() && is_stopped) {
-      throw InputError("stopped by a signal before the first row");
-    }
-    if (!run_.has_begun() || (kept_ && !is_stopped)) throw;
+    if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
+    if (!tracker_ || (kept_ && !is_stopped)) throw;
     try {
-      if (!has_write_failed_) run_.FitTheRest();
+      if (!has_write_failed_) tracker_->Finish();
       if (output_) output_->Finish();
     } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
     throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
-                                 is_stopped ? "stopped by a signal" : error.what(),
-                                 run_.test().fits, options_.output,
-                                 is_stopped ? "" : "repair the fault and "));
+                                 is_stopped ? "stopped by a signal" : error.what(), test_.fits,
+                                 options_.output, is_stopped ? "" : "repair the fault and "));
   }
   signals_.reset();
-  run_.Finish();
-}
-
-void TrackRun::Go() {
-  Track();
-  request::TrackedTest& test = run_.test();
-  test.output = options_.output;
-  console_.exit_status = test.established() ? kDone : kNotEstablished;
-  const std::vector<campaign::Evolution> evolutions = test.courses.Describe(test.is_torsional);
-  if (!options_.plot_path.empty()) io::WritePlot(ToPlot(test, evolutions), options_.plot_path);
-  if (!options_.report_path.empty()) {
-    io::WriteFileAtomically(
-        options_.report_path,
-        ToPage(test, evolutions, ProvenanceOf(command_, console_, options_.track.fit.files)));
-  }
-  WriteAnswer(options_.json_path, console_, test, evolutions);
+  test_.cycles = tracker_->cycles();
+  test_.log = tracker_->log();
+  test_.reversal_gate = *fit_.preparation.reversal_gate;
+  test_.is_gate_certain = reading_.gate.certain;
+  campaign::RequireCycles(test_.cycles, options_.average, reading_, test_.reversal_gate,
+                          fmt::format("{}", fmt::join(test_.files, ", ")));
+  test_.evolutions = test_.courses.Describe(test_.is_torsional);
+  return std::move(test_);
 }
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
-  RequireDistinctFiles(options.track.fit.files);
+  RequireDistinctFiles(options.fit.files);
   RequireOutputPaths({{"--output", options.output},
                       {"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--plot", options.plot_path},
                       {"--report", options.report_path}},
-                     console, options.track.fit.files);
+                     console, options.fit.files);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
   RequireTrackOptions(options);
-  TrackRun(options, command, console).Go();
+  const TrackedTest test = TrackRun(options, command).Track();
+  console.exit_status = test.established() ? kDone : kNotEstablished;
+  if (!options.plot_path.empty()) io::WritePlot(ToPlot(test), options.plot_path);
+  if (!options.report_path.empty()) {
+    io::WriteFileAtomically(options.report_path,
+                            ToPage(test, ProvenanceOf(command, console, options.fit.files)));
+  }
+  WriteAnswer(options.json_path, console, test);
 }
 
 }  // namespace
@@ -294,19 +585,19 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                   "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
                   "track.json"});
   OptionGroup(command, kPlainGroup)
-      .Add("files", options->track.fit.files,
+      .Add("files", options->fit.files,
            "CSV records of one test, in order; no cycle extends over two files", "FILE")
       ->required();
-  AddJoin(command, options->track.fit);
-  AddColumnOptions(command, options->track.fit.columns);
-  AddModelOptions(command, options->track.fit);
-  AddContactOptions(command, options->track.fit.contact);
+  AddJoin(command, options->fit);
+  AddColumnOptions(command, options->fit.columns);
+  AddModelOptions(command, options->fit);
+  AddContactOptions(command, options->fit.contact);
   const OptionGroup cycles(command, "Cycles");
   cycles
-      .AddShown("--average", options->track.average,
+      .AddShown("--average", options->average,
                 "number of consecutive cycles that are fitted together")
       ->check(WholeNumber(1, 1'000'000));
-  cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
+  cycles.AddShown("--every", options->every, "fit only one cycle of this many")
       ->check(WholeNumber(1, 1'000'000'000));
   cycles
       .AddShown("--broken-rows", options->broken_rows,
@@ -314,7 +605,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                 "skipped and counted")
       ->check(OneOf({"refuse", "skip"}));
   cycles
-      .Add("--threads", options->track.threads,
+      .Add("--threads", options->threads,
            "number of worker threads (default: one per core); they do not change\nthe table")
       ->check(WholeNumber(1, 1024));
   const OptionGroup group(command, "Results");
@@ -329,7 +620,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                 "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   command.callback([options, &command, &console] {
-    options->track.fit.columns.skip_broken_rows = options->broken_rows == "skip";
+    options->fit.columns.skip_broken_rows = options->broken_rows == "skip";
     RunTrack(*options, command, console);
   });
 }

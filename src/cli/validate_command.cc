@@ -1,28 +1,118 @@
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/app.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "mindahl/core/version.h"
 #include "mindahl/identification/mapping_validation.h"
-#include "mindahl/request/validation.h"
+#include "report/table.h"
 
 namespace mindahl::cli {
+
+using identification::ValidationReport;
+using identification::ValidationRow;
+using report::Json;
+
 namespace {
 
-struct ValidateOptions {
-  identification::ValidationOptions validation;
+struct Validation {
+  identification::ValidationOptions options;
   std::string json_path;
+  ValidationReport report = {};
 };
 
-void RunValidate(const ValidateOptions& options, Console& console) {
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
-  const request::Validation validation{
-      .options = options.validation, .report = identification::ValidateMapping(options.validation)};
-  const identification::ValidationReport& report = validation.report;
-  WriteAnswer(options.json_path, console, validation);
+Json ErrorsJson(const ValidationRow& row, double median, double worst) {
+  if (row.cases == 0) return {{"median", nullptr}, {"worst", nullptr}};
+  return {{"median", median}, {"worst", worst}};
+}
+
+Json ValidationRows(const std::vector<ValidationRow>& rows) {
+  Json json = Json::array();
+  for (const ValidationRow& row : rows) {
+    Json entry = {{"lambda", row.lambda},
+                  {"noise", row.noise},
+                  {"cases", row.cases},
+                  {"failures", row.failures},
+                  {"not_identifiable", row.undetermined},
+                  {"tolerance", row.tolerance},
+                  {"sigma_error", ErrorsJson(row, row.median_sigma_error, row.worst_sigma_error)},
+                  {"alpha_error", ErrorsJson(row, row.median_alpha_error, row.worst_alpha_error)},
+                  {"slip_force_error",
+                   ErrorsJson(row, row.median_slip_force_error, row.worst_slip_force_error)}};
+    if (row.noise > 0) {
+      entry["worst_standard_errors"] = row.cases == 0 ? Json() : Json(row.worst_standardized);
+      entry["coverage"] = row.cases == 0 ? Json() : Json(row.coverage);
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json CoverageRows(const ValidationReport& report) {
+  const auto fraction = [](const identification::IntervalCount& count) {
+    return count.intervals == 0 ? Json() : Json(count.fraction());
+  };
+  Json json = Json::array();
+  for (const identification::CoverageVerdict& verdict : report.coverage) {
+    json.push_back({{"law", verdict.by_dahl ? "dahl" : "masing"},
+                    {"parameter", verdict.parameter},
+                    {"intervals", verdict.all.intervals},
+                    {"coverage", fraction(verdict.all)},
+                    {"sliding_intervals", verdict.sliding.intervals},
+                    {"sliding_coverage", fraction(verdict.sliding)},
+                    {"p_value", verdict.chance},
+                    {"passed", verdict.passed}});
+  }
+  return json;
+}
+
+std::string ToJson(const Validation& validation) {
+  const ValidationReport& report = validation.report;
+  return report::Dump({{"schema", "mindahl.validate/1"},
+                       {"version", Version()},
+                       {"cases", validation.options.cases},
+                       {"seed", validation.options.seed},
+                       {"fits", report.fits},
+                       {"failures", report.failures},
+                       {"passed", report.passed()},
+                       {"rows", ValidationRows(report.rows)},
+                       {"dahl_rows", ValidationRows(report.dahl_rows)},
+                       {"coverage", CoverageRows(report)},
+                       {"failed_cases", report.failed_cases},
+                       {"failed_coverages", report.failed_coverages}});
+}
+
+std::string ToText(const Validation& validation) {
+  const ValidationReport& report = validation.report;
+  std::string text = fmt::format(
+      "Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits; errors of\n"
+      "sigma/(8a/G*), alpha - 1/3 and Tc/(mu N)\n\nby Masing's law:\n{}\n"
+      "from their first extreme on by Dahl's own law, and translated:\n{}\n"
+      "coverage of the 95 % intervals:\n{}\n",
+      validation.options.cases, validation.options.seed, report.fits,
+      report::TableText(ValidationRows(report.rows)),
+      report::TableText(ValidationRows(report.dahl_rows)), report::TableText(CoverageRows(report)));
+  if (report.failures > 0) {
+    text += fmt::format("FAILED: {} of {} fits\n", report.failures, report.fits);
+  }
+  if (!report.failed_coverages.empty()) {
+    text += fmt::format("FAILED: {} of the coverages\n", report.failed_coverages.size());
+  }
+  if (report.passed()) text += "passed: every case within its tolerance\n";
+  return text;
+}
+
+void RunValidate(Validation& validation, Console& console) {
+  RequireOutputPaths({{"--json", validation.json_path, /*dash_is_stdout=*/true}}, console);
+  validation.report = identification::ValidateMapping(validation.options);
+  const ValidationReport& report = validation.report;
+  WriteAnswer(validation.json_path, console, validation);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';
   console.exit_status = report.passed() ? kDone : kNotEstablished;
@@ -32,7 +122,7 @@ void RunValidate(const ValidateOptions& options, Console& console) {
 
 void AddValidateCommand(CLI::App& app, Console& console) {
   constexpr std::uint64_t kMostCases = 1'000'000'000;
-  const auto options = std::make_shared<ValidateOptions>();
+  const auto options = std::make_shared<Validation>();
   CLI::App& command = AddCommand(
       app, "validate",
       "Tests the mapping: fits Mindlin loops of many contacts at many\n"
@@ -42,9 +132,9 @@ void AddValidateCommand(CLI::App& app, Console& console) {
       "the truth too rarely or too often.",
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddShown("--cases", options->validation.cases, "contacts to draw")
+  plain.AddShown("--cases", options->options.cases, "contacts to draw")
       ->check(WholeNumber(1, kMostCases));
-  plain.AddShown("--seed", options->validation.seed, "seed of the random numbers")
+  plain.AddShown("--seed", options->options.seed, "seed of the random numbers")
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
   plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
   command.callback([options, &console] { RunValidate(*options, console); });

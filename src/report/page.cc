@@ -14,14 +14,13 @@ namespace mindahl::report {
 
 namespace {
 
-Json Rows(const std::vector<Line>& lines) {
+Json LinesData(std::string_view caption, const std::vector<Line>& lines) {
   Json rows = Json::array();
   for (const Line& line : lines) {
     if (line.label == "next" || line.label == "misfit") continue;  // they have places of their own
-    rows.push_back(
-        {{"label", line.label}, {"text", line.text}, {"class", CssClass(line.judgement)}});
+    rows.push_back(LineData(line.label, {line.text}, CssClass(line.judgement)));
   }
-  return rows;
+  return TableData(caption, {}, std::move(rows));
 }
 
 /// Returns the command that takes the next step.
@@ -34,14 +33,14 @@ Json NextData(const Report& report, const Provenance& provenance) {
           {"command", fmt::format("{} {}", command, report.next->options)}};
 }
 
-Json MeasuredRows(const Report& report) {
+Json MeasuredData(const Report& report) {
   Json rows = Json::array();
   for (const char* section : {"measured.", "input."}) {
     for (const auto& [name, value] : ValuesUnder(report, section)) {
-      rows.push_back({{"name", name}, {"value", value}});
+      rows.push_back(LineData(name, {value}));
     }
   }
-  return rows;
+  return TableData("of the record, without a model", {}, std::move(rows));
 }
 
 }  // namespace
@@ -62,14 +61,14 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
   if (!intervals.empty()) {
     bars = {{"elements", intervals}, {"height", HeightOfIntervals(report)}};
   }
-  data["fitted"] = {{"answer", Rows(AnswerLines(report))},
+  data["fitted"] = {{"answer", LinesData("", AnswerLines(report))},
                     {"intervals", std::move(bars)},
                     {"confidence", fmt::format("{:.4g} %", 100 * report.fit.confidence)},
                     {"next", NextData(report, provenance)},
                     {"loop", FigureData(panels.loop, "loop")},
                     {"residual", FigureData(panels.residual, "residual")},
-                    {"details", Rows(DetailLines(report))},
-                    {"measured", MeasuredRows(report)}};
+                    {"details", LinesData("of the fit", DetailLines(report))},
+                    {"measured", MeasuredData(report)}};
   return RenderPage("fit", data);
 }
 

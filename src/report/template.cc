@@ -9,6 +9,7 @@
 #include <kainjow/mustache.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "io/drawing.h"
 #include "mindahl/core/version.h"
@@ -166,19 +167,35 @@ Json VerdictData(std::string_view css_class, std::string_view word, std::string_
   return {{"class", css_class}, {"word", word}, {"sentence", sentence}};
 }
 
+Json LineData(std::string_view head, const std::vector<std::string>& cells,
+              std::string_view css_class, std::string_view address) {
+  Json line = {{"head", head}, {"class", css_class}, {"address", address}};
+  for (const std::string& cell : cells) {
+    // Letters break anywhere, numbers nowhere.
+    const bool is_number = !cell.empty() && std::isdigit(static_cast<unsigned char>(cell[0])) != 0;
+    line["cells"].push_back({{"text", cell}, {"class", is_number ? "number" : "words"}});
+  }
+  return line;
+}
+
+Json TableData(std::string_view caption, const std::vector<std::string>& names, Json lines) {
+  if (lines.empty()) return nullptr;
+  return {{"caption", caption}, {"names", names}, {"lines", std::move(lines)}};
+}
+
 Json ProvenanceData(const Provenance& provenance) {
   Json inputs = Json::array();
   for (const InputFile& input : provenance.inputs) {
-    inputs.push_back({{"name", input.name}, {"sha256", input.sha256.value_or("")}});
+    inputs.push_back(
+        LineData(input.name, {input.sha256.value_or("not a regular file, read once")}));
   }
   Json options = Json::array();
-  for (const auto& [name, value] : provenance.options) {
-    options.push_back({{"name", name}, {"value", value}});
-  }
+  for (const auto& [name, value] : provenance.options) options.push_back(LineData(name, {value}));
   return {{"command", provenance.command},
           {"version", Version()},
-          {"inputs", std::move(inputs)},
-          {"options", std::move(options)}};
+          {"inputs", TableData("files read", {"file", "SHA-256 of its bytes"}, std::move(inputs))},
+          {"options", TableData("options, including those of a configuration file",
+                                {"option", "value"}, std::move(options))}};
 }
 
 }  // namespace mindahl::report

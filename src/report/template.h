@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mindahl/io/plot.h"
 #include "mindahl/report/page.h"
@@ -35,6 +36,15 @@ Json FigureData(const std::optional<io::PlotPanel>& panel, const std::string& id
 
 /// Returns what verdict.html shows.
 Json VerdictData(std::string_view css_class, std::string_view word, std::string_view sentence);
+
+/// Returns a line of table.html.
+/// @param css_class  of its head
+/// @param address    to which its head leads; "" none
+Json LineData(std::string_view head, const std::vector<std::string>& cells,
+              std::string_view css_class = "", std::string_view address = "");
+/// Returns what table.html shows, null without lines.
+/// @param names  of the columns, none for a table without
+Json TableData(std::string_view caption, const std::vector<std::string>& names, Json lines);
 
 /// Returns what provenance.html shows: what it takes to make the result again.
 Json ProvenanceData(const Provenance& provenance);

@@ -23,6 +23,7 @@
 #include "mindahl/report/units.h"
 #include "report/fields.h"
 #include "report/statements.h"
+#include "report/table.h"
 #include "report/template.h"
 #include "request/json.h"
 
@@ -102,24 +103,6 @@ Json ValueOf(const BatchEntry& entry, std::string_view column) {
   return found == kBatchColumns.end() ? Json(nullptr) : ValueAt(entry, found->pointer);
 }
 
-BatchCell CellOf(const Json& value) {
-  if (value.is_null()) return {};
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_integer()) return value.get<std::int64_t>();
-  return value.get<double>();
-}
-
-std::string CsvOf(const BatchCell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) {
-    return text->empty() ? "" : io::CsvCell(*text);
-  }
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
-  // dump() writes the digits that read back the same double.
-  if (const auto* number = std::get_if<double>(&cell)) return Json(*number).dump();
-  return "";
-}
-
 std::string WarningsOf(const BatchEntry& entry) {
   std::vector<std::string> codes;
   for (const Json& warning : ValueAt(entry, "/warnings")) codes.push_back(warning["code"]);
@@ -181,17 +164,23 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
   return campaign::DescribeRepeats(values, errors, common);
 }
 
-struct FoundRepeats {
-  Repeated quantity;
-  campaign::Repeats repeats;
-};
-
-std::vector<FoundRepeats> AllRepeats(std::span<const BatchEntry> entries) {
-  std::vector<FoundRepeats> all;
+/// Returns what repeats of a test say of each quantity.
+Json RepeatRows(std::span<const BatchEntry> entries) {
+  Json rows = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    if (const auto found = RepeatsOf(entries, quantity)) all.push_back({quantity, *found});
+    const auto found = RepeatsOf(entries, quantity);
+    if (!found) continue;
+    rows[quantity.name] = {{"files", found->count},
+                           {"mean", found->mean},
+                           {"mean_error", found->mean_error()},
+                           {"standard_deviation", found->standard_deviation},
+                           {"stated_error", NumberOrNull(found->stated_error)},
+                           {"common_error", NumberOrNull(found->common_error)},
+                           {"p_value", NumberOrNull(found->p_value)},
+                           {"unit", quantity.unit},
+                           {"says", found->InWords()}};
   }
-  return all;
+  return rows;
 }
 
 // --- the index of pages
@@ -285,88 +274,54 @@ bool AllDone(std::span<const BatchEntry> entries) {
   return std::ranges::all_of(entries, &BatchEntry::done);
 }
 
-std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries) {
-  std::vector<BatchColumn> table;
-  const auto add = [&](std::string_view name, const auto& cell_of) {
-    BatchColumn& column = table.emplace_back();
-    column.name = name;
-    for (const BatchEntry& entry : entries) column.cells.push_back(cell_of(entry));
-  };
-  add("file", [](const BatchEntry& entry) { return BatchCell(entry.file); });
-  add("done", [](const BatchEntry& entry) { return BatchCell(entry.done ? "yes" : "no"); });
-  for (const ColumnRow& row : kBatchColumns) {
-    add(row.name, [&](const BatchEntry& entry) { return CellOf(ValueAt(entry, row.pointer)); });
+namespace {
+
+Json TableRows(std::span<const BatchEntry> entries) {
+  Json rows = Json::array();
+  for (const BatchEntry& entry : entries) {
+    Json row = {{"file", entry.file}, {"done", entry.done}};
+    for (const ColumnRow& column : kBatchColumns) {
+      row[column.name] = ValueAt(entry, column.pointer);
+    }
+    row["warnings"] = WarningsOf(entry);
+    row["fault"] = entry.fault;
+    row["version"] = Version();
+    row["sha256"] = entry.sha256;
+    rows.push_back(std::move(row));
   }
-  add("warnings", [](const BatchEntry& entry) { return BatchCell(WarningsOf(entry)); });
-  add("fault", [](const BatchEntry& entry) { return BatchCell(entry.fault); });
-  add("version", [](const BatchEntry&) { return BatchCell(std::string(Version())); });
-  add("sha256", [](const BatchEntry& entry) { return BatchCell(entry.sha256); });
-  return table;
+  return rows;
 }
 
+}  // namespace
+
 std::string TableCsv(std::span<const BatchEntry> entries) {
-  const std::vector<BatchColumn> table = TableOf(entries);
-  std::string text;
-  for (const BatchColumn& column : table) {
-    text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
-  }
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    for (std::size_t c = 0; c < table.size(); ++c) {
-      text += c == 0 ? '\n' : ',';
-      text += CsvOf(table[c].cells[k]);
-    }
-  }
-  text += '\n';
-  return text;
+  return report::TableCsv(TableRows(entries));
 }
+
+std::string TableJson(std::span<const BatchEntry> entries) { return Dump(TableRows(entries)); }
 
 std::string ToText(std::span<const BatchEntry> entries, const std::string& output) {
   const auto done = std::ranges::count_if(entries, &BatchEntry::done);
   std::string text = fmt::format("{} of {} files fitted{}{}\n", done, entries.size(),
                                  output.empty() ? "" : ", in ", output);
-  const std::vector<FoundRepeats> all = AllRepeats(entries);
-  if (!all.empty()) {
-    text += fmt::format("\nif these are repeats:\n  {:<17}{:>6}{:>12}{:>10}{:>10}{:>10}{:>10}\n",
-                        "", "files", "mean", "± error", "scatter", "by noise", "common");
-  }
-  for (const auto& [quantity, found] : all) {
-    const auto cell = [](const std::optional<double>& value) {
-      return value ? fmt::format("{:.2g}", *value) : std::string("-");
-    };
-    // A name that is longer than its column, as of the friction coefficient, shifts its row.
-    text += fmt::format("  {:<17}{:>{}}{:>12.6g}{:>10.2g}{:>10.2g}{:>10}{:>10}   {}\n",
-                        quantity.name, found.count, quantity.name.size() > 17 ? 3 : 6, found.mean,
-                        found.mean_error(), found.standard_deviation, cell(found.stated_error),
-                        cell(found.common_error), found.InWords());
-  }
+  const Json repeats = RepeatRows(entries);
+  if (!repeats.empty()) text += "\nif these are repeats:\n" + report::TableText(repeats);
   return text;
 }
 
 std::string ToJson(std::span<const BatchEntry> entries, const std::string& output) {
-  Json json;
-  json["schema"] = "mindahl.batch/1";
-  json["version"] = Version();
-  json["output"] = output.empty() ? Json() : Json(output);
-  json["files"] = Json::array();
+  Json files = Json::array();
   for (const BatchEntry& entry : entries) {
-    const std::string& fault = entry.fault;
-    json["files"].push_back({{"file", entry.file},
-                             {"done", entry.done},
-                             {"fault", fault.empty() ? Json() : Json(fault)},
-                             {"fit", entry.fit ? entry.fit->json : Json()}});
+    files.push_back({{"file", entry.file},
+                     {"done", entry.done},
+                     {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
+                     {"fit", entry.fit ? entry.fit->json : Json()}});
   }
-  json["repeats"] = Json::object();
-  for (const auto& [quantity, found] : AllRepeats(entries)) {
-    json["repeats"][std::string(quantity.name)] = {
-        {"files", found.count},
-        {"mean", found.mean},
-        {"standard_deviation", found.standard_deviation},
-        {"stated_error", NumberOrNull(found.stated_error)},
-        {"common_error", NumberOrNull(found.common_error)},
-        {"mean_error", found.mean_error()},
-        {"p_value", NumberOrNull(found.p_value)}};
-  }
-  return Dump(json);
+  return Dump({{"schema", "mindahl.batch/1"},
+               {"version", Version()},
+               {"output", output.empty() ? Json() : Json(output)},
+               {"files", std::move(files)},
+               {"repeats", RepeatRows(entries)}});
 }
 
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
@@ -374,41 +329,25 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
       std::ranges::count_if(entries, [](const BatchEntry& entry) { return entry.fault.empty(); });
   Json files = Json::array();
   for (const BatchEntry& entry : entries) {
-    Json row = {{"number", files.size() + 1},
-                {"file", entry.file},
-                {"address", Address(entry.page)},
-                {"verdict", entry.verdict},
-                {"class",
-                 entry.verdict.empty() ? "" : report::CssClass(report::JudgementOf(entry.verdict))},
-                {"fault", entry.fault}};
-    for (const std::string_view parameter : kParameters) {
-      row[parameter] = ParameterText(entry, parameter);
-    }
-    files.push_back(std::move(row));
+    std::vector<std::string> cells = {fmt::format("{}", files.size() + 1),
+                                      entry.verdict.empty() ? kNone : entry.verdict};
+    for (const std::string_view name : kParameters) cells.push_back(ParameterText(entry, name));
+    cells.push_back(entry.fault);
+    files.push_back(report::LineData(
+        entry.file, cells,
+        entry.verdict.empty() ? "" : report::CssClass(report::JudgementOf(entry.verdict)),
+        Address(entry.page)));
   }
-  Json repeats = Json::array();
-  for (const auto& [quantity, found] : AllRepeats(entries)) {
-    const report::ScaledUnit unit = report::UnitFor(quantity.unit, found.mean);
-    const auto text = [&](std::optional<double> value) {
-      if (!value) return kNone;
-      return fmt::format("{:.3g}{}{}", *value / unit.factor, unit.name.empty() ? "" : " ",
-                         unit.name);
-    };
-    repeats.push_back({{"name", quantity.name},
-                       {"count", found.count},
-                       {"mean", report::Quantity(found.mean, quantity.unit)},
-                       {"mean_error", text(found.mean_error())},
-                       {"scatter", text(found.standard_deviation)},
-                       {"stated_error", text(found.stated_error)},
-                       {"common_error", text(found.common_error)},
-                       {"conclusion", found.InWords()},
-                       {"class", found.exceed_errors() ? "poor" : "good"}});
-  }
-  return report::RenderPage("batch",
-                            {{"title", fmt::format("{} of {} files fitted", done, entries.size())},
-                             {"files", std::move(files)},
-                             {"repeats", std::move(repeats)},
-                             {"provenance", report::ProvenanceData(provenance)}});
+  return report::RenderPage(
+      "batch",
+      {{"title", fmt::format("{} of {} files fitted", done, entries.size())},
+       {"files", report::TableData(
+                     "one fit a file; only identified quantities have a number",
+                     {"file", "number", "verdict", "sigma", "alpha", "slip_force", "why not done"},
+                     std::move(files))},
+       {"repeats", report::TableData("over the fitted files in which the quantity is known",
+                                     RepeatRows(entries))},
+       {"provenance", report::ProvenanceData(provenance)}});
 }
 
 std::string FitJson(const BatchEntry& entry) { return entry.fit ? Dump(entry.fit->json) : ""; }

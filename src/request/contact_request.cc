@@ -9,8 +9,6 @@
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
-#include "request/json.h"
 
 namespace mindahl::request {
 
@@ -190,34 +188,6 @@ std::vector<std::string> DoubtsAbout(const ContactOptions& options) {
   std::optional<double> friction;
   if (options.friction_coefficient) friction = options.friction_coefficient->value;
   return contact::DoubtsAbout(options.known, friction);
-}
-
-std::string ToJson(const ContactParameters& contact) {
-  Json json = {{"schema", "mindahl.contact/1"},
-               {"version", Version()},
-               {"compliance_definition", kComplianceDefinition},
-               {"compliance_unit", kComplianceUnit}};
-  for (const ContactQuantity& quantity : contact.quantities) {
-    json[quantity.section][quantity.name] = {
-        {"value", NumberOrNull(quantity.value.value)},
-        {"standard_error", NumberOrNull(quantity.value.standard_error)},
-        {"unit", quantity.unit}};
-  }
-  return Dump(json);
-}
-
-std::string ToText(const ContactParameters& contact) {
-  const bool uncertain = std::ranges::any_of(
-      contact.quantities,
-      [](const ContactQuantity& quantity) { return quantity.value.standard_error > 0; });
-  std::string text;
-  for (const ContactQuantity& quantity : contact.quantities) {
-    const std::string error =
-        uncertain ? fmt::format("± {:<8.2g} ", quantity.value.standard_error) : "";
-    text += fmt::format("{:<26} {:>24.17g} {}{:<5} {}\n", quantity.name, quantity.value.value,
-                        error, quantity.unit, quantity.meaning);
-  }
-  return text;
 }
 
 }  // namespace mindahl::request

@@ -37,7 +37,8 @@ TEST(Headline, SaysTheTestInOneLine) {
   std::vector<Evolution> still = {Of("slip_force", "N", {.first = 15.0, .last = 15.1}),
                                   Of("half_gap", "N", {.first = 14.0, .last = 14.1}),
                                   Of("sigma", "N/m", {.first = 4.8e7, .last = 4.81e7})};
-  EXPECT_EQ(Headline(still), "Tc 15 N, unchanged; σ 48 N/µm, unchanged");
+  EXPECT_EQ(Headline(still),
+            "Tc 15 N throughout, but for scatter; σ 48 N/µm throughout, but for scatter");
   EXPECT_EQ(Headline({}), "");
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "mindahl/convert/conversion.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
 
@@ -94,6 +95,80 @@ TEST(Convert, TakesAFit) {
   EXPECT_EQ(none.status, kBadInput);
   EXPECT_THAT(none.Errors(),
               ElementsAre(HasSubstr("--sigma missing: give it, or the JSON file of a fit")));
+}
+
+TEST(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
+  const TemporaryDirectory directory;
+  const auto convert = [&](const std::string& text, Words more = {}) {
+    const std::string file = directory.Write("written.json", text).string();
+    more.insert(more.begin(), {"convert", file, "--to", "lammps", "--json", "-"});
+    return RunCommand(more);
+  };
+  const auto fit = [](const std::string& verdict) {
+    return R"({"schema": "mindahl.fit/2", "model": "dahl", "parameters": {
+      "sigma": {"value": 5e7}, "alpha": {"value": 0.5, "identifiability": ")" +
+           verdict + R"("}, "slip_force": {"value": 30}, "rig_stiffness": {"value": 1e8}},
+      "measured": {"amplitude": 2e-6}})";
+  };
+  const json made = convert(fit("identifiable")).Json();
+  EXPECT_EQ(made["from"],
+            (json{{"law", "dahl"}, {"sigma", 5e7}, {"alpha", 0.5}, {"slip_force", 30.0}}));
+  // The rest of the amplitude is the rig's: T* of the contact's part is that of the rig.
+  const double amplitude = made["amplitude"];
+  const double peak =
+      models::SteadyPeakForce(*models::FindFrictionModel("dahl"), {5e7, 0.5, 30.0}, amplitude);
+  EXPECT_NEAR(amplitude + peak / 1e8, 2e-6, 1e-15);
+  const json given =
+      convert(fit("identifiable"), {"--sigma", "6e7", "--amplitude", "1e-6", "--from", "masing"})
+          .Json();
+  EXPECT_EQ(given["from"]["sigma"], 6e7);
+  EXPECT_EQ(given["from"]["law"], "masing");
+  EXPECT_EQ(given["amplitude"], 1e-6);
+  EXPECT_THAT(convert(fit("not_identifiable")).Errors(),
+              ElementsAre(HasSubstr("written.json does not determine it: give it")));
+  EXPECT_EQ(convert(fit("not_identifiable"), {"--alpha", "0.3"}).status, kDone);
+  EXPECT_THAT(convert("x,F\n1,2\n").err, HasSubstr("is not the result of a fit"));
+  EXPECT_THAT(convert("{}").err, HasSubstr("is not the result of a fit"));
+}
+
+TEST(Convert, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
+  // Half of what Jenkins' element slips at.
+  const Outcome outcome = RunCommand({"convert", "--sigma", "4e7", "--slip-force", "40", "--alpha",
+                                      "0", "--amplitude", "5e-7", "--to", "lugre"});
+  EXPECT_THAT(outcome.out, HasSubstr("the energy lost where the contact loses none\n"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("inf")));
+}
+
+TEST(Convert, IsOfTheLawThatItIsFrom) {
+  const auto is_unchanged = [&](const char* from, const char* to) {
+    const json made =
+        RunCommand(Command({"--alpha", "0.5", "--from", from, "--to", to, "--json", "-"})).Json();
+    EXPECT_LT(made["error_at_amplitude"]["force"], 1e-10) << "their steady loops are one curve";
+    return Parameter(made, "sigma") == 4e7 && Parameter(made, "slip_force") == 40.0;
+  };
+  EXPECT_TRUE(is_unchanged("masing", "masing"));
+  EXPECT_FALSE(is_unchanged("masing", "dahl"));
+  EXPECT_FALSE(is_unchanged("dahl", "masing"));
+  EXPECT_TRUE(is_unchanged("dahl", "dahl"));
+}
+
+TEST(Convert, RefusesWhatItsTargetHasNot) {
+  const auto refusal = [](std::string_view to, const Words& more) {
+    Words words = Command({"--to", std::string(to)});
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words).err;
+  };
+  for (const convert::TargetRow& row : convert::Targets()) {
+    const std::string_view to = row.name;
+    const bool is_code = to == "lammps" || to == "liggghts" || to == "yade";
+    const bool moves =
+        to == "lugre" || to == "mujoco" || to == "mujoco-joint" || to == "urdf" || to == "sdf";
+    EXPECT_EQ(refusal(to, {"--normal-load", "10"}).empty(), is_code) << to;
+    EXPECT_EQ(refusal(to, {"--contact-radius", "1e-3"}).empty(), to == "lammps") << to;
+    EXPECT_EQ(refusal(to, {"--viscous", "2"}).empty(), moves) << to;
+    EXPECT_EQ(refusal(to, {}), "") << to;
+    EXPECT_THAT(refusal(to, {"--viscous", "-1"}), HasSubstr("--viscous [N s/m]"));
+  }
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
-#include "mindahl/request/motion.h"
 #include "support/prelude.h"
 
 // simulate, contact and validate.

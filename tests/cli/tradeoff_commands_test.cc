@@ -84,7 +84,8 @@ TEST(Tradeoff, WritesTableCsvAndPlot) {
   const Outcome outcome = RunCommand(
       {"tradeoff", "--excitation", "micro", "--csv", csv.string(), "--plot", plot.string()});
   ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("* mindlin by exact "), HasSubstr("simplified-dahl")));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr(": mindlin by exact, "), HasSubstr("\n  simplified-dahl  exact ")));
   EXPECT_THAT(Lines(FileContent(csv)), SizeIs(1 + 6 + 15));
   EXPECT_THAT(FileContent(plot), HasSubstr("<svg"));
 }

@@ -92,9 +92,9 @@ Json Columns() {
   for (std::string name; header >> std::ws && std::getline(header, name, ',');) {
     columns["track"].push_back(name.substr(0, name.find('\n')));
   }
-  for (const request::BatchColumn& column : request::TableOf({})) {
-    columns["batch"].push_back(column.name);
-  }
+  const request::BatchEntry entry;
+  const Json batch = Json::parse(request::TableJson({&entry, 1}));
+  for (const auto& [name, cell] : batch[0].items()) columns["batch"].push_back(name);
   return columns;
 }
 

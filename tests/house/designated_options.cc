@@ -16,12 +16,7 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/report/report.h"
-#include "mindahl/request/conversion.h"
 #include "mindahl/request/fit_request.h"
-#include "mindahl/request/motion.h"
-#include "mindahl/request/plan.h"
-#include "mindahl/request/track.h"
-#include "mindahl/request/tradeoff.h"
 
 namespace mindahl {
 
@@ -43,12 +38,6 @@ const models::ContactStateOptions kState{.unloaded_displacement = 1e-6};
 const models::ExcitationOptions kExcitation{.cycles = 2.0};
 const report::TextOptions kText{.has_details = true};
 const request::ContactOptions kContactOptions{.friction_coefficient = {}};
-const request::ConversionRequest kConversion{.to = "dahl"};
-const request::DriveRequest kDrive{.path = "path.csv"};
 const request::FitRequest kRequest{.files = {"loop.csv"}};
-const request::PlanRequest kPlan{.force_noise = 0.1};
-const request::SimulationRequest kSimulation{.steps = 3};
-const request::TrackRequest kTrackRequest{.threads = 2};
-const request::TradeoffRequest kTradeoff{.tolerance = 0.1};
 
 }  // namespace mindahl

@@ -17,8 +17,8 @@ struct EnergyCounts {
   std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
 };
 
-/// Returns ", counting 2 unclosed cycles by the median of those before them and 1 as zero"; nothing
-/// where all were measured.
+/// Returns " (cycles that do not close, 2, count as the median of those before them; 1 count as
+/// zero)"; nothing where all were measured.
 std::string InWords(const EnergyCounts& counts);
 
 /// Energy [J] dissipated over a test, from fits in their order.

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "mindahl/io/record_reader.h"
@@ -53,19 +51,9 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
 /// True if every entry is done.
 bool AllDone(std::span<const BatchEntry> entries);
 
-using BatchCell = std::variant<std::monostate, std::int64_t, double, std::string>;
-
-/// A column of the table that `mindahl batch --output` writes.
-struct BatchColumn {
-  std::string_view name;
-  std::vector<BatchCell> cells;  ///< one an entry, empty where there is nothing to say
-};
-
-/// Returns the columns in their order.
-std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries);
-
-/// Returns the table as CSV.
+/// Returns the table that `mindahl batch --output` writes as CSV, and its rows as JSON.
 std::string TableCsv(std::span<const BatchEntry> entries);
+std::string TableJson(std::span<const BatchEntry> entries);
 
 /// Returns the JSON of schema mindahl.batch/1, as `mindahl batch --json` writes it.
 /// @param output  path of the table; null where it is empty

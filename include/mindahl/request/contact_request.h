@@ -11,10 +11,6 @@
 
 namespace mindahl::request {
 
-/// G*, said in every report that uses it: many texts write it for the inverse.
-inline constexpr const char* kComplianceDefinition = "G* = (2-nu1)/G1 + (2-nu2)/G2";
-inline constexpr const char* kComplianceUnit = "1/Pa";
-
 /// Holds the properties of the contact that the user gave.
 struct ContactOptions {
   contact::KnownContact known{};
@@ -77,11 +73,5 @@ models::BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
 
 /// Returns the doubts about a contact that is hardly meant, one sentence each.
 std::vector<std::string> DoubtsAbout(const ContactOptions& options);
-
-/// Returns the JSON of schema mindahl.contact/1, as `mindahl contact --json` writes it.
-std::string ToJson(const ContactParameters& contact);
-
-/// Returns the table that `mindahl contact` prints.
-std::string ToText(const ContactParameters& contact);
 
 }  // namespace mindahl::request

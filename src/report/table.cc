@@ -1,0 +1,132 @@
+#include "report/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "core/text.h"
+#include "mindahl/io/csv_table.h"
+#include "report/template.h"
+
+namespace mindahl::report {
+
+namespace {
+
+using Cells = std::vector<std::pair<std::string, Json>>;
+
+std::vector<Cells> RowsOf(const Json& rows) {
+  std::vector<Cells> all;
+  for (const auto& [key, row] : rows.items()) {
+    Cells& cells = all.emplace_back();
+    if (rows.is_object()) cells.emplace_back("", key);
+    for (const auto& [name, value] : row.items()) {
+      if (value.is_array()) continue;
+      if (!value.is_object()) cells.emplace_back(name, value);
+      if (!value.is_object()) continue;
+      for (const auto& [inner, cell] : value.items()) cells.emplace_back(name + '\n' + inner, cell);
+    }
+  }
+  return all;
+}
+
+/// Breaks the name of a column between its words into lines no wider than its cells or a word.
+/// @param width  of the cells; written: of the column
+std::vector<std::string> NameLines(std::string name, std::size_t& width) {
+  std::ranges::replace(name, '_', ' ');
+  std::ranges::replace(name, '\n', ' ');
+  const std::vector<std::string_view> words = PartsOf(name, ' ');
+  for (const std::string_view word : words) width = std::max(width, CharactersIn(word));
+  std::vector<std::string> lines;
+  for (const std::string_view word : words) {
+    const bool fits =
+        !lines.empty() && CharactersIn(lines.back()) + 1 + CharactersIn(word) <= width;
+    if (!fits) {
+      lines.emplace_back(word);
+    } else {
+      lines.back().append(" ").append(word);
+    }
+  }
+  return lines;
+}
+
+/// Puts a cell into its column: numbers to the right.
+void AddCell(std::string& line, const std::string& cell, std::size_t width, bool is_right) {
+  const std::string blanks(width - CharactersIn(cell), ' ');
+  line += is_right ? "  " + blanks + cell : "  " + cell + blanks;
+}
+
+}  // namespace
+
+std::string CellText(const Json& value) {
+  if (value.is_null()) return "-";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return fmt::format("{:.5g}", value.get<double>());
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string TableText(const Json& rows) {
+  const std::vector<Cells> all = RowsOf(rows);
+  if (all.empty()) return "";
+  // Members that not every row has come last.
+  const Cells& longest = *std::ranges::max_element(all, {}, &Cells::size);
+  constexpr std::size_t kNameLines = 5;
+  std::vector<std::string> lines(kNameLines + all.size());
+  for (std::size_t c = 0; c < longest.size(); ++c) {
+    std::vector<std::string> column;
+    bool is_right = false;
+    std::size_t width = 0;
+    for (const Cells& cells : all) {
+      column.push_back(c < cells.size() ? CellText(cells[c].second) : "");
+      width = std::max(width, CharactersIn(column.back()));
+      is_right = is_right || (c < cells.size() && cells[c].second.is_number());
+    }
+    std::vector<std::string> name = NameLines(longest[c].first, width);
+    name.resize(std::min(name.size(), kNameLines));
+    column.insert(column.begin(), kNameLines - name.size(), "");
+    column.insert(column.begin() + static_cast<std::ptrdiff_t>(kNameLines - name.size()),
+                  name.begin(), name.end());
+    for (std::size_t k = 0; k < lines.size(); ++k) AddCell(lines[k], column[k], width, is_right);
+  }
+  std::string text;
+  for (std::string& line : lines) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (!line.empty()) text += line + '\n';
+  }
+  return text;
+}
+
+std::string TableCsv(const Json& rows) {
+  std::string text;
+  for (const Cells& cells : RowsOf(rows)) {
+    std::string names;
+    std::string line;
+    for (const auto& [name, value] : cells) {
+      names += (&name == &cells.front().first ? "" : ",") + name;
+      line += &name == &cells.front().first ? "" : ",";
+      if (value.is_null() || value == "") continue;
+      line += value.is_number() ? value.dump() : io::CsvCell(CellText(value));
+    }
+    text += text.empty() ? names + '\n' + line + '\n' : line + '\n';
+  }
+  return text;
+}
+
+Json TableData(std::string_view caption, const Json& rows) {
+  std::vector<std::string> names;
+  Json lines = Json::array();
+  for (const Cells& cells : RowsOf(rows)) {
+    std::vector<std::string> texts;
+    for (const auto& [name, value] : cells) {
+      if (lines.empty()) names.push_back(name);
+      texts.push_back(CellText(value));
+    }
+    const std::string head = std::exchange(texts.front(), "");
+    texts.erase(texts.begin());
+    lines.push_back(LineData(head, texts));
+  }
+  return TableData(caption, names, std::move(lines));
+}
+
+}  // namespace mindahl::report
