@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/scratch.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -183,23 +182,6 @@ std::pmr::vector<double> CycleEnergies(const RecordView& record,
   return energies;
 }
 
-/// Returns the mean energy [J] of the cycles of the widest amplitude: others lose more or less.
-double EnergyOfTheWidest(std::span<const double> displacement, std::span<const std::size_t> points,
-                         std::span<const double> energies) {
-  double widest = 0.0;
-  for (std::size_t k = 0; k < energies.size(); ++k) {
-    widest = std::max(widest, CycleAmplitude(displacement, points.subspan(2 * k)));
-  }
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t k = 0; k < energies.size(); ++k) {
-    if (CycleAmplitude(displacement, points.subspan(2 * k)) < kSteadyAmplitude * widest) continue;
-    sum += energies[k];
-    ++count;
-  }
-  return sum / count;
-}
-
 }  // namespace
 
 std::vector<double> CycleEnergies(const RecordView& record,
@@ -209,24 +191,9 @@ std::vector<double> CycleEnergies(const RecordView& record,
   return {energies.begin(), energies.end()};
 }
 
-LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals) {
-  Validate(record);
-  return MeasureLoop(record, reversals, std::pmr::get_default_resource());
-}
-
-int ForceSense(const RecordView& record, std::span<const std::size_t> reversals) {
-  Validate(record);
-  return ForceSense(record, reversals, std::pmr::get_default_resource());
-}
-
-LoopMeasures InSense(LoopMeasures measures, int force_sense) {
-  measures.centre_force *= force_sense;
-  if (measures.energy_per_cycle) *measures.energy_per_cycle *= force_sense;
-  return measures;
-}
-
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
                          std::pmr::memory_resource* scratch) {
+  Validate(record);
   if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   const std::span<const double> x = record.displacement;
   LoopMeasures measures;
@@ -252,13 +219,12 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
     measures.cycles =
         static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 + kShortOfACycle);
   }
-  const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
-  if (!energies.empty()) measures.energy_per_cycle = EnergyOfTheWidest(x, points, energies);
   return measures;
 }
 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
+  Validate(record);
   if (record.size() == 0) return 0;
   constexpr double kThin = 0.01;       // energy over that of the rectangle round the loop, 4XT*
   constexpr double kDeviations = 5.0;  // of what noise makes of it: one record in 3.5 million

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/scratch.h"
+#include "loop/mended.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
@@ -108,10 +108,6 @@ std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise
 double EncoderStep(std::span<const double> displacement) {
   const double step = SmallestStep(displacement);
   return IsQuantised(displacement, step) ? step : 0.0;
-}
-
-double EstimateDisplacementNoise(std::span<const double> displacement) {
-  return EstimateDisplacementNoise(displacement, std::pmr::get_default_resource());
 }
 
 double EstimateDisplacementNoise(std::span<const double> displacement,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "core/probability.h"
 #include "loop/rules.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
@@ -155,15 +154,16 @@ CycleFacts MeasureCycle(const RecordView& record, Points points) {
   return facts;
 }
 
-/// Returns the slope [N/m] of the least-squares line through the samples of a stroke between two
-/// fractions of its width; of the chord there where there are fewer than three.
-std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to) {
+/// Returns the slope [N/m] of the least-squares line through the samples of the first tenth of a
+/// stroke; of the chord there where there are fewer than three.
+std::optional<double> SlopeAfterReversal(const Stroke& stroke) {
   constexpr double kFewest = 3;
+  constexpr double kPart = 0.1;  // of the width
   const double width = stroke.width();
   const auto for_each = [&](auto visit) {
     for (std::size_t i = 0; i < stroke.force.size(); ++i) {
       const double way = std::abs(stroke.displacement[i] - stroke.displacement.front());
-      if (way >= from * width && way <= to * width) visit(stroke.displacement[i], stroke.force[i]);
+      if (way <= kPart * width) visit(stroke.displacement[i], stroke.force[i]);
     }
   };
   double count = 0.0;
@@ -185,16 +185,16 @@ std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to)
   if (count >= kFewest && xx > 0) return xy / xx;
   const double sense = stroke.rises() ? 1.0 : -1.0;
   const double start = stroke.displacement.front();
-  const double end_force = 0.02 * width;  // [m] that the forces at the ends are means over
-  const auto force_at = [&](double part) {
-    const double at = start + sense * std::clamp(part, 0.01, 0.99) * width;
-    return MeanOver(stroke.displacement, stroke.force, at - end_force / 2, at + end_force / 2);
+  const double mean_width = 0.02 * width;  // [m] that the forces at the ends are means over
+  const double begin = mean_width / 2;
+  const auto force_at = [&](double way) {
+    const double at = start + sense * way;
+    return MeanOver(stroke.displacement, stroke.force, at - mean_width / 2, at + mean_width / 2);
   };
-  const auto first = force_at(from);
-  const auto last = force_at(to);
+  const auto first = force_at(begin);
+  const auto last = force_at(kPart * width);
   if (!first || !last) return std::nullopt;
-  return sense * (*last - *first) /
-         ((std::clamp(to, 0.01, 0.99) - std::clamp(from, 0.01, 0.99)) * width);
+  return sense * (*last - *first) / (kPart * width - begin);
 }
 
 /// Returns the turning points of the cycles of the widest amplitude, three each.
@@ -215,10 +215,11 @@ std::vector<Stroke> StrokesOf(const RecordView& record, std::span<const Points> 
   return strokes;
 }
 
-std::optional<double> MedianSlope(std::span<const Stroke> strokes, double from, double to) {
+std::optional<double> MedianSlopeAfterReversal(std::span<const Stroke> strokes) {
   std::vector<double> slopes;
+  slopes.reserve(strokes.size());
   for (const Stroke& stroke : strokes) {
-    if (const auto slope = SlopeBetween(stroke, from, to)) slopes.push_back(*slope);
+    if (const auto slope = SlopeAfterReversal(stroke)) slopes.push_back(*slope);
   }
   if (slopes.empty()) return std::nullopt;
   return Median(slopes);
@@ -316,24 +317,6 @@ std::optional<Backlash> FindBacklash(std::span<const Stroke> strokes, double cen
   return backlash;
 }
 
-std::optional<double> SlidingFraction(std::span<const Stroke> strokes, double centre,
-                                      double half_gap) {
-  constexpr double kNearly = 0.9;  // of the half gap
-  std::vector<double> fractions;
-  for (const Stroke& stroke : strokes) {
-    const double sense = stroke.rises() ? 1.0 : -1.0;
-    double left = 0.0;
-    for (std::size_t i = 0; i < stroke.force.size(); ++i) {
-      if (sense * (stroke.force[i] - centre) < kNearly * half_gap) continue;
-      left = std::abs(stroke.displacement.back() - stroke.displacement[i]) / stroke.width();
-      break;
-    }
-    fractions.push_back(std::min(left, 1.0));
-  }
-  if (fractions.empty()) return std::nullopt;
-  return Median(fractions);
-}
-
 double StandardDeviation(Column values) {
   const double mean = Mean(values);
   double squares = 0.0;
@@ -360,19 +343,6 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Fits a line to values against the numbers of their cycles by least squares.
-std::optional<Trend> TrendOf(Column numbers, Column values) {
-  if (values.size() < 3) return std::nullopt;
-  const Line line = LineThrough(numbers, values);
-  Trend trend{.slope = line.slope, .standard_error = line.slope_error};
-  if (trend.standard_error > 0) {
-    trend.p_value = PValueOfT(trend.slope / trend.standard_error, line.degrees_of_freedom);
-  } else if (trend.slope != 0) {
-    trend.p_value = 0.0;
-  }
-  return trend;
-}
-
 /// Returns the path length over the widths of all strokes of the cycles.
 double PathRatio(Column displacement, Points points, std::size_t cycles) {
   double path = 0.0;
@@ -386,58 +356,34 @@ double PathRatio(Column displacement, Points points, std::size_t cycles) {
   return path / widths;
 }
 
-double MeanLoad(const RecordView& record, std::span<const Points> cycles) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Points& cycle : cycles) {
-    for (std::size_t i = cycle[0]; i <= cycle[2]; ++i) {
-      sum += record.normal_load[i];
-      ++count;
-    }
-  }
-  return sum / count;
-}
-
-/// A fact of the steady cycles that have it, with the cycles' numbers.
-struct Series {
-  std::vector<double> numbers;
-  std::vector<double> values;
-};
-
+/// Returns a fact of the steady cycles that have it.
 template <typename Fact>
-Series SeriesOf(const LoopFacts& facts, Fact fact) {
-  Series series;
-  for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
-    const std::optional<double> value = fact(facts.cycles[k]);
-    if (!facts.cycles[k].steady || !value) continue;
-    series.numbers.push_back(static_cast<double>(k));
-    series.values.push_back(*value);
+std::vector<double> SteadyValues(const LoopFacts& facts, Fact fact) {
+  std::vector<double> values;
+  for (const CycleFacts& cycle : facts.cycles) {
+    const std::optional<double> value = fact(cycle);
+    if (cycle.steady && value) values.push_back(*value);
   }
-  return series;
+  return values;
 }
 
-/// Computes the means and trends of the cycles' own facts.
+/// Computes the means of the cycles' own facts.
 void Summarise(LoopFacts& facts) {
   const auto mean_of = [&](double CycleFacts::*member) {
-    return Mean(SeriesOf(facts, [&](const CycleFacts& cycle) {
-                  return std::optional(cycle.*member);
-                }).values);
+    return Mean(
+        SteadyValues(facts, [&](const CycleFacts& cycle) { return std::optional(cycle.*member); }));
   };
   facts.amplitude = mean_of(&CycleFacts::amplitude);
   facts.peak_force = mean_of(&CycleFacts::peak_force);
   facts.energy_per_cycle = mean_of(&CycleFacts::energy);
   const double rectangle = 4 * facts.amplitude * facts.peak_force;
   facts.energy_ratio = rectangle > 0 ? facts.energy_per_cycle / rectangle : 0.0;
-  const Series sliding =
-      SeriesOf(facts, [](const CycleFacts& cycle) { return cycle.sliding_amplitude; });
-  if (!sliding.values.empty()) facts.sliding_amplitude = Mean(sliding.values);
-  const Series gaps = SeriesOf(facts, [](const CycleFacts& cycle) { return cycle.half_gap; });
-  if (!gaps.values.empty()) facts.half_gap = Mean(gaps.values);
-  if (gaps.values.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps.values);
-  facts.half_gap_trend = TrendOf(gaps.numbers, gaps.values);
-  const Series energies =
-      SeriesOf(facts, [](const CycleFacts& cycle) { return std::optional(cycle.energy); });
-  facts.energy_trend = TrendOf(energies.numbers, energies.values);
+  const auto sliding =
+      SteadyValues(facts, [](const CycleFacts& cycle) { return cycle.sliding_amplitude; });
+  if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
+  const auto gaps = SteadyValues(facts, [](const CycleFacts& cycle) { return cycle.half_gap; });
+  if (!gaps.empty()) facts.half_gap = Mean(gaps);
+  if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
 }
 
 /// Fraction of its width within which a cycle must end where it began: then it loses what a closed
@@ -465,21 +411,15 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   const std::vector<Points> steady = SteadyCycles(facts, points);
   facts.steady_cycles = steady.size();
   const std::vector<Stroke> strokes = StrokesOf(record, steady);
-  facts.slope_after_reversal = MedianSlope(strokes, 0.0, 0.1);
-  facts.plateau_slope = MedianSlope(strokes, 2.0 / 3, 1.0);
+  facts.slope_after_reversal = MedianSlopeAfterReversal(strokes);
   facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
   if (facts.half_gap && *facts.half_gap > 0) {
-    const double centre =
-        Mean(SeriesOf(facts, [](const CycleFacts& cycle) {
-               return cycle.half_gap ? std::optional(cycle.centre_force) : std::nullopt;
-             }).values);
-    facts.sliding_fraction = SlidingFraction(strokes, centre, *facts.half_gap);
+    const double centre = Mean(SteadyValues(facts, [](const CycleFacts& cycle) {
+      return cycle.half_gap ? std::optional(cycle.centre_force) : std::nullopt;
+    }));
     facts.backlash = FindBacklash(strokes, centre, *facts.half_gap, facts.amplitude);
   }
   facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
-  if (!record.normal_load.empty()) {
-    facts.energy_friction_coefficient = EnergyFrictionCoefficient(facts, MeanLoad(record, steady));
-  }
   return facts;
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/scratch.h"
+#include "loop/mended.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
@@ -88,7 +88,7 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
   const std::span<const double> excitation =
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
-  if (!options.reversal_gate) choice = ChooseReversalGate(excitation, {}, memory);
+  if (!options.reversal_gate) choice = ChooseReversalGate(excitation, memory);
   prepared.reversal_gate = options.reversal_gate.value_or(
       std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
   FindReversals(excitation, prepared.reversal_gate, prepared.reversals);
@@ -205,8 +205,8 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records[r];
-    prepared.measures =
-        InSense(MeasureLoop(prepared.readings(), prepared.reversals, memory), result.force_sense);
+    prepared.measures = MeasureLoop(prepared.readings(), prepared.reversals, memory);
+    prepared.measures.centre_force *= result.force_sense;
     prepared.encoder_step = EncoderStep(prepared.readings().displacement);
     prepared.displacement_noise = DisplacementNoise(prepared, options, memory);
     Smooth(prepared);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "loop/rules.h"
-#include "loop/scratch.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -293,12 +292,9 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
 
 }  // namespace
 
-ReversalGate ChooseReversalGate(std::span<const double> displacement) {
-  return ChooseReversalGate(displacement, {}, std::pmr::get_default_resource());
-}
-
-ReversalGate ChooseReversalGate(std::span<const double> displacement, const ReversalRules& rules,
+ReversalGate ChooseReversalGate(std::span<const double> displacement,
                                 std::pmr::memory_resource* scratch) {
+  const ReversalRules rules;
   const std::pmr::vector<Excursion> excursions = FindExcursions(displacement, scratch);
   if (excursions.size() < 2) return Under(excursions, 0.0);
   const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules, scratch);

@@ -153,26 +153,6 @@ TEST(MeasureLoop, NestedSwingsDoNotEnterTheAmplitude) {
   EXPECT_DOUBLE_EQ(measures.peak_force, 5.0);
 }
 
-TEST(MeasureLoop, TheEnergyIsThatOfTheWidestCyclesAlone) {
-  // Two cycles of ±2, three of ±1, of a loop that loses more than in proportion to its amplitude.
-  Record record;
-  double widest = 0.0;
-  for (const double amplitude : {2.0, 2.0, 1.0, 1.0, 1.0}) {
-    const Ellipse ellipse{.amplitude = amplitude, .peak_force = amplitude * amplitude};
-    const Record part =
-        MakeRecord({.amplitude = amplitude, .peak_force = amplitude * amplitude, .cycles = 1.0});
-    const std::size_t first = record.size() == 0 ? 0 : 1;
-    for (std::size_t i = first; i < part.size(); ++i) {
-      record.displacement.push_back(part.displacement[i]);
-      record.force.push_back(part.force[i]);
-    }
-    widest = std::max(widest, Area(ellipse));
-  }
-  // From upper extreme to upper extreme, one cycle is wholly of the wide ones: the jump of the
-  // force at the second's end is in the next.
-  EXPECT_NEAR(*MeasureLoop(record, Reversals(record)).energy_per_cycle, widest, kPolygon * widest);
-}
-
 TEST(MeasureLoop, CountsCompleteCycles) {
   const auto cycles = [](double count, double start) {
     const Record record = MakeRecord({.cycles = count, .start = start});
@@ -194,7 +174,6 @@ TEST(MeasureLoop, MonotoneLoadingHasNoCycle) {
   EXPECT_DOUBLE_EQ(measures.amplitude, 1.5);
   EXPECT_DOUBLE_EQ(measures.centre, 2.5);
   EXPECT_DOUBLE_EQ(measures.peak_force, 2.5);
-  EXPECT_FALSE(measures.energy_per_cycle.has_value());
 }
 
 TEST(MeasureLoop, AConstantRecordHasNoAmplitude) {

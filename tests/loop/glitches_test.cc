@@ -2,7 +2,7 @@
 #include <memory_resource>
 #include <type_traits>
 
-#include "loop/scratch.h"
+#include "loop/mended.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"

@@ -2,6 +2,7 @@
 
 #include <memory_resource>
 
+#include "mindahl/loop/facts.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/prelude.h"
@@ -117,7 +118,7 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
   EXPECT_EQ(PrepareAll({Made()}, {}).force_sense, 1);
   const PreparedRecords turned = PrepareAll({opposite}, {});
   EXPECT_EQ(turned.force_sense, -1);
-  EXPECT_GT(*turned.records[0].measures.energy_per_cycle, 0.0);
+  EXPECT_GT(MeasureFacts(turned.records[0], turned.force_sense).energy_per_cycle, 0.0);
   PreparationOptions options;
   options.force_sense = 1;
   EXPECT_EQ(PrepareAll({opposite}, options).force_sense, 1);
@@ -209,8 +210,8 @@ TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
   EXPECT_EQ(one.reversals.size(), 6U);
   EXPECT_EQ(prepared.force_sense, 1);
   constexpr double kBridged = 0.01;  // of a loop with lines over 5 % of its samples
-  const double energy = *whole.records[0].measures.energy_per_cycle;
-  EXPECT_NEAR(*one.measures.energy_per_cycle, energy, kBridged * energy);
+  const double energy = MeasureFacts(whole.records[0], 1).energy_per_cycle;
+  EXPECT_NEAR(MeasureFacts(one, 1).energy_per_cycle, energy, kBridged * energy);
   EXPECT_NEAR(one.measures.peak_force, whole.records[0].measures.peak_force, kBridged);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -24,9 +24,6 @@ struct LoopMeasures {
   /// spike makes it
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
-  /// W [J] = ∮ T dδ, mean over the closed cycles of the widest amplitude, to 5 %: never over those
-  /// of different amplitude; empty when the record closes none
-  std::optional<double> energy_per_cycle;
 };
 
 /// Returns the energy of each closed cycle [J] = ∮ T dδ by the trapezoidal rule, closed by a chord:
@@ -40,7 +37,8 @@ std::vector<double> CycleEnergies(const RecordView& record, std::span<const std:
 
 /// @param reversals  as from FindReversals on the same record
 /// @throws InvalidArgument when the record is empty or inconsistent
-LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals);
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
+                         std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
 
 /// Returns +1 for a force with the displacement's sign, −1 for the opposite (load cell on the other
 /// body): the sign of the mean energy of the closed cycles, which no offset changes; that of the
@@ -48,6 +46,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 /// the rectangle round it or five standard deviations of what noise of both channels makes of its
 /// energy, so that noise would decide. 0 when neither has a sign (constant force or displacement).
 /// @throws InvalidArgument when the record is inconsistent
-int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
+               std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
 
 }  // namespace mindahl::loop

@@ -30,13 +30,6 @@ struct CycleFacts {
   std::optional<double> sliding_amplitude;
 };
 
-/// A straight line through a fact of each cycle against the cycle's number.
-struct Trend {
-  double slope = 0.0;           ///< [unit of the fact a cycle]
-  double standard_error = 0.0;  ///< likewise
-  double p_value = 1.0;         ///< under no trend, two-sided, by Student's t
-};
-
 /// A gap that the motion takes up after each reversal while the force stays constant.
 struct Backlash {
   double width = 0.0;  ///< [m]: travel over it, mean over the directions
@@ -50,21 +43,17 @@ struct Backlash {
 struct LoopFacts {
   bool closed = false;  ///< false: the record closes no cycle, and there are no facts
   std::vector<CycleFacts> cycles;
-  std::size_t steady_cycles = 0;            ///< number of cycles of the widest amplitude
-  double amplitude = 0.0;                   ///< X [m]
-  double peak_force = 0.0;                  ///< T* [N]
-  double energy_per_cycle = 0.0;            ///< W [J]
-  double energy_ratio = 0.0;                ///< W/(4XT*) [-] of the means
-  std::optional<double> sliding_amplitude;  ///< [m]
-  /// Fraction [-] of a stroke's travel that is left once the force has reached nine tenths of the
-  /// half gap beyond the loop's centre: the median over the strokes.
-  std::optional<double> sliding_fraction;
+  std::size_t steady_cycles = 0;                      ///< number of cycles of the widest amplitude
+  double amplitude = 0.0;                             ///< X [m]
+  double peak_force = 0.0;                            ///< T* [N]
+  double energy_per_cycle = 0.0;                      ///< W [J]
+  double energy_ratio = 0.0;                          ///< W/(4XT*) [-] of the means
+  std::optional<double> sliding_amplitude;            ///< [m]
   std::optional<double> half_gap;                     ///< [N]
   std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
   /// Slope [N/m] of the least-squares line over the first tenth of each stroke, median over
   /// strokes. A lower limit of the stiffness: the loop may have bent within it.
   std::optional<double> slope_after_reversal;
-  std::optional<double> plateau_slope;  ///< [N/m]: likewise over the last third
   /// [-]: how far the falling stroke is from the rising one turned about the loop's centre, over
   /// T*: of the forces U_j and D_j in ten parts of the strokes the standard deviation of (U_j +
   /// D_{11−j})/2. Zero of a loop that has the symmetry of a contact; a slope of both strokes and
@@ -73,14 +62,10 @@ struct LoopFacts {
   /// [-]: Σ|Δδ| over the strokes' widths, from the first cycle to the last: 1 where every turn is
   /// known; far above, there are reversals or noise between.
   double path_ratio = 0.0;
-  /// µ_W = W/(4·N·sliding amplitude) [-], N the mean load; empty where that is not known.
-  std::optional<double> energy_friction_coefficient;
   /// Gap where the force rises at less than half the slope before and after it, between −0.4 and
   /// 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 %
   /// of the amplitude or more. No contact's branch does so: it only softens.
   std::optional<Backlash> backlash;
-  std::optional<Trend> half_gap_trend;  ///< [N a cycle], over three or more steady cycles
-  std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 
 /// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty where
