@@ -67,10 +67,6 @@ double PValueOfChiSquared(double x, double degrees_of_freedom) {
   return Above(ChiSquared(degrees_of_freedom), x);
 }
 
-double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
-  return boost::math::quantile(boost::math::complement(ChiSquared(degrees_of_freedom), chance));
-}
-
 double BinomialAtMost(double count, double trials, double probability) {
   return boost::math::cdf(Binomial(trials, probability), count);
 }

@@ -25,8 +25,6 @@ double FQuantile(double numerator_degrees, double degrees_of_freedom, double cha
 
 /// P(χ²(k) > x)
 double PValueOfChiSquared(double x, double degrees_of_freedom);
-/// P(χ²(k) > x) = chance at x
-double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 
 /// P(at most `count` of `trials`, each with that probability)
 double BinomialAtMost(double count, double trials, double probability);

@@ -20,10 +20,10 @@
 #include "identification/diagnosis/residual_structure.h"
 #include "identification/gram/omitted_terms.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
+#include "identification/inference/rig_alternative.h"
 #include "identification/intervals.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
@@ -167,26 +167,26 @@ void UseProfiles(const FittedProblem& fitted, const FitOptions& options, SearchB
   const bool slips =
       result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
+  // Where only rounding is left, the parabola has the derivatives at a corner.
+  const double counted = static_cast<double>(fitted.problem.data->counted);
+  const bool only_rounding = std::sqrt(fitted.solution.sum_of_squares / counted) < kOnlyRounding;
   std::vector<std::size_t> profiled;
   if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, buffers) ||
       NeedsProfile(fitted, kRig, options, buffers)) {
     profiled = {kStiffness, kShape, kSlipForce, kRig};
-  } else if (IsBadlyKnown(fitted, kStiffness, options.thresholds)) {
+  } else if (IsBadlyKnown(fitted, kStiffness, options.thresholds) || only_rounding) {
     profiled = {kStiffness};
   }
   result.parameters =
       WithProfiles(fitted, profiled, options, buffers, std::move(result.parameters));
 }
 
-/// Tests α = 1/3, also with a rig.
-void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
-  const FitOptions& options = attempt.options;
-  result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
-  if (!result.mindlin_test) return;
-  const auto rig = TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers);
+/// Includes Mindlin's contact in a compliant rig, where the record does not distinguish it.
+void ConsiderRig(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
+  const auto rig =
+      TryRig(fitted, attempt.thin, result.parameters[kShape], attempt.options, attempt.buffers);
   if (!rig) return;
-  result.mindlin_test->rig_stiffness = rig->rig_stiffness;
-  result.parameters = IncludeRig(*rig, options.thresholds, std::move(result.parameters));
+  result.parameters = IncludeRig(*rig, attempt.options.thresholds, std::move(result.parameters));
   result.findings.push_back(
       {.code = "shape_or_rig",
        .numbers = {{"rig_stiffness", rig->rig_stiffness}, {"alpha", result.law.shape_exponent}}});
@@ -212,7 +212,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const FittedProblem fitted{problem, solution, noise, estimates};
   FillErrors(problem, estimates, result);
   UseProfiles(fitted, options, buffers, result);
-  if (is_tested) TestShape(attempt, fitted, result);
+  if (is_tested) ConsiderRig(attempt, fitted, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {

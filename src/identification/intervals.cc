@@ -49,11 +49,6 @@ void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.upper95.reset();
 }
 
-bool TurnsWithMotion(const ParameterEstimate& estimate) {
-  const Term* const term = TermOfParameter(estimate.name);
-  return term != nullptr && term->turns_with_motion;
-}
-
 bool IsScaledByLoad(const FitResult& result) {
   return !result.records.empty() && result.WidestRecord().load_varies &&
          result.model->memory == models::Memory::kNone;

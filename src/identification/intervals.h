@@ -17,9 +17,6 @@ inline std::size_t CountFreeParameters(const FitResult& fit) {
       }));
 }
 
-/// True if an estimate is of a term whose force turns with the motion.
-bool TurnsWithMotion(const ParameterEstimate& estimate);
-
 /// The one place where the interval of an estimate is written, the union of its parts.
 
 using ParameterEstimates = std::vector<ParameterEstimate>;

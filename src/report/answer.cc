@@ -195,7 +195,10 @@ class Writer {
     std::vector<std::string> after;
     const auto& test = report_.alpha;
     if (test.is_rejected) {
-      after.emplace_back(*test.is_rejected ? "Mindlin's 1/3 is rejected" : "Mindlin's 1/3 fits");
+      const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
+      after.emplace_back(*test.is_rejected ? "Mindlin's 1/3 is rejected"
+                         : by_rig          ? "Mindlin's 1/3 fits in a compliant rig"
+                                           : "Mindlin's 1/3 fits");
     } else if (test.minus_third && !IsInadequate(report_)) {
       after.emplace_back("Mindlin's 1/3 is not tested");
     }

@@ -71,7 +71,6 @@ TEST_F(MeasuredRecord, TribometerUnderItsFullLoadIsFittedAsBetweenTwentyAndSixty
   EXPECT_LT(Value(fit, "alpha"), 0.1);
   EXPECT_NEAR(Value(fit, "slip_force"), 2.35, 0.03);
   EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), 0.47, 0.01);
-  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
 }
 
 const Words kSealColumns = {"--displacement", "5 [mm]", "--force", "7 [N]", "--time", "1 [ms]"};

@@ -37,7 +37,6 @@ TEST(Probability, FOfOneDegreeIsTheSquareOfT) {
 
 TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {
   EXPECT_NEAR(PValueOfChiSquared(3, 2), std::exp(-1.5), kRounding);
-  EXPECT_NEAR(ChiSquaredQuantile(2, std::exp(-1.5)), 3, 1e-9);
 }
 
 TEST(Probability, QuantilesAreTwoSided) {

@@ -42,10 +42,6 @@ void ExpectSame(const FitResult& one, const FitResult& other) {
   EXPECT_EQ(one.residuals.samples, other.residuals.samples);
   EXPECT_EQ(one.residuals.effective_samples, other.residuals.effective_samples);
   EXPECT_EQ(one.residuals.durbin_watson, other.residuals.durbin_watson);
-  ASSERT_EQ(one.mindlin_test.has_value(), other.mindlin_test.has_value());
-  if (one.mindlin_test) {
-    EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
-  }
   ASSERT_EQ(one.parameters.size(), other.parameters.size());
   for (std::size_t k = 0; k < one.parameters.size(); ++k) {
     const ParameterEstimate& a = one.parameters[k];
@@ -167,7 +163,6 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     EXPECT_EQ(errors.adequacy.tried, 0U);
     EXPECT_EQ(errors.records.front().facts.closed, full.records.front().facts.closed);
     EXPECT_EQ(intervals.correlation.size(), full.correlation.size());
-    EXPECT_FALSE(intervals.mindlin_test);
     EXPECT_EQ(errors.residuals.effective_samples, full.residuals.effective_samples);
     EXPECT_EQ(intervals.residuals.effective_samples, full.residuals.effective_samples);
     ExpectFindingsAmong(errors, intervals);

@@ -1,6 +1,6 @@
 
 
-#include "identification/inference/law_tests.h"
+#include "identification/inference/rig_alternative.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"

@@ -66,12 +66,6 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   EXPECT_EQ(FindInRecords(records, {}).at(0).Number("record"), 2);
 }
 
-TEST(IsWorthSaying, NeedsASizeAndACertainty) {
-  EXPECT_TRUE(IsWorthSaying({.slope = -0.05, .p_value = 1e-4}, 1.0));
-  EXPECT_FALSE(IsWorthSaying({.slope = -0.05, .p_value = 0.2}, 1.0));
-  EXPECT_FALSE(IsWorthSaying({.slope = -0.005, .p_value = 1e-4}, 1.0));
-}
-
 // --- whole fits
 
 Record Loop() {

@@ -7,9 +7,9 @@
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/law_tests.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
+#include "identification/inference/rig_alternative.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/law_choice.h"
 #include "identification/stages.h"
@@ -80,16 +80,19 @@ bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
 
 // --- tests and profiles on stages
 
-/// A rig tried for a loop of another shape, at a chance and a variance of the noise given by hand.
-bool RigIsFound(const Thresholds& thresholds, const Record& record, double p_value,
-                double variance) {
+/// A rig tried for a loop of another shape, at a variance of the noise given by hand.
+bool RigIsFound(const Thresholds& thresholds, const Record& record, double variance) {
   Stages stages(record, With(thresholds));
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
   ThinnedRecords thin(stages.data, Stages::Memory());
-  return TryRig({stages.problem, best, noise, estimates}, thin, MindlinTest{p_value, {}},
-                stages.options, stages.buffers)
+  ParameterEstimate shape;
+  shape.value = best.theta[kShape];
+  shape.status = ParameterStatus::kFree;
+  shape.upper95 = shape.value;
+  return TryRig({stages.problem, best, noise, estimates}, thin, shape, stages.options,
+                stages.buffers)
       .has_value();
 }
 
@@ -172,18 +175,11 @@ bool LoadIsFollowed(const Thresholds& thresholds, double amplitude) {
 
 const std::map<std::string_view, Case>& Cases() {
   static const std::map<std::string_view, Case> cases = {
-      {"significance",
-       [](const Thresholds& t) {
-         const Record record = testing::SprungLoop(kMindlin, 6e7);
-         return RigIsFound(t, record, kBelow * 0.05, 1e-4) &&
-                !RigIsFound(t, record, kAbove * 0.05, 1e-4);
-       }},
       {"shape_effect",
        [](const Thresholds& t) {
          const auto looks_for_a_rig = [&](double effect) {
            const BranchLaw law{4e7, 1.0 / 3 - effect, 40.0};
-           return RigIsFound(t, testing::SprungLoop(law, HUGE_VAL), /*p_value=*/0.0,
-                             /*variance=*/1.0);
+           return RigIsFound(t, testing::SprungLoop(law, HUGE_VAL), /*variance=*/1.0);
          };
          return !looks_for_a_rig(kBelow * 0.05) && looks_for_a_rig(kAbove * 0.05);
        }},
@@ -222,16 +218,6 @@ const std::map<std::string_view, Case>& Cases() {
       {"path_excess",
        [](const Thresholds& t) {
          return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
-       }},
-      {"trend_size",
-       [](const Thresholds& t) {
-         return !IsWorthSaying({-kBelow * 0.01 * 3, 0, 0}, 3, t) &&
-                IsWorthSaying({-kAbove * 0.01 * 3, 0, 0}, 3, t);
-       }},
-      {"trend_chance",
-       [](const Thresholds& t) {
-         return IsWorthSaying({1, 0.1, kBelow * 0.01}, 3, t) &&
-                !IsWorthSaying({1, 0.1, kAbove * 0.01}, 3, t);
        }},
       {"widest_ratio",
        [](const Thresholds& t) {

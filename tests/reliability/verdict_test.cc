@@ -109,7 +109,7 @@ TEST(Verdict, AlarmsAtMoreThanWhatARecordLeavesOpen) {
   fit.findings.push_back({.code = "slip_force_bounded_below"});
   EXPECT_TRUE(CautionOf(fit).warns);
   EXPECT_FALSE(CautionOf(fit).alarms);
-  fit.findings.push_back({.code = "shape_or_rig"});
+  fit.findings.push_back({.code = "path_too_long"});
   EXPECT_TRUE(CautionOf(fit).alarms);
 }
 

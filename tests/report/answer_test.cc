@@ -250,7 +250,6 @@ TEST(Answer, HasNoFractionAboveTheWhole) {
   identification::Cause cause;
   cause.code = "amplitude_dependence";
   cause.explains = 3.66;
-  cause.size = -3.66;
   input.fit.adequacy.causes = {cause};
   EXPECT_THAT(Details(input), Not(HasSubstr("366")));
 }

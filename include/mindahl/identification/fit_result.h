@@ -95,15 +95,6 @@ struct ParameterEstimate {
   }
 };
 
-/// Compares α = 1/3 with the fitted α, the other parameters refitted.
-struct MindlinTest {
-  double p_value = 1.0;  ///< p-value by F(1, degrees of freedom)
-  /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
-  /// ΔAICc: then the record does not distinguish a contact of another shape from Mindlin's in a
-  /// compliant rig. Computed where α = 1/3 is rejected, α is smaller and no rig is fitted.
-  std::optional<double> rig_stiffness;
-};
-
 /// Holds the fit of one record.
 struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
@@ -154,7 +145,6 @@ struct FitResult {
   double force_noise = 0.0;    ///< [N], known or estimated, of all records; 0 in a fit of the
                                ///< displacement
   std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
-  std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;

@@ -134,8 +134,6 @@ struct Term {
   std::string_view needs = {};
   ContactMotion motion = ContactMotion::kMeasured;  ///< one of a fit's terms may move the contact
   TheoryBound theory_bound = TheoryBound::kNone;
-  /// Its force turns with the motion: it loses, or shifts, energy that is not the contact's.
-  bool turns_with_motion = false;
   bool is_never_negative = false;  ///< a mass or a damping that is stands for something else
   bool is_planned = false;         ///< its column follows from a protocol, before any record
   /// One parameter for each column that FitOptions::covariates names, called after it.

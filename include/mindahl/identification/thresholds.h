@@ -3,15 +3,12 @@
 #include <span>
 #include <string_view>
 
-#include "mindahl/loop/facts.h"
-
 namespace mindahl::identification {
 
 /// Holds every number on which a verdict, a finding or the choice of a method depends.
 /// ThresholdTable() has the unit and the reason of each, and a test that notices when one is
 /// changed by a factor of two. Limits on the work of a solver are not here.
 struct Thresholds {
-  double significance = 0.05;
   double shape_effect = 0.05;
   double indistinguishable = 4.0;
   double rigid_beside_rig = 30.0;
@@ -22,8 +19,6 @@ struct Thresholds {
   double noise_differs = 0.01;
   double main_stroke = 0.75;
   double path_excess = 0.25;
-  double trend_size = 0.01;
-  double trend_chance = 0.01;
   double widest_ratio = 9.0;
   double widest_shape = 1.0;
   double open_slip_force = 25.0;
@@ -59,10 +54,5 @@ struct ThresholdRow {
 
 /// Returns one row a member of Thresholds, in their order.
 std::span<const ThresholdRow> ThresholdTable();
-
-/// True if a trend over the cycles is beyond their scatter, and large enough to matter: |slope|
-/// over the mean [a cycle] above `trend_size`, and p below `trend_chance`.
-/// @param mean  of the fact, in its unit
-bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds = {});
 
 }  // namespace mindahl::identification

@@ -93,9 +93,4 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
   return findings;
 }
 
-bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {
-  return trend.p_value < thresholds.trend_chance &&
-         std::abs(trend.slope) > thresholds.trend_size * std::abs(mean);
-}
-
 }  // namespace mindahl::identification

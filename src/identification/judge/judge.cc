@@ -26,7 +26,6 @@ Identifiability VerdictOn(std::string_view parameter, std::span<const Finding> f
 
 FitResult WithoutInadequate(FitResult result) {
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
-  result.mindlin_test.reset();
   // Omitted terms are taken to first order, here of a curve that is none of the record's.
   if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {

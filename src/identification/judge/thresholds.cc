@@ -6,9 +6,6 @@ namespace mindahl::identification {
 namespace {
 
 constexpr std::array kTable = {
-    ThresholdRow{"significance", &Thresholds::significance, "p",
-                 "Mindlin's exponent is rejected below it",
-                 "the usual two-sided convention; a rig is looked for on rejection only"},
     ThresholdRow{"shape_effect", &Thresholds::shape_effect, "α",
                  "at a smaller difference from Mindlin's exponent no rig is tried",
                  "the branches then differ by 1 % of Tc: less does not call for a rig, however "
@@ -48,12 +45,6 @@ constexpr std::array kTable = {
         "a warning is given if the path through the samples exceeds the strokes by more",
         "white noise of 0.8 steps between samples makes this much: one step in five then goes "
         "backward, and the fit takes it for a reversal"},
-    ThresholdRow{"trend_size", &Thresholds::trend_size, "of the mean a cycle",
-                 "a smaller trend is not mentioned in words",
-                 "over ten cycles the first and the last then differ by a tenth"},
-    ThresholdRow{"trend_chance", &Thresholds::trend_chance, "p",
-                 "a trend that the scatter of cycles makes more often is not mentioned in words",
-                 "two trends are tested, so one record in fifty has one by chance"},
     ThresholdRow{"widest_ratio", &Thresholds::widest_ratio, "upper over lower end",
                  "σ or Tc does not count as known if its 95 % interval is wider",
                  "a factor of three either way: the order of magnitude"},

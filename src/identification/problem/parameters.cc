@@ -608,17 +608,6 @@ void Parameters::Fix(std::size_t i, double theta) {
   Sort();
 }
 
-void Parameters::KeepWithin(std::size_t i, double most) {
-  parameters_[i].lower = std::max(parameters_[i].lower, -most);
-  parameters_[i].upper = std::min(parameters_[i].upper, most);
-}
-
-void Parameters::Release(std::size_t i) {
-  parameters_[i].fixed = false;
-  parameters_[i].absent = false;
-  Sort();
-}
-
 models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
   return {.tangential_stiffness = parameters_[kStiffness].ToValue(theta[kStiffness]),
           .shape_exponent = theta[kShape],

@@ -180,12 +180,6 @@ class Parameters {
   /// Holds one more parameter at θ.
   void Fix(std::size_t i, double theta);
 
-  /// Lets one more parameter go, though it was not asked for.
-  void Release(std::size_t i);
-
-  /// Narrows the bounds of θ to ±`most`.
-  void KeepWithin(std::size_t i, double most);
-
   /// Writes θ where the options have a starting value.
   bool FindStart(const FitOptions& options, std::size_t i, double& theta) const;
 

@@ -127,7 +127,6 @@ constexpr std::array kTermRows = {
             [](const TermUnits& units) { return units.force * units.half_duration / units.length; },
         .column = Regressor::kVelocity,
         .needs_time = true,
-        .turns_with_motion = true,
         .is_never_negative = true,
         .is_planned = true,
         .group = "viscous"},
@@ -251,7 +250,6 @@ constexpr std::array kTermRows = {
          .highest = kLongestLag,
          .scale = [](const TermUnits& units) { return units.cycle; },
          .motion = ContactMotion::kLate,
-         .turns_with_motion = true,
          .unit_by_sample = "samples",
          .group = "lag"},
     Term{
@@ -278,7 +276,6 @@ constexpr std::array kTermRows = {
                return units.force_sense * units.force / units.covariate;
              },
          .column = Regressor::kCovariate,
-         .turns_with_motion = true,
          .of_column = true,
          .group = "covariate"},
     Term{.name = "force_offset",

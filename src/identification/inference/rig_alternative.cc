@@ -1,0 +1,60 @@
+#include "identification/inference/rig_alternative.h"
+
+#include <limits>
+#include <memory_resource>
+
+#include "identification/inference/noise.h"
+
+namespace mindahl::identification {
+namespace {
+
+constexpr double kMindlinExponent = 1.0 / 3;
+
+}  // namespace
+
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
+                                     const ParameterEstimate& shape, const FitOptions& options,
+                                     SearchBuffers& buffers) {
+  const auto& [problem, best, noise, estimates] = fitted;
+  // The law of a load that varies has none, nor has that of an imposed force.
+  if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
+      shape.status == ParameterStatus::kFixed || !shape.upper95 ||
+      !(*shape.upper95 < kMindlinExponent) ||
+      !(kMindlinExponent - shape.value > options.thresholds.shape_effect)) {
+    return std::nullopt;
+  }
+  FitOptions with_rig = options;
+  with_rig.terms.emplace_back("rig_stiffness");
+  with_rig.fixed["alpha"] = kMindlinExponent;
+  with_rig.start.clear();
+  Candidate sprung(*problem.data, with_rig, problem.state, std::pmr::get_default_resource());
+  Solution solution;
+  sprung.solution = &solution;
+  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
+               std::pmr::get_default_resource());
+  Descend(sprung, with_rig, buffers);
+  // Both have as many parameters: ΔAICc is 2 ln Λ.
+  const auto samples = static_cast<double>(noise.samples);
+  const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))
+                          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
+  if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
+  return RigAlternative{
+      .rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
+      .tangential_stiffness = sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
+}
+
+ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
+                              ParameterEstimates parameters) {
+  if (rig.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
+    return parameters;
+  }
+  Include(parameters[kShape], {.lower = kMindlinExponent, .upper = kMindlinExponent});
+  ParameterEstimate& sigma = parameters[kStiffness];
+  const double ratio = rig.tangential_stiffness / sigma.value;
+  if (sigma.lower95 && sigma.upper95) {
+    Include(sigma, {.lower = ratio * *sigma.lower95, .upper = ratio * *sigma.upper95});
+  }
+  return parameters;
+}
+
+}  // namespace mindahl::identification
