@@ -76,8 +76,8 @@ class BuildByCMake(build_ext):
              "-DMINDAHL_BUILD_PYTHON=ON", "-DMINDAHL_BUILD_TESTS=OFF", "-DMINDAHL_BUILD_EXAMPLES=OFF",
              "-DMINDAHL_INSTALL=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=12",
              f"-DMINDAHL_PYTHON={sys.executable}"], check=True)
-        subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python_package", "--parallel"],
-                       check=True)
+        subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python_package",
+                        "--parallel", str(os.cpu_count() or 1)], check=True)
         return build / "python" / "package"
 
 
