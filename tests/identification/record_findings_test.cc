@@ -132,12 +132,6 @@ TEST(FindEnergyContradiction, IsSilentWhereNoiseMakesTheDifference) {
   EXPECT_FALSE(FindEnergyContradiction(fit, {}));
 }
 
-TEST(IsWorthSaying, NeedsASizeAndACertainty) {
-  EXPECT_TRUE(IsWorthSaying({.slope = -0.05, .p_value = 1e-4}, 1.0));
-  EXPECT_FALSE(IsWorthSaying({.slope = -0.05, .p_value = 0.2}, 1.0));
-  EXPECT_FALSE(IsWorthSaying({.slope = -0.005, .p_value = 1e-4}, 1.0));
-}
-
 // --- whole fits
 
 Record Loop() {

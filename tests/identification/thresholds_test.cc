@@ -322,16 +322,6 @@ const std::map<std::string_view, Case>& Cases() {
          return EnergyContradicts(t, 0.5, 0.5 / (kAbove * 5)) &&
                 !EnergyContradicts(t, 0.5, 0.5 / (kBelow * 5));
        }},
-      {"trend_size",
-       [](const Thresholds& t) {
-         return !IsWorthSaying({-kBelow * 0.01 * 3, 0, 0}, 3, t) &&
-                IsWorthSaying({-kAbove * 0.01 * 3, 0, 0}, 3, t);
-       }},
-      {"trend_chance",
-       [](const Thresholds& t) {
-         return IsWorthSaying({1, 0.1, kBelow * 0.01}, 3, t) &&
-                !IsWorthSaying({1, 0.1, kAbove * 0.01}, 3, t);
-       }},
       {"widest_ratio",
        [](const Thresholds& t) {
          return !IsWide(t, 0, 1.0, kBelow * 9) && IsWide(t, 0, 1.0, kAbove * 9) &&

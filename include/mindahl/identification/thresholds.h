@@ -28,8 +28,6 @@ struct Thresholds {
   double path_excess = 0.25;
   double energy_difference = 0.2;
   double energy_errors = 5.0;
-  double trend_size = 0.01;
-  double trend_chance = 0.01;
   double widest_ratio = 9.0;
   double widest_shape = 1.0;
   double open_slip_force = 25.0;
@@ -71,10 +69,5 @@ struct ThresholdRow {
 
 /// Returns one row a member of Thresholds, in their order.
 std::span<const ThresholdRow> ThresholdTable();
-
-/// True if a trend over the cycles is beyond their scatter, and large enough to matter: |slope|
-/// over the mean [a cycle] above `trend_size`, and p below `trend_chance`.
-/// @param mean  of the fact, in its unit
-bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds = {});
 
 }  // namespace mindahl::identification

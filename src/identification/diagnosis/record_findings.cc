@@ -159,9 +159,4 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                  .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
 }
 
-bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {
-  return trend.p_value < thresholds.trend_chance &&
-         std::abs(trend.slope) > thresholds.trend_size * std::abs(mean);
-}
-
 }  // namespace mindahl::identification
