@@ -44,13 +44,11 @@ Json QuantitiesJson(const std::vector<Evolution>& evolutions) {
                         {"to", trend.to},
                         {"p_value", trend.p_value}});
     }
-    quantities[std::string(evolution.quantity->name)] = {
-        {"unit", evolution.unit},
-        {"first", course.first},
-        {"last", course.last},
-        {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
-        {"steps", steps},
-        {"trends", trends}};
+    quantities[std::string(evolution.quantity->name)] = {{"unit", evolution.unit},
+                                                         {"first", course.first},
+                                                         {"last", course.last},
+                                                         {"steps", steps},
+                                                         {"trends", trends}};
   }
   return quantities;
 }
@@ -177,13 +175,12 @@ std::string ToText(const TrackedTest& test, const std::vector<Evolution>& evolut
     }
   }
   if (evolutions.empty()) return text;
-  text += fmt::format("\n  {:<30}{:>14}{:>14}{:>10}\n", "", "first", "last", "settled");
+  text += fmt::format("\n  {:<30}{:>14}{:>14}\n", "", "first", "last");
   for (const Evolution& evolution : evolutions) {
     const campaign::CourseDescription& course = evolution.description;
-    text +=
-        fmt::format("  {:<30}{:>14.5g}{:>14.5g}{:>10}\n",
-                    report::WithUnit(evolution.quantity->name, evolution.unit), course.first,
-                    course.last, course.settled_at ? fmt::format("{}", *course.settled_at) : "-");
+    text += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n",
+                        report::WithUnit(evolution.quantity->name, evolution.unit), course.first,
+                        course.last);
   }
   const std::vector<std::string> changes = campaign::ChangeStatements(evolutions);
   if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
@@ -270,13 +267,13 @@ void TrackRun::ReadFile(const std::string& file) {
     stream.Next(piece);
   } else {
     piece = campaign::ReadHead(stream);
-    BeginFits(campaign::ViewOf(piece), file);
+    BeginFits(piece, file);
   }
   while (piece.size() > 0) {
     bytes_read_ = bytes_before_ + stream.bytes();
     test_.samples += piece.size();
     times_.Shift(piece.time);
-    tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    tracker_->Add(piece, piece.lines);
     AskWhetherToGoOn();
     if (events_.piece_is_read) events_.piece_is_read();
     if (!stream.Next(piece)) break;

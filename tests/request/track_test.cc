@@ -135,7 +135,6 @@ std::vector<campaign::Evolution> DescribedByHand() {
           of("sigma", "N m/rad",
              {.first = 1.5,
               .last = 6.5,
-              .settled_at = 30,
               .steps = {{21, 8.5, 9.5, 0.375}},
               .trends = {{1, 20, 1.5, 2.5, 1e-5}}})};
 }
@@ -146,14 +145,14 @@ TEST(TrackedTest, TextHasEveryNumberInItsLine) {
   test.samples = 812;
   test.resumed = 7;
   EXPECT_EQ(ToText(test, DescribedByHand()),
-            "Tc 40.5 N m, unchanged; σ +333 %, settled at cycle 30\n"
+            "Tc 40.5 N m, unchanged; σ +333 %\n"
             "60 cycles of 812 samples, 2 fits, 8 J dissipated in all\n"
             "7 of them existed already\n"
             "\n1 cycle has a flag:\n"
             "  sigma_open               1   the cycle does not determine sigma\n"
-            "\n                                         first          last   settled\n"
-            "  slip_force [N m]                        40.5         40.25         -\n"
-            "  sigma [N m/rad]                          1.5           6.5        30\n"
+            "\n                                         first          last\n"
+            "  slip_force [N m]                        40.5         40.25\n"
+            "  sigma [N m/rad]                          1.5           6.5\n"
             "\nChanges beyond chance:\n"
             "  sigma: cycles 1 to 20, 1.50 → 2.50 N m/rad (+67 %), p 1e-05\n"
             "  sigma: a step at cycle 21, 8.50 → 9.50 N m/rad (+12 %), p 0.4\n");
@@ -180,9 +179,9 @@ TEST(TrackedTest, JsonHasEveryNumberUnderItsName) {
     "reversals": {"gate": 0.25, "certain": false}, "output": "t.csv", "fits": 2, "flagged": 1,
     "accumulated_energy": 8, "energy_counts": {"measured": 2, "replaced": 0, "left_out": 0},
     "quantities": {
-      "slip_force": {"unit": "N m", "first": 40.5, "last": 40.25, "settled_at": null, "steps": [],
+      "slip_force": {"unit": "N m", "first": 40.5, "last": 40.25, "steps": [],
                      "trends": []},
-      "sigma": {"unit": "N m/rad", "first": 1.5, "last": 6.5, "settled_at": 30,
+      "sigma": {"unit": "N m/rad", "first": 1.5, "last": 6.5,
                 "steps": [{"cycle": 21, "before": 8.5, "after": 9.5, "p_value": 0.375}],
                 "trends": [{"first_cycle": 1, "last_cycle": 20, "from": 1.5, "to": 2.5,
                             "p_value": 1e-5}]}}})"));
@@ -223,7 +222,7 @@ TEST(TrackedTest, FigureShowsTheFrictionCoefficientInPlaceOfTheSlipForce) {
   test = std::move(loaded);
   EXPECT_THAT(labels(), ElementsAre("friction_coefficient"));
   EXPECT_EQ(ToPlot(test, test.courses.Describe(test.is_torsional)).panels.front().title,
-            "μ 0.500 → 0.250, settled at cycle 16");
+            "μ 0.500 → 0.250");
 }
 
 /// Jenkins' loop of 20 N, of cycles of 40 samples between ±1 µm at a load of 50 N.
