@@ -115,15 +115,14 @@ std::string SceneText(const MeasuredExcitation& scene, double tolerance) {
     text += fmt::format("and of the dissipated energy: {}\n",
                         ChoiceText(scene, scene.cheapest_with_energy));
   }
-  text += fmt::format("  {:<36} {:>10} {:>10}  {:>8} {:>8} {:>8}\n", "", "ns/sample", "measured",
-                      "max dT", "rms dT", "energy");
+  text += fmt::format("  {:<36} {:>10}  {:>8} {:>8} {:>8}\n", "", "ns/sample", "max dT", "rms dT",
+                      "energy");
   for (const WorkPrecision& point : scene.points) {
     const std::string energy =
         point.precision.energy ? fmt::format("{:.1e}", *point.precision.energy) : "-";
-    text += fmt::format("{} {:<36} {:>10.2f} {:>10.2f}  {:>8.1e} {:>8.1e} {:>8}\n",
+    text += fmt::format("{} {:<36} {:>10.2f}  {:>8.1e} {:>8.1e} {:>8}\n",
                         point.is_on_front ? '*' : ' ', Describe(point.approximation), point.cost,
-                        point.measured_cost, point.precision.max_force, point.precision.rms_force,
-                        energy);
+                        point.precision.max_force, point.precision.rms_force, energy);
   }
   return text + '\n';
 }
@@ -139,7 +138,6 @@ Json PointJson(const WorkPrecision& point) {
           {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
           {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
           {"cost_ns_per_sample", point.cost},
-          {"measured_ns_per_sample", point.measured_cost},
           {"max_force_error", point.precision.max_force},
           {"rms_force_error", point.precision.rms_force},
           {"energy_error", NumberOrNull(point.precision.energy)},
@@ -175,8 +173,8 @@ std::string ToText(const Tradeoff& study) {
 
 std::string PointsCsv(const Tradeoff& study) {
   std::string text =
-      "excitation,model,method,steps,tolerance,cost [ns/sample],measured [ns/sample],max force "
-      "error [-],rms force error [-],energy error [-],on Pareto front\n";
+      "excitation,model,method,steps,tolerance,cost [ns/sample],max force error [-],"
+      "rms force error [-],energy error [-],on Pareto front\n";
   for (const MeasuredExcitation& scene : study.excitations) {
     for (const WorkPrecision& point : scene.points) {
       text += scene.name;
