@@ -160,7 +160,6 @@ Json PointRows(const MeasuredExcitation& scene) {
                     {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
                     {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
                     {"cost_ns_per_sample", point.cost},
-                    {"measured_ns_per_sample", point.measured_cost},
                     {"max_force_error", point.precision.max_force},
                     {"rms_force_error", point.precision.rms_force},
                     {"energy_error", report::NumberOrNull(point.precision.energy)},

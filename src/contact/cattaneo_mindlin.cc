@@ -4,46 +4,11 @@
 
 #include <cmath>
 
-#include "contact/known_contact.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {
 namespace {
-
-void RequireWithinSlipForce(double tangential_force, double slip_force) {
-  RequirePositive("slip force [N]", slip_force);
-  if (!(std::abs(tangential_force) <= slip_force)) {
-    ThrowInvalid("tangential force [N]", tangential_force,
-                 fmt::format("must not exceed the slip force {} N", slip_force));
-  }
-}
-
-void RequirePeakForce(double peak_force, double slip_force) {
-  if (!(peak_force >= 0.0 && peak_force <= slip_force)) {
-    ThrowInvalid("peak force [N]", peak_force,
-                 fmt::format("must be >= 0 and must not exceed the slip force {} N", slip_force));
-  }
-}
-
-/// Returns 1 − (1 − t)^{2/3} without cancellation at either end. The two fractions of Tc, which add
-/// up to 1, come separately: as t → 1 the root needs every digit of the second.
-double SlipShare(double force_share, double remaining_share) {
-  const double stick_ratio = std::cbrt(remaining_share);
-  return force_share * (1.0 + stick_ratio) / (1.0 + stick_ratio + stick_ratio * stick_ratio);
-}
-
-/// Returns (1 + 3s + s²)·(1 − s)³, given s and 1 − s.
-double EnergyShare(double stick_ratio, double one_minus_stick_ratio) {
-  return (1.0 + 3.0 * stick_ratio + stick_ratio * stick_ratio) * one_minus_stick_ratio *
-         one_minus_stick_ratio * one_minus_stick_ratio;
-}
-
-/// Loss per cycle [J] at the onset of gross slip.
-double EnergyAtGrossSlip(const MindlinContact& contact) {
-  return InRange("energy per cycle at gross slip [J]",
-                 3.0L * contact.slip_force * contact.slip_force * contact.tangential_compliance /
-                     (20.0L * contact.contact_radius));
-}
 
 /// Returns T₀ for a contact that is known to be valid.
 double VirginForce(double slip_force, double gross_slip_displacement, double displacement) {
@@ -88,46 +53,6 @@ double GrossSlipDisplacement(const MindlinContact& contact) {
       3.0L * contact.slip_force * contact.tangential_compliance / (16.0L * contact.contact_radius));
 }
 
-double StickRadiusRatio(double tangential_force, double slip_force) {
-  RequireWithinSlipForce(tangential_force, slip_force);
-  return std::cbrt((slip_force - std::abs(tangential_force)) / slip_force);
-}
-
-double SlipAreaFraction(double tangential_force, double slip_force) {
-  RequireWithinSlipForce(tangential_force, slip_force);
-  const double magnitude = std::abs(tangential_force);
-  return SlipShare(magnitude / slip_force, (slip_force - magnitude) / slip_force);
-}
-
-double MindlinVirginDisplacement(const MindlinContact& contact, double tangential_force) {
-  const double gross_slip_displacement = GrossSlipDisplacement(contact);
-  return std::copysign(
-      gross_slip_displacement * SlipAreaFraction(tangential_force, contact.slip_force),
-      tangential_force);
-}
-
-double MindlinUnloadingDisplacement(const MindlinContact& contact, double tangential_force,
-                                    double peak_force) {
-  const double gross_slip_displacement = GrossSlipDisplacement(contact);
-  RequirePeakForce(peak_force, contact.slip_force);
-  if (!(std::abs(tangential_force) <= peak_force)) {
-    ThrowInvalid("tangential force [N]", tangential_force,
-                 fmt::format("must not exceed the peak force {} N", peak_force));
-  }
-  const double slip_force = contact.slip_force;
-  // 1 − (T* − T)/(2Tc) as a sum of two differences that are exact where they are small.
-  const double remaining_share =
-      ((slip_force - peak_force) + (slip_force + tangential_force)) / (2.0 * slip_force);
-  const double force_share = (peak_force - tangential_force) / (2.0 * slip_force);
-  return gross_slip_displacement *
-         (SlipAreaFraction(peak_force, slip_force) - 2.0 * SlipShare(force_share, remaining_share));
-}
-
-double MindlinReloadingDisplacement(const MindlinContact& contact, double tangential_force,
-                                    double peak_force) {
-  return -MindlinUnloadingDisplacement(contact, -tangential_force, peak_force);
-}
-
 double MindlinVirginForce(const MindlinContact& contact, double displacement) {
   RequireFinite("displacement [m]", displacement);
   return VirginForce(contact.slip_force, GrossSlipDisplacement(contact), displacement);
@@ -150,31 +75,6 @@ double MindlinUnloadingForce(const MindlinContact& contact, double displacement,
 double MindlinReloadingForce(const MindlinContact& contact, double displacement,
                              double displacement_amplitude) {
   return -MindlinUnloadingForce(contact, -displacement, displacement_amplitude);
-}
-
-double MindlinEnergyPerCycle(const MindlinContact& contact, double peak_force) {
-  Validate(contact);
-  RequirePeakForce(peak_force, contact.slip_force);
-  const double stick_ratio = StickRadiusRatio(peak_force, contact.slip_force);
-  const double one_minus_stick_ratio =
-      (peak_force / contact.slip_force) / (1.0 + stick_ratio + stick_ratio * stick_ratio);
-  return EnergyAtGrossSlip(contact) * EnergyShare(stick_ratio, one_minus_stick_ratio);
-}
-
-double MindlinEnergyPerCycleAtAmplitude(const MindlinContact& contact,
-                                        double displacement_amplitude) {
-  const double gross_slip_displacement = GrossSlipDisplacement(contact);
-  RequireNonNegative("displacement amplitude [m]", displacement_amplitude);
-  const double energy_at_gross_slip = EnergyAtGrossSlip(contact);
-  if (displacement_amplitude > gross_slip_displacement) {
-    return energy_at_gross_slip +
-           4.0 * contact.slip_force * (displacement_amplitude - gross_slip_displacement);
-  }
-  const double stick_ratio =
-      std::sqrt((gross_slip_displacement - displacement_amplitude) / gross_slip_displacement);
-  const double one_minus_stick_ratio =
-      (displacement_amplitude / gross_slip_displacement) / (1.0 + stick_ratio);
-  return energy_at_gross_slip * EnergyShare(stick_ratio, one_minus_stick_ratio);
 }
 
 }  // namespace mindahl::contact

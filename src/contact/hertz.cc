@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "contact/known_contact.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {
@@ -79,15 +79,6 @@ double HertzEquivalentRadius(double normal_load, double contact_radius, double e
   const long double radius = contact_radius;
   return InRange(kEquivalentRadius,
                  4 * effective_modulus * (radius * radius * radius) / (3.0L * normal_load));
-}
-
-double HertzNormalLoad(double contact_radius, double equivalent_radius, double effective_modulus) {
-  RequirePositive(kContactRadiusName, contact_radius);
-  RequirePositive(kEquivalentRadius, equivalent_radius);
-  RequirePositive(kEffectiveModulus, effective_modulus);
-  const long double radius = contact_radius;
-  return InRange(kNormalLoadName,
-                 4 * effective_modulus * (radius * radius * radius) / (3.0L * equivalent_radius));
 }
 
 double HertzMaximumPressure(double normal_load, double contact_radius) {

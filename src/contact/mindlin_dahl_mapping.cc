@@ -4,172 +4,254 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string_view>
+#include <utility>
 
-#include "contact/known_contact.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {
 
 namespace {
 
-Quantity HertzContactRadiusOf(const Quantity& normal_load, const Quantity& equivalent_radius,
-                              const Quantity& effective_modulus) {
-  constexpr double kCubeRoot = 3.0;
-  return Product(
-      HertzContactRadius(normal_load.value, equivalent_radius.value, effective_modulus.value),
-      {{normal_load}, {equivalent_radius}, {effective_modulus, -1}}, kCubeRoot);
+void RequireStandardError(std::string_view quantity, double standard_error) {
+  RequireNonNegative(fmt::format("standard uncertainty of the {}", quantity), standard_error);
 }
 
-Quantity MaximumPressureOf(const Quantity& normal_load, const Quantity& contact_radius) {
-  return Product(HertzMaximumPressure(normal_load.value, contact_radius.value),
-                 {{normal_load}, {contact_radius, -2}});
+void RequireKnown(std::string_view quantity, const std::optional<UncertainValue>& known) {
+  if (!known) return;
+  RequirePositive(quantity, known->value);
+  RequireStandardError(quantity, known->standard_error);
 }
 
-Quantity TangentialStiffnessOf(const Quantity& contact_radius, const Quantity& compliance) {
-  return Product(MindlinTangentialStiffness(contact_radius.value, compliance.value),
-                 {{contact_radius}, {compliance, -1}});
-}
-
-Quantity GrossSlipDisplacementOf(const Quantity& contact_radius, const Quantity& compliance,
-                                 const Quantity& slip_force) {
-  return Product(GrossSlipDisplacement({contact_radius.value, compliance.value, slip_force.value}),
-                 {{slip_force}, {compliance}, {contact_radius, -1}});
-}
-
-void Append(std::vector<std::string>& list, const std::vector<std::string>& more) {
-  list.insert(list.end(), more.begin(), more.end());
-}
-
-std::string Needs(std::string_view quantity, const std::vector<std::string>& inputs) {
-  return fmt::format("{} needs {}", quantity, fmt::join(inputs, ", "));
-}
-
-bool IsComplete(const KnownBody& body) { return IsElastic(body) && body.radius; }
-
-/// Holds the quantities that follow from the known properties alone, without the fit.
-struct Derived {
-  std::optional<Quantity> normal_load;
-  std::optional<Quantity> effective_modulus;
-  std::optional<Quantity> tangential_compliance;
-  std::optional<Quantity> equivalent_radius;
-};
-
-Derived DeriveFromKnown(const KnownContact& known, std::vector<std::string>& redundant) {
-  Derived derived;
-  if (known.normal_load) derived.normal_load = Independent(*known.normal_load, kNormalLoad);
-  if (known.tangential_compliance) {
-    derived.tangential_compliance = Independent(*known.tangential_compliance, kCompliance);
+void RequireBody(const KnownBody& body, int number) {
+  RequireKnown(fmt::format("Young's modulus of body {} [Pa]", number), body.youngs_modulus);
+  if (body.poisson_ratio) {
+    const std::string quantity = fmt::format("Poisson ratio of body {}", number);
+    RequirePoissonRatio(quantity, body.poisson_ratio->value);
+    RequireStandardError(quantity, body.poisson_ratio->standard_error);
   }
-  if (IsElastic(known.body_1) && IsElastic(known.body_2)) {
-    derived.effective_modulus = EffectiveModulusOf(known);
-    const Quantity of_materials = TangentialComplianceOf(known);
-    if (known.tangential_compliance) {
-      const double given = known.tangential_compliance->value;
-      redundant.push_back(
-          fmt::format("tangential compliance is given as {:.6g} 1/Pa and is {:.6g} 1/Pa from the "
-                      "elastic constants (given/derived = {:.6g}): the given value is used",
-                      given, of_materials.value, given / of_materials.value));
-    } else {
-      derived.tangential_compliance = of_materials;
+  if (body.radius) {
+    const std::string quantity = fmt::format("radius of body {} [m]", number);
+    RequireSurfaceRadius(quantity, body.radius->value);
+    RequireStandardError(quantity, body.radius->standard_error);
+    if (std::isinf(body.radius->value) && body.radius->standard_error > 0.0) {
+      ThrowInvalid(fmt::format("standard uncertainty of the {}", quantity),
+                   body.radius->standard_error, "must be 0 for a plane, which is exact");
     }
   }
-  if (known.body_1.radius && known.body_2.radius) {
-    derived.equivalent_radius =
-        EquivalentRadiusOf(Present(known.body_1.radius), Present(known.body_2.radius));
-  }
-  return derived;
 }
 
-HertzPrediction Predict(const Quantity& stiffness, const Quantity& slip_force,
-                        const Derived& derived, const Quantity& measured_gross_slip,
-                        double correlation) {
-  const Quantity radius =
-      HertzContactRadiusOf(Present(derived.normal_load), Present(derived.equivalent_radius),
-                           Present(derived.effective_modulus));
-  const Quantity predicted = TangentialStiffnessOf(radius, Present(derived.tangential_compliance));
-  const Quantity gross_slip =
-      GrossSlipDisplacementOf(radius, Present(derived.tangential_compliance), slip_force);
-  const auto ratio = [&](const Quantity& measured, const Quantity& other) {
-    return Total(Product(measured.value / other.value, {{measured}, {other, -1}}), correlation);
+bool AreElastic(const KnownContact& known) {
+  return known.body_1.youngs_modulus && known.body_1.poisson_ratio && known.body_2.youngs_modulus &&
+         known.body_2.poisson_ratio;
+}
+bool KnowsCompliance(const KnownContact& known) {
+  return known.tangential_compliance || AreElastic(known);
+}
+bool KnowsRadii(const KnownContact& known) { return known.body_1.radius && known.body_2.radius; }
+bool KnowsHertz(const KnownContact& known) {
+  return known.normal_load && AreElastic(known) && KnowsRadii(known);
+}
+
+// Quantities of the known ones; the caller has found that they are known.
+
+Body BodyOf(const KnownBody& known) {
+  return {.youngs_modulus = known.youngs_modulus.value(),
+          .poisson_ratio = known.poisson_ratio.value()};
+}
+double EffectiveModulusOf(const KnownContact& known) {
+  return EffectiveModulus(BodyOf(known.body_1), BodyOf(known.body_2));
+}
+double ComplianceOf(const KnownContact& known) {
+  return known.tangential_compliance
+             ? known.tangential_compliance->value
+             : TangentialCompliance(BodyOf(known.body_1), BodyOf(known.body_2));
+}
+double EquivalentRadiusOf(const KnownContact& known) {
+  return EquivalentRadius(known.body_1.radius.value(), known.body_2.radius.value());
+}
+double HertzRadiusOf(const KnownContact& known) {
+  return HertzContactRadius(known.normal_load.value(), EquivalentRadiusOf(known),
+                            EffectiveModulusOf(known));
+}
+
+void RequireKnown(const KnownContact& known) {
+  RequireKnown("normal load [N]", known.normal_load);
+  RequireKnown("contact radius [m]", known.contact_radius);
+  RequireKnown("tangential compliance [1/Pa]", known.tangential_compliance);
+  RequireBody(known.body_1, 1);
+  RequireBody(known.body_2, 2);
+  if (KnowsRadii(known)) EquivalentRadiusOf(known);  // refuses two planes
+}
+
+/// Returns a quantity with the error that those of the inputs make in it.
+/// @param compute  of known properties
+template <typename Compute>
+UncertainValue Propagated(const KnownContact& known, const Compute& compute) {
+  constexpr double kStep = 1e-5;
+  constexpr double kLargestPoissonRatio = 0.5;
+  KnownContact moved = known;
+  UncertainValue result = compute(known);
+  const auto add = [&](std::optional<UncertainValue>& input, double step, double largest) {
+    if (!input || !(input->standard_error > 0)) return;
+    const double at = input->value;
+    const double above = std::min(at + step, largest);
+    input->value = above;
+    const double more = compute(moved);
+    const double below = at - step;
+    input->value = below;
+    const double change = (more - compute(moved)) / (above - below) * input->standard_error;
+    input->value = at;
+    result.standard_error = std::hypot(result.standard_error, change);
   };
-  // Tc cancels in the ratio of displacements, also where it is open: ∞ − ∞ would not.
-  const Quantity inverse = Product(1.0, {{predicted}, {stiffness, -1}});
-  return {.effective_modulus = Total(Present(derived.effective_modulus)),
-          .equivalent_radius = Total(Present(derived.equivalent_radius)),
-          .contact_radius = Total(radius),
-          .maximum_pressure = Total(MaximumPressureOf(Present(derived.normal_load), radius)),
-          .tangential_stiffness = Total(predicted),
-          .gross_slip_displacement = Total(gross_slip, correlation),
-          .sigma_over_hertz_mindlin = ratio(stiffness, predicted),
-          .gross_slip_displacement_ratio =
-              Total({measured_gross_slip.value / gross_slip.value, inverse.change}, correlation)};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto add_relative = [&](std::optional<UncertainValue>& input) {
+    if (input) add(input, kStep * std::abs(input->value), kInfinity);
+  };
+  for (KnownBody* body : {&moved.body_1, &moved.body_2}) {
+    add_relative(body->youngs_modulus);
+    add_relative(body->radius);
+    if (!body->poisson_ratio) continue;
+    add(body->poisson_ratio, kStep * (1 + body->poisson_ratio->value), kLargestPoissonRatio);
+  }
+  add_relative(moved.normal_load);
+  add_relative(moved.contact_radius);
+  add_relative(moved.tangential_compliance);
+  return result;
+}
+
+std::optional<UncertainValue>& ModulusOf(KnownContact& known, int body) {
+  return body == 1 ? known.body_1.youngs_modulus : known.body_2.youngs_modulus;
+}
+
+/// Returns 1 or 2, the body whose E is unknown while all else is known; else 0.
+int BodyOfUnknownModulus(const KnownContact& known) {
+  if (!known.body_1.poisson_ratio || !known.body_2.poisson_ratio) return 0;
+  if (known.body_1.youngs_modulus.has_value() == known.body_2.youngs_modulus.has_value()) return 0;
+  return known.body_1.youngs_modulus ? 2 : 1;
+}
+
+/// Returns the known properties with E of a body by the stiffness, which grows with it; empty where
+/// it would have to be more than rigid.
+std::optional<KnownContact> WithModulusOfStiffness(KnownContact known, int body, double stiffness) {
+  // Beyond these times the other body's a body is rigid, or as soft as none, to every digit.
+  constexpr double kFarther = 1e18;
+  const double other = ModulusOf(known, 3 - body).value();
+  const auto excess = [&](double log_modulus) {
+    ModulusOf(known, body) = std::exp(log_modulus);
+    return std::log(MindlinTangentialStiffness(HertzRadiusOf(known), ComplianceOf(known)) /
+                    stiffness);
+  };
+  const double lower = std::log(other / kFarther);
+  const double upper = std::log(other * kFarther);
+  const double at_lower = excess(lower);
+  const double at_upper = excess(upper);
+  if (!(at_lower < 0) || !(at_upper > 0)) return std::nullopt;
+  std::uintmax_t most = 200;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      excess, lower, upper, at_lower, at_upper, boost::math::tools::eps_tolerance<double>(), most);
+  ModulusOf(known, body) = std::exp(std::midpoint(below, above));
+  return known;
+}
+
+/// Returns what is known with the ν of both bodies, where it is one and all that is known of the
+/// materials, in the first: the larger of its two errors stands for both.
+std::optional<KnownContact> WithCommonPoissonRatio(KnownContact known) {
+  std::optional<UncertainValue>& first = known.body_1.poisson_ratio;
+  const std::optional<UncertainValue> second =
+      std::exchange(known.body_2.poisson_ratio, std::nullopt);
+  if (known.body_1.youngs_modulus || known.body_2.youngs_modulus || !first || !second) {
+    return std::nullopt;
+  }
+  if (first->value != second->value) return std::nullopt;
+  first->standard_error = std::max(first->standard_error, second->standard_error);
+  return known;
+}
+
+std::optional<UncertainValue> IdentifyMaterial(ContactQuantity quantity, double stiffness,
+                                               const KnownContact& known) {
+  if (!known.normal_load || !KnowsRadii(known)) return std::nullopt;
+  if (KnowsCompliance(known)) {
+    if (AreElastic(known) || quantity != ContactQuantity::kSphereEffectiveModulus) {
+      return std::nullopt;
+    }
+    return Propagated(known, [&](const KnownContact& at) {
+      return 0.75 * at.normal_load->value * EquivalentRadiusOf(at) /
+             std::pow(0.125 * stiffness * ComplianceOf(at), 3);
+    });
+  }
+  if (const int body = BodyOfUnknownModulus(known); body != 0) {
+    if (!WithModulusOfStiffness(known, body, stiffness)) return std::nullopt;
+    return Propagated(known, [&](const KnownContact& at) {
+      std::optional<KnownContact> whole = WithModulusOfStiffness(at, body, stiffness);
+      if (!whole) return std::numeric_limits<double>::infinity();
+      return quantity == ContactQuantity::kSphereCompliance ? ComplianceOf(*whole)
+             : quantity == ContactQuantity::kSphereEffectiveModulus
+                 ? EffectiveModulusOf(*whole)
+                 : ModulusOf(*whole, body)->value;
+    });
+  }
+  const std::optional<KnownContact> common = WithCommonPoissonRatio(known);
+  if (!common || quantity == ContactQuantity::kSphereYoungsModulus) return std::nullopt;
+  return Propagated(*common, [&](const KnownContact& at) {
+    const double nu = at.body_1.poisson_ratio->value;
+    const double product = 2 * (2 - nu) / (1 - nu);  // G*E*
+    const double compliance = std::sqrt(384 * at.normal_load->value * EquivalentRadiusOf(at) /
+                                        product / std::pow(stiffness, 3));
+    return quantity == ContactQuantity::kSphereCompliance ? compliance : product / compliance;
+  });
+}
+
+// Names of the missing ones, in words.
+
+void AppendMissingElasticConstants(const KnownContact& known, std::vector<std::string>& missing) {
+  const std::size_t before = missing.size();
+  for (const auto& [body, number] : {std::pair{&known.body_1, 1}, std::pair{&known.body_2, 2}}) {
+    if (!body->youngs_modulus) {
+      missing.push_back(fmt::format("Young's modulus of body {}", number));
+    }
+    if (!body->poisson_ratio) {
+      missing.push_back(fmt::format("the Poisson ratio of body {}", number));
+    }
+  }
+  constexpr std::size_t kAll = 4;
+  if (missing.size() < before + kAll) return;
+  missing.resize(before);
+  missing.emplace_back("E and ν of both bodies");
 }
 
 /// Names the missing inputs from which the contact radius would follow with the loop.
 std::string RadiusInputs(const KnownContact& known) {
-  return fmt::format("the tangential compliance (or, to derive it: {})",
-                     fmt::join(MissingElasticConstants(known), ", "));
-}
-
-std::vector<std::string> Unidentified(const KnownContact& known, const Derived& derived,
-                                      const IdentifiedContact& identified) {
-  std::vector<std::string> unidentified;
-  const auto add = [&](std::string_view name, ContactQuantity quantity) {
-    unidentified.push_back(Needs(name, MissingInputs(known, quantity)));
-  };
-  if (!identified.friction_coefficient) {
-    add("friction coefficient", ContactQuantity::kFrictionCoefficient);
-  }
-  if (!known.contact_radius && !identified.contact_radius) {
-    add("contact radius", ContactQuantity::kContactRadius);
-    add("tangential compliance", ContactQuantity::kTangentialCompliance);
-  }
-  if (!identified.equivalent_radius) add("equivalent radius", ContactQuantity::kEquivalentRadius);
-  if (!identified.maximum_pressure) add("maximum pressure", ContactQuantity::kMaximumPressure);
-  if (known.contact_radius && !derived.tangential_compliance) {
-    unidentified.push_back(
-        Needs("comparison of the stiffness with the given contact radius", {RadiusInputs(known)}));
-  }
-  if (!identified.hertz) {
-    // The elastic constants give the compliance too, and with it the contact radius.
-    std::vector<std::string> inputs = MissingInputs(known, ContactQuantity::kEquivalentRadius);
-    Append(inputs, MissingRadii(known));
-    unidentified.push_back(Needs("Hertz prediction of the stiffness", inputs));
-  }
-  return unidentified;
+  std::vector<std::string> elastic;
+  AppendMissingElasticConstants(known, elastic);
+  return fmt::format("the tangential compliance (or, to derive it: {})", fmt::join(elastic, ", "));
 }
 
 }  // namespace
 
 std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity) {
-  const std::vector<std::string> elastic = MissingElasticConstants(known);
-  const bool compliance_known = known.tangential_compliance || elastic.empty();
   std::vector<std::string> missing;
   const bool needs_load = quantity == ContactQuantity::kFrictionCoefficient ||
                           quantity == ContactQuantity::kEquivalentRadius ||
                           quantity == ContactQuantity::kMaximumPressure;
   if (needs_load && !known.normal_load) missing.emplace_back("the normal load");
-  switch (quantity) {
-    case ContactQuantity::kFrictionCoefficient:
-      break;
-    case ContactQuantity::kContactRadius:
-      if (!compliance_known) missing.push_back(RadiusInputs(known));
-      break;
-    case ContactQuantity::kTangentialCompliance:
-      if (!known.contact_radius) missing.emplace_back("the contact radius");
-      break;
-    case ContactQuantity::kEquivalentRadius:
-      // The elastic constants give the compliance too, and with it the contact radius.
-      Append(missing, elastic);
-      break;
-    case ContactQuantity::kMaximumPressure:
-      if (!known.contact_radius && !compliance_known) {
-        missing.push_back("the contact radius or " + RadiusInputs(known));
-      }
-      break;
+  if (quantity == ContactQuantity::kContactRadius && !KnowsCompliance(known)) {
+    missing.push_back(RadiusInputs(known));
+  } else if (quantity == ContactQuantity::kTangentialCompliance && !known.contact_radius) {
+    missing.emplace_back("the contact radius");
+  } else if (quantity == ContactQuantity::kEquivalentRadius) {
+    // The elastic constants give the compliance too, and with it the contact radius.
+    AppendMissingElasticConstants(known, missing);
+  } else if (quantity == ContactQuantity::kMaximumPressure && !known.contact_radius &&
+             !KnowsCompliance(known)) {
+    missing.push_back("the contact radius or " + RadiusInputs(known));
   }
   return missing;
 }
@@ -182,159 +264,117 @@ models::BranchLaw MapMindlinToDahl(const MindlinContact& contact) {
           .slip_force = contact.slip_force};
 }
 
-double PropagatedValue::FitShare() const {
-  if (std::isinf(fit_error)) return 1.0;
-  if (standard_error == 0.0) return 0.0;
-  return (fit_error / standard_error) * (fit_error / standard_error);
-}
-
-double PropagatedValue::InputShare() const {
-  return standard_error == 0.0 ? 0.0 : 1.0 - FitShare();
-}
-
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient) {
   RequireKnown(known);
   RequireKnown("friction coefficient [-]", friction_coefficient);
   const bool by_radius = known.contact_radius && known.tangential_compliance;
-  const bool by_bodies = IsComplete(known.body_1) && IsComplete(known.body_2);
+  const bool by_bodies = AreElastic(known) && KnowsRadii(known);
   if (!known.normal_load || by_radius == by_bodies) {
     throw InvalidArgument(
         "contact: must be given by its normal load and either contact radius and tangential "
         "compliance or E, ν and R of both bodies");
   }
-
+  const auto radius_of = [by_radius](const KnownContact& at) {
+    return by_radius ? at.contact_radius->value : HertzRadiusOf(at);
+  };
+  const double friction = friction_coefficient.value;
+  const auto slip_force_of = [friction](const KnownContact& at) {
+    return GrossSlipForce(friction, at.normal_load->value);
+  };
+  /// Adds the error of μ, to which the quantity is proportional.
+  const auto with_friction = [&](UncertainValue of) {
+    const double relative = friction_coefficient.standard_error / friction;
+    of.standard_error = std::hypot(of.standard_error, of.value * relative);
+    return of;
+  };
   PredictedContact predicted;
-  const Quantity load = Independent(*known.normal_load, kNormalLoad);
-  Quantity compliance;
-  Quantity radius;
-  if (by_radius) {
-    compliance = Independent(*known.tangential_compliance, kCompliance);
-    radius = Independent(*known.contact_radius, kContactRadius);
-  } else {
-    compliance = TangentialComplianceOf(known);
-    const Quantity effective_modulus = EffectiveModulusOf(known);
-    const Quantity equivalent_radius =
-        EquivalentRadiusOf(Present(known.body_1.radius), Present(known.body_2.radius));
-    radius = HertzContactRadiusOf(load, equivalent_radius, effective_modulus);
-    predicted.effective_modulus = Total(effective_modulus);
-    predicted.equivalent_radius = Total(equivalent_radius);
-    predicted.approach = Total(Product(HertzApproach(radius.value, equivalent_radius.value),
-                                       {{radius, 2}, {equivalent_radius, -1}}));
+  if (by_bodies) {
+    predicted.effective_modulus = Propagated(known, EffectiveModulusOf);
+    predicted.equivalent_radius = Propagated(known, EquivalentRadiusOf);
+    predicted.approach = Propagated(known, [](const KnownContact& at) {
+      return HertzApproach(HertzRadiusOf(at), EquivalentRadiusOf(at));
+    });
   }
-  const Quantity slip_force = Product(GrossSlipForce(friction_coefficient.value, load.value),
-                                      {{Independent(friction_coefficient, kFriction)}, {load}});
-  predicted.tangential_compliance = Total(compliance);
-  predicted.contact_radius = Total(radius);
-  predicted.maximum_pressure = Total(MaximumPressureOf(load, radius));
-  predicted.tangential_stiffness = Total(TangentialStiffnessOf(radius, compliance));
-  predicted.slip_force = Total(slip_force);
-  predicted.gross_slip_displacement =
-      Total(GrossSlipDisplacementOf(radius, compliance, slip_force));
+  predicted.tangential_compliance = Propagated(known, ComplianceOf);
+  predicted.contact_radius = Propagated(known, radius_of);
+  predicted.maximum_pressure = Propagated(known, [&](const KnownContact& at) {
+    return HertzMaximumPressure(at.normal_load->value, radius_of(at));
+  });
+  predicted.tangential_stiffness = Propagated(known, [&](const KnownContact& at) {
+    return MindlinTangentialStiffness(radius_of(at), ComplianceOf(at));
+  });
+  predicted.slip_force = with_friction(Propagated(known, slip_force_of));
+  predicted.gross_slip_displacement = with_friction(Propagated(known, [&](const KnownContact& at) {
+    return GrossSlipDisplacement({radius_of(at), ComplianceOf(at), slip_force_of(at)});
+  }));
   return predicted;
 }
 
-IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
-                                  const UncertainValue& slip_force, const KnownContact& known,
-                                  double correlation) {
-  RequireFitted("tangential stiffness", "N/m", tangential_stiffness);
-  RequireFitted("slip force", "N", slip_force);
+std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double stiffness,
+                                              double slip_force, const KnownContact& known) {
+  RequirePositive("tangential stiffness [N/m]", stiffness);
+  RequirePositive("slip force [N]", slip_force);
   RequireKnown(known);
-  if (!(std::abs(correlation) <= 1.0)) {
-    ThrowInvalid("correlation of tangential stiffness and slip force [-]", correlation,
-                 "must be >= -1 and <= 1");
-  }
-
-  IdentifiedContact identified;
-  const Derived derived = DeriveFromKnown(known, identified.redundant);
-  const Quantity stiffness = Independent(tangential_stiffness, kStiffness);
-  const Quantity force = Independent(slip_force, kSlipForce);
-  const Quantity gross_slip =
-      Product(1.5 * force.value / stiffness.value, {{force}, {stiffness, -1}});
-  identified.gross_slip_displacement = Total(gross_slip, correlation);
-
-  if (derived.normal_load) {
-    const long double ratio = static_cast<long double>(force.value) / derived.normal_load->value;
-    identified.friction_coefficient = Total(Product(InRange("friction coefficient [-]", ratio),
-                                                    {{force}, {Present(derived.normal_load), -1}}));
-  }
-  std::optional<Quantity> measured_radius;
-  if (derived.tangential_compliance) {
-    measured_radius = Product(0.125 * stiffness.value * derived.tangential_compliance->value,
-                              {{stiffness}, {Present(derived.tangential_compliance)}});
-    identified.contact_radius = Total(*measured_radius);
-  }
-  std::optional<Quantity> given_radius;
-  if (known.contact_radius) {
-    given_radius = Independent(*known.contact_radius, kContactRadius);
-    identified.tangential_compliance = Total(
-        Product(8.0 * given_radius->value / stiffness.value, {{*given_radius}, {stiffness, -1}}));
-  }
-
-  const std::optional<Quantity>& radius = given_radius ? given_radius : measured_radius;
-  if (radius && derived.normal_load) {
-    identified.maximum_pressure = Total(MaximumPressureOf(Present(derived.normal_load), *radius));
-    if (derived.effective_modulus) {
-      identified.equivalent_radius =
-          Total(Product(HertzEquivalentRadius(derived.normal_load->value, radius->value,
-                                              derived.effective_modulus->value),
-                        {{Present(derived.effective_modulus)},
-                         {*radius, 3},
-                         {Present(derived.normal_load), -1}}));
+  const auto radius_of = [&](const KnownContact& at) {
+    return at.contact_radius ? at.contact_radius->value : 0.125 * stiffness * ComplianceOf(at);
+  };
+  const bool has_pressure = known.normal_load && (known.contact_radius || KnowsCompliance(known));
+  switch (quantity) {
+    case ContactQuantity::kFrictionCoefficient:
+      if (!known.normal_load) return std::nullopt;
+      return Propagated(known, [&](const KnownContact& at) {
+        return InRange("friction coefficient [-]",
+                       static_cast<long double>(slip_force) / at.normal_load->value);
+      });
+    case ContactQuantity::kContactRadius:
+      if (!KnowsCompliance(known)) return std::nullopt;
+      return Propagated(
+          known, [&](const KnownContact& at) { return 0.125 * stiffness * ComplianceOf(at); });
+    case ContactQuantity::kTangentialCompliance:
+      if (!known.contact_radius) return std::nullopt;
+      return Propagated(known, [&](const KnownContact& at) {
+        return 8.0 * at.contact_radius->value / stiffness;
+      });
+    case ContactQuantity::kEquivalentRadius:
+      if (!has_pressure || !AreElastic(known)) return std::nullopt;
+      return Propagated(known, [&](const KnownContact& at) {
+        return HertzEquivalentRadius(at.normal_load->value, radius_of(at), EffectiveModulusOf(at));
+      });
+    case ContactQuantity::kMaximumPressure:
+      if (!has_pressure) return std::nullopt;
+      return Propagated(known, [&](const KnownContact& at) {
+        return HertzMaximumPressure(at.normal_load->value, radius_of(at));
+      });
+    case ContactQuantity::kStiffnessRatio: {
+      const bool by_hertz = KnowsHertz(known);
+      if (!by_hertz && !(known.contact_radius && KnowsCompliance(known))) return std::nullopt;
+      return Propagated(known, [&](const KnownContact& at) {
+        const double radius = by_hertz ? HertzRadiusOf(at) : at.contact_radius->value;
+        return stiffness / MindlinTangentialStiffness(radius, ComplianceOf(at));
+      });
     }
+    case ContactQuantity::kHertzPressure:
+      if (!KnowsHertz(known)) return std::nullopt;
+      return Propagated(known, [](const KnownContact& at) {
+        return HertzMaximumPressure(at.normal_load->value, HertzRadiusOf(at));
+      });
+    case ContactQuantity::kSphereCompliance:
+    case ContactQuantity::kSphereEffectiveModulus:
+    case ContactQuantity::kSphereYoungsModulus:
+      break;
   }
-  if (given_radius && derived.tangential_compliance) {
-    const Quantity predicted =
-        TangentialStiffnessOf(*given_radius, Present(derived.tangential_compliance));
-    identified.sigma_over_mindlin =
-        Total(Product(stiffness.value / predicted.value, {{stiffness}, {predicted, -1}}));
-  }
-  if (derived.normal_load && derived.equivalent_radius && derived.effective_modulus) {
-    identified.hertz = Predict(stiffness, force, derived, gross_slip, correlation);
-    if (known.contact_radius) {
-      const double given = known.contact_radius->value;
-      const double of_hertz = identified.hertz->contact_radius.value;
-      identified.redundant.push_back(fmt::format(
-          "contact radius is given as {:.6g} m and is {:.6g} m from Hertz "
-          "(given/derived = {:.6g}): the given value is used, Hertz's for the prediction",
-          given, of_hertz, given / of_hertz));
-    }
-  }
-  identified.unidentified = Unidentified(known, derived, identified);
-  return identified;
+  return IdentifyMaterial(quantity, stiffness, known);
 }
-
-namespace {
-
-constexpr double kSoftestModulus = 1e6;     // [Pa]
-constexpr double kStiffestModulus = 2e12;   // [Pa]
-constexpr double kLargestCompliance = 1.0;  // [1/Pa]
-constexpr double kLargestFriction = 5.0;    // [-]
-constexpr double kLargestRadiusShare = 1.0 / 3.0;
-
-double SmallestRadius(const KnownContact& known) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const KnownBody* body : {&known.body_1, &known.body_2}) {
-    if (body->radius) smallest = std::min(smallest, std::abs(body->radius->value));
-  }
-  return smallest;
-}
-
-/// Returns Hertz's contact radius [m] where materials, radii and load are known.
-std::optional<double> HertzRadius(const KnownContact& known) {
-  if (!known.normal_load || !IsComplete(known.body_1) || !IsComplete(known.body_2)) {
-    return std::nullopt;
-  }
-  const KnownContact bodies{
-      .normal_load = known.normal_load, .body_1 = known.body_1, .body_2 = known.body_2};
-  return PredictContact(bodies, 1.0).contact_radius.value;
-}
-
-}  // namespace
 
 std::vector<std::string> DoubtsAbout(const KnownContact& known,
                                      std::optional<double> friction_coefficient,
                                      std::optional<double> fitted_radius) {
+  constexpr double kSoftestModulus = 1e6;     // [Pa]
+  constexpr double kStiffestModulus = 2e12;   // [Pa]
+  constexpr double kLargestCompliance = 1.0;  // [1/Pa]
+  constexpr double kLargestFriction = 5.0;    // [-]
+  constexpr double kLargestRadiusShare = 1.0 / 3.0;
   std::vector<std::string> doubts;
   if (known.tangential_compliance && known.tangential_compliance->value > kLargestCompliance) {
     doubts.push_back(fmt::format(
@@ -343,32 +383,26 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
         known.tangential_compliance->value, kLargestCompliance,
         1 / known.tangential_compliance->value));
   }
-  int number = 1;
-  for (const KnownBody* body : {&known.body_1, &known.body_2}) {
-    if (body->youngs_modulus && body->youngs_modulus->value < kSoftestModulus) {
-      doubts.push_back(
-          fmt::format("Young's modulus of body {} = {:.4g} Pa is below 1 MPa, softer than rubber: "
-                      "give it in Pa, as 210e9",
-                      number, body->youngs_modulus->value));
-    }
-    if (body->youngs_modulus && body->youngs_modulus->value > kStiffestModulus) {
-      doubts.push_back(fmt::format(
-          "Young's modulus of body {} = {:.4g} Pa is above 2 TPa, stiffer than diamond: "
-          "give it in Pa, as 210e9",
-          number, body->youngs_modulus->value));
-    }
-    ++number;
+  double smallest_radius = std::numeric_limits<double>::infinity();
+  for (const auto& [body, number] : {std::pair{&known.body_1, 1}, std::pair{&known.body_2, 2}}) {
+    if (body->radius) smallest_radius = std::min(smallest_radius, std::abs(body->radius->value));
+    const double modulus = body->youngs_modulus ? body->youngs_modulus->value : kSoftestModulus;
+    const bool is_soft = modulus < kSoftestModulus;
+    if (!is_soft && !(modulus > kStiffestModulus)) continue;
+    doubts.push_back(fmt::format(
+        "Young's modulus of body {} = {:.4g} Pa is {}: give it in Pa, as 210e9", number, modulus,
+        is_soft ? "below 1 MPa, softer than rubber" : "above 2 TPa, stiffer than diamond"));
   }
-  const std::optional<double> given =
-      known.contact_radius ? std::optional<double>(known.contact_radius->value) : std::nullopt;
-  const double radius = SmallestRadius(known);
-  for (const std::optional<double>& contact_radius : {given, fitted_radius, HertzRadius(known)}) {
-    if (!contact_radius || !(*contact_radius > kLargestRadiusShare * radius)) continue;
+  std::array<double, 3> radii = {0.0, fitted_radius.value_or(0.0), 0.0};
+  if (known.contact_radius) radii[0] = known.contact_radius->value;
+  if (KnowsHertz(known)) radii[2] = HertzRadiusOf(known);
+  const auto* const large = std::ranges::find_if(
+      radii, [&](double radius) { return radius > kLargestRadiusShare * smallest_radius; });
+  if (large != radii.end()) {
     doubts.push_back(fmt::format(
         "contact radius a = {:.4g} m is more than a third of the radius {:.4g} m of a body, beyond "
         "Hertz's theory: check load, radii, moduli and their units",
-        *contact_radius, radius));
-    break;
+        *large, smallest_radius));
   }
   if (friction_coefficient && *friction_coefficient > kLargestFriction) {
     doubts.push_back(

@@ -3,7 +3,6 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/poisson.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
@@ -17,7 +16,6 @@ using InDouble = boost::math::policies::policy<boost::math::policies::promote_do
 using Binomial = boost::math::binomial_distribution<double, InDouble>;
 using ChiSquared = boost::math::chi_squared_distribution<double, InDouble>;
 using FisherF = boost::math::fisher_f_distribution<double, InDouble>;
-using Poisson = boost::math::poisson_distribution<double, InDouble>;
 using StudentsT = boost::math::students_t_distribution<double, InDouble>;
 
 template <typename Distribution>
@@ -74,7 +72,5 @@ double BinomialAtMost(double count, double trials, double probability) {
 double BinomialAbove(double count, double trials, double probability) {
   return Above(Binomial(trials, probability), count);
 }
-
-double PoissonAbove(double count, double mean) { return Above(Poisson(mean), count); }
 
 }  // namespace mindahl

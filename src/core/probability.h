@@ -31,7 +31,4 @@ double BinomialAtMost(double count, double trials, double probability);
 /// P(more than `count` of `trials`, each with that probability)
 double BinomialAbove(double count, double trials, double probability);
 
-/// P(more than `count` where `mean` are expected)
-double PoissonAbove(double count, double mean);
-
 }  // namespace mindahl

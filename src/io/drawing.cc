@@ -22,10 +22,6 @@ constexpr double kTicCharacter = 9.6;     // [px] on a narrow screen, where lett
 
 using Values = std::vector<double>;
 
-bool HasEnds(PlotStyle style) {
-  return style == PlotStyle::kIntervals || style == PlotStyle::kBand;
-}
-
 void RequireNumbers(const std::string& name, const Values& values, bool logarithmic) {
   for (const double value : values) {
     RequireFinite(name, value);
@@ -46,7 +42,7 @@ void RequireDrawable(const PlotPanel& panel, std::string_view where) {
     };
     require(series.x, "x of ", panel.log_x);
     require(series.y, "y of ", panel.log_y);
-    if (!HasEnds(series.style)) continue;
+    if (series.style != PlotStyle::kBand) continue;
     require(series.lower, "lower ends of ", panel.log_y);
     require(series.upper, "upper ends of ", panel.log_y);
   }
@@ -156,7 +152,7 @@ std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
   };
   for (const PlotSeries& series : panel.series) {
     std::ranges::for_each(horizontal ? series.x : series.y, include);
-    if (horizontal || !HasEnds(series.style)) continue;
+    if (horizontal || series.style != PlotStyle::kBand) continue;
     std::ranges::for_each(series.lower, include);
     std::ranges::for_each(series.upper, include);
   }
@@ -171,7 +167,8 @@ std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
 std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   const std::size_t size = series.x.size();
   std::vector<const Values*> coordinates = {&series.x, &series.y};
-  if (HasEnds(series.style)) coordinates.insert(coordinates.end(), {&series.lower, &series.upper});
+  if (series.style == PlotStyle::kBand)
+    coordinates.insert(coordinates.end(), {&series.lower, &series.upper});
   const std::size_t runs = size <= most ? size : most / (2 * coordinates.size());
   std::vector<std::size_t> kept;
   kept.reserve(most);
@@ -263,7 +260,7 @@ std::string DrawPoints(const PlotSeries& series, const Look& look) {
     std::string path;
     std::string last;
     for (std::size_t k = 0; k < series.x.size(); ++k) {
-      const std::string at = text_of(k, Coordinate(series.x[k]), Coordinate(series.y[k]));
+      const std::string at = text_of(Coordinate(series.x[k]), Coordinate(series.y[k]));
       if (at != last) path += at;
       last = at;
     }
@@ -276,20 +273,15 @@ std::string DrawPoints(const PlotSeries& series, const Look& look) {
         Line(series.x, series.upper, 'M', true) + Line(series.x, series.lower, 'L', false) + "Z");
   }
   if (style == PlotStyle::kPoints) {
-    return Path("dots", look.classes, at_each([](std::size_t, const auto& x, const auto& y) {
+    return Path("dots", look.classes, at_each([](const auto& x, const auto& y) {
                   return fmt::format("M{} {}h0", x, y);
                 }));
   }
-  if (style == PlotStyle::kIntervals) {
-    drawn += Path("line", look.classes, at_each([&](std::size_t k, const auto& x, const auto&) {
-                    return fmt::format("M{} {}V{}", x, Coordinate(series.lower[k]),
-                                       Coordinate(series.upper[k]));
-                  }));
-  } else if (style != PlotStyle::kMarkers) {
+  if (style != PlotStyle::kMarkers) {
     drawn += Path("line", look.classes, Line(series.x, series.y, 'M', true));
   }
   if (style != PlotStyle::kLine && style != PlotStyle::kBand) {
-    drawn += Path("marker", look.classes, at_each([&](std::size_t, const auto& x, const auto& y) {
+    drawn += Path("marker", look.classes, at_each([&](const auto& x, const auto& y) {
                     return fmt::format("M{} {}{}", x, y, kShapes[look.shape]);
                   }));
   }
@@ -299,7 +291,7 @@ std::string DrawPoints(const PlotSeries& series, const Look& look) {
 std::string LegendSymbol(PlotStyle style, const Look& look) {
   PlotSeries symbol{.label = "", .x = {1, 25}, .y = {6, 6}, .style = style};
   if (style == PlotStyle::kPoints) symbol.x = {5, 13, 21};
-  if (style == PlotStyle::kMarkers || style == PlotStyle::kIntervals) symbol.x = {13};
+  if (style == PlotStyle::kMarkers) symbol.x = {13};
   symbol.y.assign(symbol.x.size(), 6);
   symbol.lower.assign(symbol.x.size(), 12);
   symbol.upper.assign(symbol.x.size(), 0);
@@ -375,7 +367,7 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
     for (const std::size_t point : Thinned(series, most)) {
       pixels.x.push_back(x_axis.Pixel(series.x[point]));
       pixels.y.push_back(y_axis.Pixel(series.y[point]));
-      if (!HasEnds(series.style)) continue;
+      if (series.style != PlotStyle::kBand) continue;
       pixels.lower.push_back(y_axis.Pixel(series.lower[point]));
       pixels.upper.push_back(y_axis.Pixel(series.upper[point]));
     }

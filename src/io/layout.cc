@@ -345,10 +345,16 @@ class HeaderFinder {
   const auto cell = static_cast<std::size_t>(
       std::ranges::find_if(row.kinds, [](Cell::Kind kind) { return kind != Cell::Kind::kNumber; }) -
       row.kinds.begin());
+  const std::string_view remedy =
+      row.at.text.find('|') != std::string_view::npos
+          ? "; separate the columns by ',', ';' or tabs in place of '|'"
+      : row.cells[cell].find(',') != std::string::npos
+          ? "; where commas are decimal marks, separate the columns by ';' or tabs"
+          : "";
   throw InputError(fmt::format(
       "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected columns "
-      "of numbers under an optional header",
-      file, row.at.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size()));
+      "of numbers under an optional header{}",
+      file, row.at.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size(), remedy));
 }
 
 /// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "loop/rules.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -16,13 +17,12 @@ namespace mindahl::loop {
 std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
                                             std::span<const std::size_t> reversals,
                                             std::pmr::memory_resource* scratch) {
-  constexpr double kAtExtreme = 0.02;  // of the range
   std::pmr::vector<std::size_t> points(scratch);
   points.reserve(reversals.size() + 2);
   points.assign(reversals.begin(), reversals.end());
   if (points.empty()) return points;
   const auto [lowest, highest] = ExtremesOf(displacement);
-  const double tolerance = kAtExtreme * (highest - lowest);
+  const double tolerance = CycleRules().at_extreme * (highest - lowest);
   const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
     const bool upper = displacement[end] > displacement[neighbour];
     return upper ? highest - displacement[end] <= tolerance
@@ -120,7 +120,7 @@ std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std
     widest = std::max(widest, swings.back().highest - swings.back().lowest);
   }
   std::erase_if(swings, [&](const Swing& swing) {
-    return swing.highest - swing.lowest < kSteadyAmplitude * widest;
+    return swing.highest - swing.lowest < CycleRules().steady * widest;
   });
   return swings;
 }
@@ -215,9 +215,8 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   measures.centre_force = least_force + measures.peak_force;
 
   if (!reversals.empty() && measures.amplitude > 0) {
-    constexpr double kShortOfACycle = 0.02;  // as for the record's ends
-    measures.cycles =
-        static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 + kShortOfACycle);
+    measures.cycles = static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 +
+                                               CycleRules().at_extreme);
   }
   return measures;
 }
@@ -226,16 +225,15 @@ int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
   Validate(record);
   if (record.size() == 0) return 0;
-  constexpr double kThin = 0.01;       // energy over that of the rectangle round the loop, 4XT*
-  constexpr double kDeviations = 5.0;  // of what noise makes of it: one record in 3.5 million
+  const CycleRules rules;
   const Extremes displacement = ExtremesOf(record.displacement);
   const Extremes force = ExtremesOf(record.force);
   const double rectangle =
       (displacement.greatest - displacement.least) * (force.greatest - force.least);
   const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
-  if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle &&
+  if (!energies.empty() && std::abs(Mean(energies)) > rules.thin * rectangle &&
       std::abs(Mean(energies)) >
-          kDeviations * NoiseOfMeanEnergy(record, energies.size(), scratch)) {
+          rules.deviations * NoiseOfMeanEnergy(record, energies.size(), scratch)) {
     return SignOf(Mean(energies));
   }
   const double mean_displacement = Mean(record.displacement);

@@ -162,11 +162,10 @@ namespace {
 
 using Readings = std::span<const double>;
 
-/// Fraction of the steps that are not zero which the usual one is not exceeded by.
-constexpr double kUsualShare = 0.9;
-
-/// Returns the usual step [unit of the column]; 0 where all are zero.
+/// Returns the usual step [unit of the column], which nine tenths of those that are not zero do not
+/// exceed; 0 where all are zero.
 double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
+  constexpr double kUsualShare = 0.9;
   std::pmr::vector<double> steps(scratch);
   steps.reserve(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -178,20 +177,6 @@ double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
                   static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(steps.size() - 1));
   std::ranges::nth_element(steps, at);
   return *at;
-}
-
-/// True if a step can be so many times the usual one: unless more than a tenth are so large that
-/// the largest is less than that next to them: the usual one is among these, or above.
-bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
-  if (values.size() < 2) return false;
-  std::pmr::vector<double> steps(values.size() - 1, scratch);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = values[i + 1] - values[i];
-  const auto [least, greatest] = ExtremesOf(steps);
-  const double largest = std::max(greatest, -least);
-  std::size_t large = 0;
-  for (const double step : steps) large += factor * std::abs(step) >= largest ? 1U : 0U;
-  const std::size_t last = steps.size() - 1;  // at most, of those that are not zero
-  return large <= last - static_cast<std::size_t>(kUsualShare * static_cast<double>(last));
 }
 
 /// A column, what is wrong in it, and the column with lines over that.
@@ -493,8 +478,7 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
   FindDropouts(record, rules, displacement, force, memory);
   for (MendedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    const bool may_have = MayLeap(channel->values(), rules.spike, memory);
-    for (int pass = 0; may_have && pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
+    for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
     channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
   }
   FindFlatDropouts(displacement, force, rules);

@@ -386,12 +386,9 @@ void Summarise(LoopFacts& facts) {
   if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
 }
 
-/// Fraction of its width within which a cycle must end where it began: then it loses what a closed
-/// one does, but for twice that fraction.
-constexpr double kReturn = 0.05;
-
 /// Measures forces with the displacement's sign.
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
+  const CycleRules rules;
   LoopFacts facts;
   const std::pmr::vector<std::size_t> turns =
       TurningPoints(record.displacement, reversals, std::pmr::get_default_resource());
@@ -399,13 +396,13 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, points.subspan(k, 3)));
     const double way = record.displacement[points[k + 2]] - record.displacement[points[k]];
-    cycle.returns = std::abs(way) <= kReturn * 2 * cycle.amplitude;
+    cycle.returns = std::abs(way) <= rules.returns * 2 * cycle.amplitude;
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
   const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
   for (CycleFacts& cycle : facts.cycles) {
-    cycle.steady = cycle.amplitude >= kSteadyAmplitude * widest;
+    cycle.steady = cycle.amplitude >= rules.steady * widest;
   }
   Summarise(facts);
   const std::vector<Points> steady = SteadyCycles(facts, points);

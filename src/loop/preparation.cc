@@ -46,13 +46,11 @@ double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& opt
 /// Standard deviation [m] of a displacement's noise where the record has to be treated as noisy.
 double DisplacementNoise(const PreparedRecord& prepared, const PreparationOptions& options,
                          std::pmr::memory_resource* memory) {
-  // The rounding of a file, or of a fine encoder, is not worth it.
-  constexpr double kCoarse = 1e-3;  // of half the range
   if (options.excitation == Channel::kForce) return 0.0;
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
-  const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
+  const bool is_coarse = prepared.encoder_step > CycleRules().coarse * (highest / 2 - lowest / 2);
   return prepared.reversal_gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement, memory)
                                                  : 0.0;
 }

@@ -79,6 +79,25 @@ struct LoadStepRules {
   std::size_t turns = 4;
 };
 
+/// Sets the limits by which cycles are counted and compared.
+struct CycleRules {
+  /// [of the range] Farthest from an extreme that an end of a record is a turning point; [cycles]
+  /// the most that one which counts is short of a whole one.
+  double at_extreme = 0.02;
+  /// [of the widest cycle's amplitude] Least amplitude of a cycle that is one of the widest.
+  double steady = 0.95;
+  /// [of its width] Farthest that a cycle ends from where it began: then it loses what a closed one
+  /// does, but for twice that fraction.
+  double returns = 0.05;
+  /// [energy of the rectangle round the loop, 4XT*] Least energy that decides the force's sign.
+  double thin = 0.01;
+  /// [standard deviations of what noise makes of it] The same: one record in 3.5 million.
+  double deviations = 5.0;
+  /// [of half the range] Least step of an encoder that is a noise: the rounding of a file, or of a
+  /// fine encoder, is not worth it.
+  double coarse = 1e-3;
+};
+
 /// Sets the limits beyond which a measured loop slides over most of its stroke.
 struct SlidingRules {
   /// [W/(4XT*)] Least energy ratio: Mindlin's contact has it at twice its gross-slip displacement,

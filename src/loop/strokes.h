@@ -42,9 +42,6 @@ std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
 /// Returns the number of reversals that FindReversals finds under the gate [m].
 std::size_t CountReversals(std::span<const Excursion> excursions, double gate);
 
-/// Least fraction of the widest cycle's amplitude at which a cycle is one of the widest.
-inline constexpr double kSteadyAmplitude = 0.95;
-
 /// Returns the reversals, with the record's first and last sample where they lie at an extreme.
 std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
                                             std::span<const std::size_t> reversals,

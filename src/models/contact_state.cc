@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cstdint>
-#include <numeric>
-#include <utility>
 
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
@@ -156,51 +153,10 @@ double ContactState::TranscendentalShare(const Shape& shape, double y) {
   return std::visit([y](const auto& on) { return on.Force(y); }, shape);
 }
 
-double ContactState::TangentStiffnessOn(const Course& course, const Shape& shape,
-                                        double displacement) const {
-  const double y = course.Reduced(displacement);
-  const double slope = std::visit([y](const auto& on) { return on.Slope(y); }, shape);
-  return law_.slip_force * (course.branch.height * course.branch.rate * slope);
-}
-
 double ContactState::TangentStiffness() const {
-  return TangentStiffnessOn(course_, shape_, displacement_);
-}
-
-double ContactState::PeekTangentStiffness(double displacement) const {
-  if (course_.HoldsTo(displacement)) return TangentStiffnessOn(course_, shape_, displacement);
-  const Course course = Enter(displacement).course;
-  return TangentStiffnessOn(course, sprung_ ? ShapeOn(course.branch) : shape_, displacement);
-}
-
-ContactBehindGap::ContactBehindGap(ContactState contact, double gap)
-    : contact_(std::move(contact)), gap_(gap) {
-  RequireNonNegative("gap [m]", gap);
-}
-
-double ContactBehindGap::Move(double displacement) {
-  for (const double side : {1.0, -1.0}) {
-    const double there = displacement - side * gap_ / 2;
-    if (!(side * contact_.Peek(there) > 0)) continue;
-    is_open_ = false;
-    return contact_.Move(there);
-  }
-  if (is_open_) return 0.0;
-  is_open_ = true;
-  const double lower = displacement - gap_ / 2;
-  const double upper = displacement + gap_ / 2;
-  const double of_lower = contact_.Peek(lower);
-  const double of_upper = contact_.Peek(upper);
-  double where = of_lower == 0 ? lower : upper;
-  if (of_lower < 0 && of_upper > 0) {
-    std::uintmax_t steps = 200;
-    const auto [below, above] = boost::math::tools::toms748_solve(
-        [&](double x) { return contact_.Peek(x); }, lower, upper, of_lower, of_upper,
-        boost::math::tools::eps_tolerance<double>(), steps);
-    where = std::midpoint(below, above);
-  }
-  contact_.Move(where);
-  return 0.0;
+  const double y = course_.Reduced(displacement_);
+  const double slope = std::visit([y](const auto& on) { return on.Slope(y); }, shape_);
+  return law_.slip_force * (course_.branch.height * course_.branch.rate * slope);
 }
 
 }  // namespace mindahl::models

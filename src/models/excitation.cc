@@ -61,19 +61,14 @@ std::vector<double> NestedExtremes(std::size_t count) {
   return extremes;
 }
 
-struct UnitSample {
-  double displacement;
-  double envelope;
-};
-
 /// Returns the number of extremes up to a sample.
 std::size_t ExtremesReached(std::size_t sample, std::size_t per_cycle) {
   return (4 * sample + per_cycle) / (2 * per_cycle);
 }
 
 /// Returns a sample on the half-cosines that join `extremes`.
-UnitSample JoinExtremes(const std::vector<double>& extremes, std::size_t sample,
-                        std::size_t per_cycle) {
+double JoinExtremes(const std::vector<double>& extremes, std::size_t sample,
+                    std::size_t per_cycle) {
   const std::size_t next = ExtremesReached(sample, per_cycle);
   const std::size_t past = (4 * sample + per_cycle) % (2 * per_cycle);
   const double to = extremes[next];
@@ -82,7 +77,7 @@ UnitSample JoinExtremes(const std::vector<double>& extremes, std::size_t sample,
   const double half_periods = static_cast<double>(past) / static_cast<double>(2 * per_cycle);
   const double weight = (1 - boost::math::cos_pi(half_periods)) / 2;
   // std::lerp is monotone: rounding neither passes an extreme nor adds one.
-  return {std::lerp(from, to, weight), std::lerp(std::abs(from), std::abs(to), weight)};
+  return std::lerp(from, to, weight);
 }
 
 void RequireExcitation(const ExcitationOptions& options) {
@@ -140,10 +135,9 @@ Excitation MakeExcitation(const ExcitationOptions& options) {
   for (std::size_t i = 0; i <= steps; ++i) {
     excitation.time.push_back(static_cast<double>(i) / per_cycle / options.frequency);
     if (!extremes.empty()) {
-      const UnitSample joined = JoinExtremes(extremes, i, options.samples_per_cycle);
-      excitation.displacement.push_back(options.amplitude * joined.displacement);
-      excitation.envelope.push_back(
-          options.amplitude * (options.waveform == Waveform::kNested ? joined.envelope : 1.0));
+      excitation.displacement.push_back(options.amplitude *
+                                        JoinExtremes(extremes, i, options.samples_per_cycle));
+      excitation.envelope.push_back(options.amplitude);
       continue;
     }
     const double phase = static_cast<double>(i % options.samples_per_cycle) / per_cycle;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
@@ -93,8 +94,9 @@ struct LoadStep {
 
 /// The load rises faster than anything can slip: elements come into contact at the rim, each
 /// resting where δ is when it does. On the line of those before it makes no zone of its own.
-template <typename Real, typename Zones>
-Real WidenLoadZones(const LoadStep<Real>& step, const Real& slope, Zones& zones) {
+template <typename Real>
+Real WidenLoadZones(const LoadStep<Real>& step, const Real& slope,
+                    std::vector<LoadZone<Real>>& zones) {
   const Real intercept = Real(step.from_displacement) - slope * step.from.slip_displacement;
   const bool goes_on = !zones.empty() && ValueOf(zones.back().slope) == ValueOf(slope) &&
                        ValueOf(zones.back().intercept) == ValueOf(intercept);
@@ -108,8 +110,9 @@ Real WidenLoadZones(const LoadStep<Real>& step, const Real& slope, Zones& zones)
 /// An annulus slips to the rest positions δ − s·(δc − h), s the sign of `stretch`, which is δ − r
 /// at the rim. As |r'| <= 1, what slips is outside of what sticks.
 /// @param share  (width, δc) of an annulus to the fraction of the slip force that it carries
-template <typename Real, typename Zones, typename Share>
-Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& share, Zones& zones) {
+template <typename Real, typename Share>
+Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& share,
+                   std::vector<LoadZone<Real>>& zones) {
   const double s = std::copysign(1.0, stretch);
   const Real& limit = step.to.slip_displacement;
   const Real displacement(step.displacement);
@@ -136,8 +139,9 @@ Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& shar
 
 /// Returns the force after a step; the zones, which cover 0 <= h < δc innermost first, are those
 /// after it. docs/theory.md §11 has the rules.
-template <typename Real, typename Zones, typename Share>
-Real TakeLoadStep(const LoadStep<Real>& step, const Share& share, Zones& zones) {
+template <typename Real, typename Share>
+Real TakeLoadStep(const LoadStep<Real>& step, const Share& share,
+                  std::vector<LoadZone<Real>>& zones) {
   const double limit = ValueOf(step.to.slip_displacement);
   if (limit == 0) {
     zones.clear();

@@ -132,22 +132,15 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   RequireResponseSizes(path, displacement, t);
   ScaledBranches& branches = buffers_->branches;
   const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const auto evaluate = [&](const auto& shape) {
+  const double limit = ForceLimit(model, path.asymmetry);
+  WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
     ScaleBranches(scaling, path, shape, branches);
     RequireReach(branch_law, branches, displacement);
     for (const BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
       const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-      const auto x = displacement.subspan(run.begin, count);
-      EvaluateResponseRun(branch, ShapeOn(shape, branch), ForceLimit(model, path.asymmetry), x,
-                          t.subspan(run.begin, count));
-    }
-  };
-  backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
-    if (law.spring_travel == 0) {
-      evaluate(contact);
-    } else {
-      evaluate(SprungShape{contact, law.spring_travel});
+      EvaluateResponseRun(branch, ShapeOn(shape, branch), limit,
+                          displacement.subspan(run.begin, count), t.subspan(run.begin, count));
     }
   });
 }
@@ -255,7 +248,7 @@ bool NormalizedDisplacement::PointOn(const Branch& branch, const ForcedLaw& law,
   const double y = ReducedDisplacement(alpha, share, remaining);
   const double log_v = branch.remaining == 1 ? 0.0 : std::log(branch.remaining);
   const double unit = branch.span * (log_v == 0 ? 1.0 : std::exp((1 - alpha) * log_v));
-  point.d = branch.d + sign * unit * y;
+  point.d = branch.start.d + sign * unit * y;
   if (!std::isfinite(point.d)) return false;
   if (!with_gradient) return true;
   const double log_u = share < 0.5 ? std::log1p(-share) : std::log(remaining);
@@ -263,13 +256,14 @@ bool NormalizedDisplacement::PointOn(const Branch& branch, const ForcedLaw& law,
   const double of_v = log_v == 0 ? 1.0 : std::exp(-alpha * log_v);  // v^{−α}
   const double per_way = of_v * (1 + softening);                    // by |T − T_r|/Tc
   const double per_remaining = -branch.span * of_v * softening;
-  point.per_log_rate = branch.per_log_rate + sign * (per_way * std::abs(way) / law.slip_force +
-                                                     per_remaining * branch.remaining_per_log_rate);
-  point.per_shape =
-      branch.per_shape + sign * unit * (ReducedDisplacementPerShape(alpha, log_u) - log_v * y);
+  point.per_log_rate =
+      branch.start.per_log_rate + sign * (per_way * std::abs(way) / law.slip_force +
+                                          per_remaining * branch.remaining_per_log_rate);
+  point.per_shape = branch.start.per_shape +
+                    sign * unit * (ReducedDisplacementPerShape(alpha, log_u) - log_v * y);
   point.per_zero = branch.is_virgin
                        ? -per_way
-                       : branch.per_zero + sign * per_remaining * branch.remaining_per_zero;
+                       : branch.start.per_zero + sign * per_remaining * branch.remaining_per_zero;
   return true;
 }
 
@@ -305,18 +299,14 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
                   .remaining_per_zero = -scale.remaining_per_force * from.direction};
     if (from.start == BranchStart::kReversal) {
       const Branch& parent = branches_[static_cast<std::size_t>(from.parent)];
-      if (!PointOn(parent, law, from.origin, with_gradient, point)) return false;
-      branch.d = point.d;
-      branch.per_log_rate = point.per_log_rate;
-      branch.per_shape = point.per_shape;
-      branch.per_zero = point.per_zero;
+      if (!PointOn(parent, law, from.origin, with_gradient, branch.start)) return false;
     } else if (from.start == BranchStart::kSteadyExtreme) {
       // The loop is symmetric: half of the branch to the other extreme lies on either side.
       const double other = from.origin + 2 * from.direction * from.amplitude;
       if (!PointOn(branch, law, other, with_gradient, point)) return false;
-      branch.d = -point.d / 2;
-      branch.per_log_rate = -point.per_log_rate / 2;
-      branch.per_shape = -point.per_shape / 2;
+      branch.start = {.d = -point.d / 2,
+                      .per_log_rate = -point.per_log_rate / 2,
+                      .per_shape = -point.per_shape / 2};
     }
     branches_.push_back(branch);
   }

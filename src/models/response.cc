@@ -34,43 +34,6 @@ void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
 }
 
 template <typename Shape>
-void EvaluateRuns(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                  const ScaledBranches& branches, const Shape& shape,
-                  std::span<const double> displacement, std::span<double> force) {
-  for (const BranchRun& run : path.runs) {
-    const std::size_t count = run.end - run.begin;
-    const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, ForceLimit(model, path.asymmetry),
-                displacement.subspan(run.begin, count), force.subspan(run.begin, count));
-  }
-}
-
-void Evaluate(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-              std::span<const double> displacement, std::span<double> force) {
-  Validate(law);
-  RequireSizes(path, displacement, force);
-  backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law), path, shape);
-    RequireReach(law, branches, displacement);
-    EvaluateRuns(model, law, path, branches, shape, displacement, force);
-  });
-}
-
-void EvaluateInSeries(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                      std::span<const double> displacement, std::span<double> force,
-                      const SeriesSpring& rig) {
-  Validate(law);
-  RequireSizes(path, displacement, force);
-  const double travel = models::SpringTravel(model, law, rig);
-  backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
-    const SprungShape shape{contact, travel};
-    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law, travel), path, shape);
-    RequireReach(law, branches, displacement);
-    EvaluateRuns(model, law, path, branches, shape, displacement, force);
-  });
-}
-
-template <typename Shape>
 void EvaluateWithGradient(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                           const BranchScaling& scaling, const Shape& shape,
                           std::span<const double> displacement, std::span<double> force,
@@ -119,11 +82,20 @@ double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig) {
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig) {
-  if (models::IsRigid(rig)) {
-    Evaluate(model, law, path, displacement, force);
-  } else {
-    EvaluateInSeries(model, law, path, displacement, force, rig);
-  }
+  Validate(law);
+  RequireSizes(path, displacement, force);
+  const double travel = IsRigid(rig) ? 0.0 : SpringTravel(model, law, rig);
+  const double limit = ForceLimit(model, path.asymmetry);
+  WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
+    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law, travel), path, shape);
+    RequireReach(law, branches, displacement);
+    for (const BranchRun& run : path.runs) {
+      const std::size_t count = run.end - run.begin;
+      const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
+      EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
+                  displacement.subspan(run.begin, count), force.subspan(run.begin, count));
+    }
+  });
 }
 
 void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,

@@ -62,6 +62,20 @@ backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledB
   return {shape.contact, SeriesComplianceOn(branch, shape.spring_travel)};
 }
 
+/// Calls use(shape) with the cheapest shape that is exact for α, behind a spring unless it is
+/// rigid.
+/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+template <typename Use>
+void WithShapeBehindSpring(double shape_exponent, double spring_travel, const Use& use) {
+  backbone::WithShape(shape_exponent, [&](const auto& contact) {
+    if (spring_travel == 0) {
+      use(contact);
+    } else {
+      use(SprungShape{contact, spring_travel});
+    }
+  });
+}
+
 /// A model's rules for how branches start, at σ/Tc and α of a law, behind a spring or none.
 class BranchScaling {
  public:

@@ -72,19 +72,6 @@ double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law
   return GrossSlipDisplacement(law) / masing;
 }
 
-double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
-                            const SeriesSpring& rig) {
-  const double amplitude = SteadyGrossSlipAmplitude(model, law);
-  if (std::isinf(amplitude)) return 1.0;
-  const double travel = std::isinf(rig.stiffness) ? 0.0 : law.slip_force / rig.stiffness;
-  return GrossSlipEnergyRatio(law.shape_exponent) * (amplitude / (amplitude + travel));
-}
-
-double GrossSlipEnergyRatio(double shape_exponent) {
-  RequireNonNegative("shape exponent [-]", shape_exponent);
-  return shape_exponent >= 1 ? 1.0 : shape_exponent / (2 - shape_exponent);
-}
-
 namespace {
 
 /// Makes a law in long double: a power of α multiplies the error of its logarithm by α.

@@ -13,29 +13,6 @@
 
 namespace mindahl::models {
 
-namespace {
-
-/// @throws InvalidArgument naming the first sample that is no step of a contact
-void RequireSamples(const LoadDependentLaw& law, std::span<const double> displacement,
-                    std::span<const double> normal_load) {
-  const double reference = models::ReferenceSlipDisplacement(law);
-  double largest_load = 0.0;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (!models::IsWithinReach(displacement[i])) {
-      models::RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
-    }
-    // All reasons to refuse a load but its sign grow with it.
-    if (normal_load[i] >= 0 && normal_load[i] <= largest_load) continue;
-    const models::SlipAtLoad slip = models::SlipUnder(law, reference, normal_load[i]);
-    if (!slip.IsInRange() || !(normal_load[i] >= 0)) {
-      models::RequireLoad(fmt::format("normal load [N] of sample {}", i), normal_load[i], slip);
-    }
-    largest_load = normal_load[i];
-  }
-}
-
-}  // namespace
-
 void Validate(const LoadDependentLaw& law) {
   RequirePositive("friction coefficient [-]", law.friction_coefficient);
   RequirePositive("reference load [N]", law.reference_load);
@@ -45,7 +22,7 @@ void Validate(const LoadDependentLaw& law) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent,
                  "must be < 1 under a varying load: slip is complete at a finite displacement");
   }
-  const BranchLaw reference = models::ReferenceLaw(law);
+  const BranchLaw reference = ReferenceLaw(law);
   Validate(reference);
   const double slip_displacement = GrossSlipDisplacement(reference);
   if (!(slip_displacement <= kLargestPathDisplacement)) {
@@ -72,10 +49,12 @@ void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double>
   RequireSameSize("displacement", displacement.size(), "normal load", normal_load.size());
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   if (displacement.empty()) return;
-  RequireSamples(law, displacement, normal_load);
-  models::LoadedContactState contact(law, {.normal_load = normal_load.front()});
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    force[i] = contact.Move(displacement[i], normal_load[i]);
+  std::size_t i = 0;
+  try {
+    LoadedContactState contact(law, {.normal_load = normal_load.front()});
+    for (; i < displacement.size(); ++i) force[i] = contact.Move(displacement[i], normal_load[i]);
+  } catch (const InvalidArgument& refusal) {
+    throw InvalidArgument(fmt::format("sample {}: {}", i, refusal.what()));
   }
 }
 
@@ -97,22 +76,6 @@ void LoadedContactState::Reset() {
   if (rim_.at.slip_displacement > 0) zones_.push_back({.intercept = displacement_});
 }
 
-/// The zones as a trial step sees them: it drops some, and what it adds is not asked for.
-class LoadedContactState::TrialZones {
- public:
-  explicit TrialZones(const std::vector<Zone>& zones) : zones_(zones), size_(zones.size()) {}
-
-  [[nodiscard]] bool empty() const { return size_ == 0; }
-  [[nodiscard]] const Zone& back() const { return zones_[size_ - 1]; }
-  void pop_back() { --size_; }
-  void clear() { size_ = 0; }
-  void push_back(const Zone& /*zone*/) {}
-
- private:
-  const std::vector<Zone>& zones_;
-  std::size_t size_;
-};
-
 double LoadedContactState::Move(double displacement, double normal_load) {
   RequireWithinReach("displacement [m]", displacement);
   const Rim rim = RimUnder(normal_load);
@@ -124,7 +87,7 @@ double LoadedContactState::Move(double displacement, double normal_load) {
 
 double LoadedContactState::Peek(double displacement, double normal_load) const {
   RequireWithinReach("displacement [m]", displacement);
-  TrialZones zones(zones_);
+  std::vector<Zone> zones = zones_;
   return StepTo(zones, RimUnder(normal_load), displacement);
 }
 
@@ -137,8 +100,8 @@ LoadedContactState::Rim LoadedContactState::RimUnder(double normal_load) const {
 
 /// Steps straight in (δ, δc) from the present displacement and rim; the zones are those to be
 /// changed. If adding a zone runs out of memory none has been dropped.
-template <typename Zones>
-double LoadedContactState::StepTo(Zones& zones, const Rim& rim, double displacement) const {
+double LoadedContactState::StepTo(std::vector<Zone>& zones, const Rim& rim,
+                                  double displacement) const {
   const auto share = [this](double width, double slip_displacement) {
     const double y = width / (slip_displacement * (1 - law_.shape_exponent));
     return std::visit([y](const auto& shape) { return shape.Force(y); }, shape_);

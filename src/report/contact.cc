@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "mindahl/contact/shape_under_load.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/models/steady_loop.h"
 #include "report/statements.h"
 
 namespace mindahl::report {
 
+using Kind = contact::ContactQuantity;
 using contact::KnownContact;
-using contact::PropagatedValue;
 using contact::UncertainValue;
 using identification::FitResult;
 using identification::ParameterEstimate;
@@ -60,33 +60,6 @@ std::optional<double> Together(const std::optional<double>& one, const std::opti
   return std::sqrt(std::max(squares, 0.0));
 }
 
-/// Makes a quantity of σ and Tc, exact, and of what is known; empty where it does not follow.
-using Make = std::optional<PropagatedValue> (*)(double sigma, double slip_force,
-                                                const KnownContact& known);
-
-template <auto kMember>
-std::optional<PropagatedValue> OfContact(double sigma, double slip_force,
-                                         const KnownContact& known) {
-  return contact::IdentifyContact(UncertainValue{sigma}, UncertainValue{slip_force}, known).*
-         kMember;
-}
-
-/// Makes one of a smooth sphere whose load is known.
-template <auto kMember>
-std::optional<PropagatedValue> OfSphere(double sigma, double /*slip_force*/,
-                                        const KnownContact& known) {
-  return contact::IdentifyShape(contact::ContactShape::kSphere, UncertainValue{sigma}, known).*
-         kMember;
-}
-
-std::optional<PropagatedValue> OverMindlin(double sigma, double slip_force,
-                                           const KnownContact& known) {
-  const contact::IdentifiedContact contact =
-      contact::IdentifyContact(UncertainValue{sigma}, UncertainValue{slip_force}, known);
-  return contact.hertz ? std::optional(contact.hertz->sigma_over_hertz_mindlin)
-                       : contact.sigma_over_mindlin;
-}
-
 /// Maps the ends of the parameters' intervals to quantities of the contact.
 class Mapping {
  public:
@@ -96,18 +69,18 @@ class Mapping {
         sigma_(*fit.Find("sigma")),
         slip_force_(*fit.Find("slip_force")) {}
 
-  [[nodiscard]] std::optional<PropagatedValue> AtEstimate(Make make) const {
-    return make(sigma_.value, slip_force_.value, known_);
+  [[nodiscard]] std::optional<UncertainValue> AtEstimate(Kind kind) const {
+    return contact::IdentifyContact(kind, sigma_.value, slip_force_.value, known_);
   }
 
   /// Sets value and ends of a quantity that follows.
-  void Fill(ContactQuantity& quantity, Make make) const {
-    const PropagatedValue found = *AtEstimate(make);
+  void Fill(ContactQuantity& quantity, Kind kind) const {
+    const UncertainValue found = *AtEstimate(kind);
     const bool is_of_sigma = quantity.parameter == "sigma";
     const ParameterEstimate& parameter = is_of_sigma ? sigma_ : slip_force_;
     const auto way_to = [&](double value) -> std::optional<double> {
-      const auto moved =
-          make(is_of_sigma ? value : sigma_.value, is_of_sigma ? slip_force_.value : value, known_);
+      const auto moved = contact::IdentifyContact(kind, is_of_sigma ? value : sigma_.value,
+                                                  is_of_sigma ? slip_force_.value : value, known_);
       return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
     };
     // Of a given contact radius, p₀ does not follow from the fit; a little further E would not end.
@@ -137,17 +110,15 @@ class Mapping {
     LogWays ways;
     ways.lower = Together(way(slip_force_, kEnds[0]), way(sigma_, kEnds[1]), correlation);
     ways.upper = Together(way(slip_force_, kEnds[1]), way(sigma_, kEnds[0]), correlation);
-    PropagatedValue found;
-    found.value = 1.5 * slip_force_.value / sigma_.value;
-    Set(quantity, found, ways);
+    Set(quantity, 1.5 * slip_force_.value / sigma_.value, ways);
   }
 
  private:
   /// Adds the inputs' uncertainty to the ways.
-  void Set(ContactQuantity& quantity, const PropagatedValue& found, const LogWays& ways) const {
+  void Set(ContactQuantity& quantity, const UncertainValue& found, const LogWays& ways) const {
     quantity.value = found.value;
     const double of_inputs =
-        NormalQuantile(fit_.confidence) * found.input_error / std::abs(found.value);
+        NormalQuantile(fit_.confidence) * found.standard_error / std::abs(found.value);
     if (ways.lower) quantity.lower = found.value * std::exp(-std::hypot(*ways.lower, of_inputs));
     if (ways.upper) quantity.upper = found.value * std::exp(std::hypot(*ways.upper, of_inputs));
     quantity.why = "the interval of what it follows from is open";
@@ -171,45 +142,31 @@ ContactQuantity Made(std::string_view name, std::string_view symbol, std::string
           .why = {}};
 }
 
-using Kind = contact::ContactQuantity;
-using contact::IdentifiedContact;
-using contact::ShapeUnderLoad;
-
 struct QuantityRow {
   std::string_view name;
   std::string_view symbol;
   std::string_view unit;
   std::string_view parameter;
-  Make make;
-  std::optional<Kind> inputs = {};  ///< which it needs; empty: those of `why`
-  bool is_of_sphere = true;         ///< follows only where Hertz's law of the load is not denied
-  const char* why = "";
+  Kind kind;
+  bool is_of_sphere = true;  ///< follows only where Hertz's law of the load is not denied
+  const char* why = "";      ///< inputs that it needs; "" for those of contact::MissingInputs()
 };
 
 constexpr std::array kQuantities = {
-    QuantityRow{"friction_coefficient", "μ", "-", "slip_force",
-                OfContact<&IdentifiedContact::friction_coefficient>, Kind::kFrictionCoefficient,
-                false},
-    QuantityRow{"contact_radius", "a", "m", "sigma", OfContact<&IdentifiedContact::contact_radius>,
-                Kind::kContactRadius, false},
-    QuantityRow{"compliance", "G*", "1/Pa", "sigma",
-                OfContact<&IdentifiedContact::tangential_compliance>, Kind::kTangentialCompliance,
-                false},
-    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", OverMindlin, std::nullopt,
-                false, "needs materials, radii and load, or contact radius and compliance"},
-    QuantityRow{"equivalent_radius", "ρ", "m", "sigma",
-                OfContact<&IdentifiedContact::equivalent_radius>, Kind::kEquivalentRadius},
-    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma",
-                OfContact<&IdentifiedContact::maximum_pressure>, Kind::kMaximumPressure},
+    QuantityRow{"friction_coefficient", "μ", "-", "slip_force", Kind::kFrictionCoefficient, false},
+    QuantityRow{"contact_radius", "a", "m", "sigma", Kind::kContactRadius, false},
+    QuantityRow{"compliance", "G*", "1/Pa", "sigma", Kind::kTangentialCompliance, false},
+    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", Kind::kStiffnessRatio, false,
+                "needs materials, radii and load, or contact radius and compliance"},
+    QuantityRow{"equivalent_radius", "ρ", "m", "sigma", Kind::kEquivalentRadius},
+    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma", Kind::kMaximumPressure},
 };
 
 /// Lists what several loads make known of the materials of a smooth sphere of known radii.
 constexpr std::array kOfSeries = {
-    QuantityRow{"compliance", "G*", "1/Pa", "sigma",
-                OfSphere<&ShapeUnderLoad::tangential_compliance>},
-    QuantityRow{"effective_modulus", "E*", "Pa", "sigma",
-                OfSphere<&ShapeUnderLoad::effective_modulus>},
-    QuantityRow{"youngs_modulus", "E", "Pa", "sigma", OfSphere<&ShapeUnderLoad::youngs_modulus>},
+    QuantityRow{"compliance", "G*", "1/Pa", "sigma", Kind::kSphereCompliance},
+    QuantityRow{"effective_modulus", "E*", "Pa", "sigma", Kind::kSphereEffectiveModulus},
+    QuantityRow{"youngs_modulus", "E", "Pa", "sigma", Kind::kSphereYoungsModulus},
 };
 
 constexpr std::string_view kWhyNoSphere =
@@ -286,21 +243,22 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     ContactQuantity quantity = Made(row.name, row.symbol, row.unit, row.parameter);
     const ParameterEstimate& parameter = *fit.Find(row.parameter);
     const bool needs_fit = !(row.name == "maximum_pressure" && known.contact_radius);
-    const std::optional<PropagatedValue> at_estimate = mapping.AtEstimate(row.make);
+    const std::optional<UncertainValue> at_estimate = mapping.AtEstimate(row.kind);
     if (row.is_of_sphere && denies_hertz) {
       quantity.why = kWhyNoSphere;
     } else if (!at_estimate) {
-      quantity.why =
-          row.inputs
-              ? fmt::format("needs {}", fmt::join(contact::MissingInputs(known, *row.inputs), ", "))
-              : std::string(row.why);
+      quantity.why = row.why;
+      if (quantity.why.empty()) {
+        quantity.why =
+            fmt::format("needs {}", fmt::join(contact::MissingInputs(known, row.kind), ", "));
+      }
     } else if (needs_fit && !parameter.is_known()) {
       quantity.why = fmt::format("needs an identifiable {}", row.parameter);
       if (row.name == "friction_coefficient" && WhatIsShown(parameter) == Shown::kLowerLimit) {
         quantity.lower = at_estimate->value * *parameter.lower95 / parameter.value;
       }
     } else {
-      mapping.Fill(quantity, row.make);
+      mapping.Fill(quantity, row.kind);
     }
     return quantity;
   };
@@ -314,7 +272,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     FillSlipForce(fit, -1.0, quantities.back());
   }
   for (const QuantityRow& row : kOfSeries) {
-    if (!fit.is_load_series() || !known.normal_load || !mapping.AtEstimate(row.make)) continue;
+    if (!fit.is_load_series() || !known.normal_load || !mapping.AtEstimate(row.kind)) continue;
     const auto old = std::ranges::find(quantities, row.name, &ContactQuantity::name);
     if (old == quantities.end()) {
       quantities.push_back(describe(row));

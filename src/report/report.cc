@@ -124,36 +124,35 @@ std::string WhichUnit(const Report& report) {
 /// Compares the contact with Hertz's, or with the radius that is known, and the pressure with what
 /// a solid bears: by the estimate alone, whatever its interval.
 std::string ImpossibleContact(const Report& report) {
-  const contact::IdentifiedContact contact = contact::IdentifyContact(
-      contact::UncertainValue{report.fit.law.tangential_stiffness, 0.0},
-      contact::UncertainValue{report.fit.law.slip_force, 0.0}, report.known);
-  const std::optional<contact::PropagatedValue> ratio =
-      contact.hertz ? std::optional(contact.hertz->sigma_over_hertz_mindlin)
-                    : contact.sigma_over_mindlin;
+  using Kind = contact::ContactQuantity;
+  const auto value_of = [&](Kind kind) {
+    return contact::IdentifyContact(kind, report.fit.law.tangential_stiffness,
+                                    report.fit.law.slip_force, report.known);
+  };
+  const auto hertz_pressure = value_of(Kind::kHertzPressure);
+  const auto ratio = value_of(Kind::kStiffnessRatio);
   if (ratio && (ratio->value > kMostOff || ratio->value < 1 / kMostOff)) {
     const double off = ratio->value > 1 ? ratio->value : 1 / ratio->value;
-    const std::string radius =
-        contact.contact_radius ? Quantity(contact.contact_radius->value, "m", 3) : "";
+    const auto radius = value_of(Kind::kContactRadius);
     return fmt::format("the contact radius{} is {:.0f} times {} than {}: look at {}",
-                       radius.empty() ? "" : ", " + radius + ",", off,
+                       radius ? ", " + Quantity(radius->value, "m", 3) + "," : "", off,
                        ratio->value > 1 ? "larger" : "smaller",
-                       contact.hertz ? "Hertz's" : "the given one", WhichUnit(report));
+                       hertz_pressure ? "Hertz's" : "the given one", WhichUnit(report));
   }
-  const auto too_high = [&](const std::optional<contact::PropagatedValue>& pressure) {
-    return pressure && pressure->value > kMostPressure;
-  };
-  if (contact.hertz && too_high(contact.hertz->maximum_pressure)) {
+  if (hertz_pressure && hertz_pressure->value > kMostPressure) {
     return fmt::format(
         "Hertz's pressure is {}, more than any solid bears: look at the units of "
         "radius and load",
-        Quantity(contact.hertz->maximum_pressure.value, "Pa", 3));
+        Quantity(hertz_pressure->value, "Pa", 3));
   }
-  if (too_high(contact.maximum_pressure)) {
+  const auto pressure = value_of(Kind::kMaximumPressure);
+  if (pressure && pressure->value > kMostPressure) {
     return fmt::format("the maximum pressure is {}, more than any solid bears: look at {}",
-                       Quantity(contact.maximum_pressure->value, "Pa", 3), WhichUnit(report));
+                       Quantity(pressure->value, "Pa", 3), WhichUnit(report));
   }
-  if (contact.friction_coefficient && report.fit.Find("slip_force")->is_known()) {
-    const double friction = contact.friction_coefficient->value;
+  const auto friction_coefficient = value_of(Kind::kFrictionCoefficient);
+  if (friction_coefficient && report.fit.Find("slip_force")->is_known()) {
+    const double friction = friction_coefficient->value;
     if (friction > kMostFriction || friction < kLeastFriction) {
       return fmt::format("μ is {:.3g}: look at {}", friction, WhichUnit(report));
     }

@@ -1,7 +1,6 @@
 #include "mindahl/tradeoff/work_precision.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -22,25 +21,6 @@ double Work(std::span<const double> displacement, std::span<const double> force)
             (static_cast<long double>(displacement[i]) - displacement[i - 1]);
   }
   return static_cast<double>(work);
-}
-
-/// Returns the cost [ns/sample] of an evaluation, the least of several runs.
-double MeasureCost(const methods::Evaluator& evaluate, const Drive& drive,
-                   std::span<double> force) {
-  using Clock = std::chrono::steady_clock;
-  constexpr double kBudget = 1e7;  // [ns]
-  constexpr int kLeastRuns = 3;
-  double least = std::numeric_limits<double>::infinity();
-  double spent = 0.0;
-  for (int runs = 0; runs < kLeastRuns || spent < kBudget; ++runs) {
-    const auto begin = Clock::now();
-    evaluate(drive, force);
-    asm volatile("" : : "g"(force.data()) : "memory");  // the compiler takes it to be read
-    const double elapsed = std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
-    least = std::min(least, elapsed);
-    spent += elapsed;
-  }
-  return least / static_cast<double>(force.size());
 }
 
 }  // namespace
@@ -76,12 +56,10 @@ std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Driv
   std::vector<WorkPrecision> points;
   std::vector<double> force(exact.size());
   for (const Approximation& approximation : AllApproximations(law)) {
-    const methods::Evaluator evaluate = Prepare(approximation, law);
-    evaluate(drive, force);
+    Prepare(approximation, law)(drive, force);
     points.push_back({.approximation = approximation,
                       .precision = Compare(exact, drive.displacement, force),
-                      .cost = CostOf(approximation, law, drive),
-                      .measured_cost = MeasureCost(evaluate, drive, force)});
+                      .cost = CostOf(approximation, law, drive)});
   }
   const std::vector<bool> front = ParetoFront(points);
   for (std::size_t i = 0; i < points.size(); ++i) points[i].is_on_front = front[i];

@@ -57,8 +57,6 @@ TEST(ContactAccuracy, HoldsItsBoundsFromAtomicToTectonic) {
                  Real(cbrt(Real(3) / 4 * Real(load) * Real(radius) / Real(modulus))), "radius");
     ExpectWithin(kOnce, HertzEquivalentRadius(load, a, modulus),
                  Real(4 * Real(modulus) * cube / (3 * Real(load))), "equivalent radius");
-    ExpectWithin(kOnce, HertzNormalLoad(a, radius, modulus),
-                 Real(4 * Real(modulus) * cube / (3 * Real(radius))), "load");
     ExpectWithin(
         kOnce, HertzMaximumPressure(load, a),
         Real(Real(3) / 2 * Real(load) / (boost::math::constants::pi<Real>() * Real(a) * Real(a))),
@@ -82,7 +80,6 @@ TEST(ContactAccuracy, RefusesWhatNoDoubleHolds) {
   const std::string rule = "must be within the range of double";
   EXPECT_NE(refusal([] { HertzMaximumPressure(1e300, 1e-100); }).find(rule), std::string::npos);
   EXPECT_NE(refusal([] { HertzMaximumPressure(1e-300, 1e100); }).find(rule), std::string::npos);
-  EXPECT_NE(refusal([] { HertzNormalLoad(1e200, 1.0, 1.0); }).find(rule), std::string::npos);
   EXPECT_NE(refusal([] { GrossSlipForce(1e200, 1e200); }).find(rule), std::string::npos);
   EXPECT_NE(refusal([] { MindlinTangentialStiffness(1e300, 1e-300); }).find(rule),
             std::string::npos);

@@ -31,7 +31,7 @@ double Slope(Function function, double x, double step) {
 TEST(Errata, Equation15NeedsTheMinusSign) {
   const printed::Contact exact(kPaper);
   const double peak = 0.7 * kSlipForce;
-  const double amplitude = MindlinVirginDisplacement(kPaper, peak);
+  const auto amplitude = static_cast<double>(exact.VirginDisplacement(Real(peak)));
 
   // Reloading runs from −T* at −δ* to T* at δ*. As printed it starts at T* and ends at −T*.
   constexpr double kRounding = 1e-12;  // far above the rounding of δ*, far below what is at stake
@@ -122,10 +122,9 @@ TEST(Errata, PrintedContactRadiusIsRoundedByOnePercentOfStiffness) {
   EXPECT_GT(of_printed_radius / kPrintedStiffness - 1.0, 0.009);
   EXPECT_LT(of_printed_radius / kPrintedStiffness - 1.0, 0.010);
 
-  const IdentifiedContact identified =
-      IdentifyContact({kPrintedStiffness, 0.0}, {kSlipForce, 0.0},
-                      {.tangential_compliance = kTangentialCompliance});
-  const double radius = identified.contact_radius->value;
+  const double radius =
+      *IdentifyContact(ContactQuantity::kContactRadius, kPrintedStiffness, kSlipForce,
+                       {.tangential_compliance = kTangentialCompliance});
   EXPECT_NEAR(radius, 2.6735e-3, 0.00005e-3);                 // half a unit of the last digit
   EXPECT_EQ(std::round(radius * 1e4) / 1e4, kContactRadius);  // two digits, as printed
 }
@@ -159,24 +158,20 @@ TEST(Errata, Equation20IsEquation10OfOtherParameters) {
 
 TEST(Errata, SlipAnnulusNeverExceedsTheContactItIsPartOf) {
   // §2.1 sets micro-slip apart from partial slip by A_s < A_c for both. With A_c the area of the
-  // contact, as it is defined there, A_s > A_c cannot be meant either.
-  for (const double share : {1e-6, 0.3, 0.64, 0.65, 0.9, 1.0 - 1e-6}) {
-    EXPECT_LT(SlipAreaFraction(share * kSlipForce, kSlipForce), 1.0);
-  }
-  // Against the stick area πc² there is a boundary: A_s = πa² − πc² exceeds it once c/a < 1/√2,
-  // which is at T/Tc = 1 − 2^{−3/2} and δ = δc/2.
+  // contact, as it is defined there, A_s > A_c cannot be meant either: A_s/A_c = 1 − (c/a)² with
+  // c/a = (1 − T/Tc)^{1/3} is δ/δc. Against the stick area πc² there is a boundary: A_s exceeds it
+  // once c/a < 1/√2, which is at T/Tc = 1 − 2^{−3/2} and δ = δc/2.
   constexpr double kRounding = 16.0 * kEpsilon;
   const double boundary = (1.0 - 0.25 * std::numbers::sqrt2) * kSlipForce;
-  EXPECT_NEAR(StickRadiusRatio(boundary, kSlipForce), 1.0 / std::numbers::sqrt2, kRounding);
-  EXPECT_NEAR(SlipAreaFraction(boundary, kSlipForce), 0.5, kRounding);
   EXPECT_NEAR(MindlinVirginForce(kPaper, 0.5 * GrossSlipDisplacement(kPaper)) / boundary, 1.0,
               kRounding);
-  const auto slip_over_stick = [](double force) {
-    const double stick_ratio = StickRadiusRatio(force, kSlipForce);
-    return SlipAreaFraction(force, kSlipForce) / (stick_ratio * stick_ratio);
-  };
-  EXPECT_LT(slip_over_stick(0.99 * boundary), 1.0);
-  EXPECT_GT(slip_over_stick(1.01 * boundary), 1.0);
+  const printed::Contact exact(kPaper);
+  for (const double share : {1e-6, 0.3, 0.64, 0.65, 0.9, 1.0 - 1e-6}) {
+    const Real slip_area =
+        exact.VirginDisplacement(Real(share * kSlipForce)) / exact.GrossSlipDisplacement();
+    EXPECT_LT(slip_area, 1);
+    EXPECT_EQ(slip_area < 0.5, share * kSlipForce < boundary);
+  }
 }
 
 // No erratum, but easily misread: §2.3 takes the loop for four times the energy that the first
@@ -198,7 +193,7 @@ TEST(MindlinEnergy, IsFourTimesDissipationOfFirstLoading) {
              MindlinUnloadingForce(kPaper, displacement, amplitude)) *
             2.0 * amplitude / kIntervals;
   }
-  const double energy = MindlinEnergyPerCycle(kPaper, peak);
+  const auto energy = static_cast<double>(printed::Contact(kPaper).EnergyPerCycle(Real(peak)));
   EXPECT_NEAR(energy / loop, 1.0, kMidpointRule);
 
   // Four times the work of the first loading is several times the loop; of what that loading

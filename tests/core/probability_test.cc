@@ -18,10 +18,6 @@ TEST(Probability, BinomialTailsCountTheirOwnEndBelowAndNotAbove) {
   EXPECT_NEAR(BinomialAbove(1, 3, 0.25), 10.0 / 64, kRounding);
 }
 
-TEST(Probability, PoissonTailIsAboveTheCount) {
-  EXPECT_NEAR(PoissonAbove(1, 2), 1 - 3 * std::exp(-2.0), kRounding);
-}
-
 TEST(Probability, FOfTwoDegreesIsAPower) {
   // P(F(2, n) > f) = (1 + 2f/n)^(−n/2).
   EXPECT_NEAR(PValueOfF(3, 2, 10), std::pow(1.6, -5), kRounding);

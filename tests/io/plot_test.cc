@@ -90,11 +90,8 @@ TEST(Plot, WritesSvgWithLabelsAsTheyAre) {
 
 TEST(Plot, DrawsEveryStyle) {
   const std::vector<std::pair<PlotStyle, std::vector<std::string>>> drawn = {
-      {PlotStyle::kLine, {"line"}},
-      {PlotStyle::kPoints, {"dots"}},
-      {PlotStyle::kMarkers, {"marker"}},
-      {PlotStyle::kLineAndPoints, {"line", "marker"}},
-      {PlotStyle::kIntervals, {"line", "marker"}},
+      {PlotStyle::kLine, {"line"}},         {PlotStyle::kPoints, {"dots"}},
+      {PlotStyle::kMarkers, {"marker"}},    {PlotStyle::kLineAndPoints, {"line", "marker"}},
       {PlotStyle::kBand, {"area", "line"}},
   };
   for (const auto& [style, kinds] : drawn) {
@@ -155,9 +152,9 @@ TEST(Plot, PutsLabelsOfMarksWhereTheyHaveRoom) {
   EXPECT_THAT(svg, HasSubstr("text-anchor=\"end\">the last")) << "on the left of its line";
 }
 
-TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
+TEST(Plot, DrawsABandThatReachesToItsEnds) {
   // The axis takes the ends in: 9 is beyond every point.
-  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kIntervals});
+  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kBand});
   EXPECT_THROW(Svg(plot), InvalidArgument) << "no ends";
   plot.panels.front().series.front().lower = {0, 1, 0};
   plot.panels.front().series.front().upper = {2, 9, 2};

@@ -115,15 +115,12 @@ void ExpectAgreement(const FrictionModel& model, const BranchLaw& law, const His
   Generator generator(3);
   for (std::size_t i = 0; i < history.size(); ++i) {
     static_cast<void>(contact.Peek(Uniform(generator, -5, 5)));
-    static_cast<void>(contact.PeekTangentStiffness(Uniform(generator, -5, 5)));
     const double foretold = contact.Peek(history[i]);
-    const double stiffness_foretold = contact.PeekTangentStiffness(history[i]);
     const double force = contact.Move(history[i]);
     ASSERT_LE(std::abs(force - expected[i]), kAgreement * law.slip_force) << "step " << i;
     ASSERT_EQ(force, foretold) << "step " << i;
     ASSERT_EQ(contact.Force(), force);
     ASSERT_EQ(contact.Displacement(), history[i]);
-    ASSERT_EQ(contact.TangentStiffness(), stiffness_foretold) << "step " << i;
   }
 }
 
@@ -139,34 +136,6 @@ TEST(ContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
       if (HasFatalFailure()) FAIL() << "history " << i;
     }
   }
-}
-
-TEST(ContactBehindGap, BearsNoForceUntilTheGapIsClosedAgain) {
-  // σ = 2 N/m and Tc = 1 N, which slips from 0.5 m; all numbers are exact in binary but 0.1.
-  ContactBehindGap contact(ContactState(Model("jenkins"), {2.0, 0.0, 1.0}), 1.0);
-  struct Step {
-    double displacement;
-    double force;
-    double contact;
-  };
-  for (const Step& step :
-       {Step{0.25, 0.0, 0.0},                                 // in the gap
-        Step{1.0, 1.0, 0.5},                                  // closed, at slip
-        Step{1.5, 1.0, 1.0},                                  // slides
-        Step{1.25, 0.5, 0.75},                                // unloads
-        Step{0.9375, 0.0, 0.5},                               // unloaded at 0.5, and stands there
-        Step{0.5, 0.0, 0.5},                                  //
-        Step{-0.25, -0.5, 0.25},                              // closed on the other side
-        Step{0.125, 0.0, 0.5},                                // back into the gap
-        Step{0.875, 0.0, 0.5},                                //
-        Step{1.125, 0.25, 0.625}, Step{-3.0, -1.0, -2.5}}) {  // across the gap in one step
-    EXPECT_NEAR(contact.Move(step.displacement), step.force, 4 * kEpsilon) << step.displacement;
-    EXPECT_NEAR(contact.contact().Displacement(), step.contact, 4 * kEpsilon) << step.displacement;
-  }
-  EXPECT_THAT(MessageOf([] {
-                ContactBehindGap(ContactState(Model("jenkins"), {2.0, 0.0, 1.0}), -1.0);
-              }),
-              ::testing::HasSubstr("gap [m] = -1 is invalid"));
 }
 
 TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
@@ -384,8 +353,6 @@ TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
         const double at = displacement;
         EXPECT_EQ(MessageOf([&] { contact.Move(at); }), expected);
         EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.Peek(at)); }), expected);
-        EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.PeekTangentStiffness(at)); }),
-                  expected);
       }
       EXPECT_EQ(contact.Force(), copy.Force());
       EXPECT_EQ(contact.Displacement(), copy.Displacement());

@@ -3,6 +3,8 @@
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
+#include "../support/message_of.h"
+#include "contact/printed_equations.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"
@@ -111,13 +113,14 @@ TEST(ImposedForce, IsMindlinsVirginUnloadingAndReloadingDisplacement) {
     for (int i = 19; i >= -20; --i) force.push_back(peak * (i / 20.0));
     for (int i = -19; i <= 20; ++i) force.push_back(peak * (i / 20.0));
     const std::vector<double> displacement = Displacements(Model("mindlin"), law, force);
-    const double bound = kRounding * contact::MindlinVirginDisplacement(contact, peak);
+    const printed::Contact exact(contact);
+    const double bound = kRounding * static_cast<double>(exact.VirginDisplacement(peak));
     for (std::size_t i = 0; i < force.size(); ++i) {
-      const double expected = i <= 20 ? contact::MindlinVirginDisplacement(contact, force[i])
-                              : i <= 60
-                                  ? contact::MindlinUnloadingDisplacement(contact, force[i], peak)
-                                  : contact::MindlinReloadingDisplacement(contact, force[i], peak);
-      EXPECT_NEAR(displacement[i], expected, bound) << "T* = " << peak << ", sample " << i;
+      const printed::Real expected = i <= 20   ? exact.VirginDisplacement(force[i])
+                                     : i <= 60 ? exact.UnloadingDisplacement(force[i], peak)
+                                               : exact.ReloadingDisplacement(force[i], peak);
+      EXPECT_NEAR(displacement[i], static_cast<double>(expected), bound)
+          << "T* = " << peak << ", sample " << i;
     }
   }
 }

@@ -409,14 +409,14 @@ TEST(VariableLoad, RefusesASampleByItsNumber) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
   EXPECT_EQ(RefusalOf(law, {{0.0, 1.0}, {1.0, -2.0}}),
-            "normal load [N] of sample 1 = -2 is invalid: must be finite and >= 0");
-  EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {kNan, 1.0}}), HasSubstr("normal load [N] of sample 0"));
+            "sample 1: normal load [N] = -2 is invalid: must be finite and >= 0");
+  EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {kNan, 1.0}}), HasSubstr("sample 0: normal load [N]"));
   EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {1.0, kInfinity}}), HasSubstr("sample 1"));
-  EXPECT_THAT(RefusalOf(law, {{0.0, kNan}, {1.0, 1.0}}), HasSubstr("displacement [m] of sample 1"));
+  EXPECT_THAT(RefusalOf(law, {{0.0, kNan}, {1.0, 1.0}}), HasSubstr("sample 1: displacement [m]"));
   LoadDependentLaw soft = law;
   soft.reference_stiffness = 1e-306;
   EXPECT_THAT(RefusalOf(soft, {{0.0, 1.0}, {1.0, 1e6}}),
-              HasSubstr("normal load [N] of sample 1 = 1000000 is invalid: must keep the slip"));
+              HasSubstr("sample 1: normal load [N] = 1000000 is invalid: must keep the slip"));
 }
 
 TEST(VariableLoad, RefusesALawByItsParameter) {

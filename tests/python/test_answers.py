@@ -2,7 +2,6 @@
 
 import csv
 import io
-import re
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -59,16 +58,10 @@ def test_plan_warns_of_a_record_and_says_what_is_not_reached():
     assert pair.to_json() == mindahl.plan(record).to_json() == mindahl.plan(SPHERE).to_json()
 
 
-def without_times(text):
-    """Without the times that this run measured."""
-    return re.sub(r'"measured_ns_per_sample": [^,\n]*', "", text)
-
-
-def test_tradeoff_is_the_program_s_but_for_what_is_timed():
+def test_tradeoff_is_the_program_s():
     result = mindahl.command("tradeoff", excitation="micro", tolerance="5%", **LAW)
     expected = program("tradeoff", "--excitation", "micro", "--tolerance", "5%", *LAW_OPTIONS, "--json", "-")
-    assert without_times(result.to_json()) == without_times(expected)
-    assert result.excitations[0].points[0].measured_ns_per_sample > 0
+    assert result.to_json() == expected
     points = result.to_pandas()
     assert len(points) == len(result.excitations[0].points)
     assert set(points["excitation"]) == {"micro"}

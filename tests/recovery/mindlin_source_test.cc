@@ -52,17 +52,20 @@ Record ForceControlled(const MindlinContact& contact, Wave wave, double peak, do
                        int samples_per_cycle, double direction) {
   Record record;
   record.force = Cycling(wave, peak, cycles, samples_per_cycle);
+  const printed::Contact exact(contact);
   for (std::size_t i = 0; i < record.force.size(); ++i) {
     const double force = record.force[i];
     switch (PhaseOf(static_cast<double>(i) / samples_per_cycle)) {
       case 0:
-        record.displacement.push_back(MindlinVirginDisplacement(contact, force));
+        record.displacement.push_back(static_cast<double>(exact.VirginDisplacement(force)));
         break;
       case 1:
-        record.displacement.push_back(MindlinUnloadingDisplacement(contact, force, peak));
+        record.displacement.push_back(
+            static_cast<double>(exact.UnloadingDisplacement(force, peak)));
         break;
       default:
-        record.displacement.push_back(MindlinReloadingDisplacement(contact, force, peak));
+        record.displacement.push_back(
+            static_cast<double>(exact.ReloadingDisplacement(force, peak)));
     }
   }
   return testing::Scaled(record, direction, direction);

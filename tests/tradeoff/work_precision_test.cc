@@ -68,7 +68,7 @@ TEST(CheapestWithin, IsTheSimplestOfTheCheapestWhoseErrorsAreWithin) {
   }
 }
 
-TEST(MeasureWorkPrecision, MeasuresEachInItsOrder) {
+TEST(MeasureWorkPrecision, ComparesEachInItsOrder) {
   const BranchLaw law{1, 1.0 / 3, 1};
   const std::vector<double> drive = Displacements({.amplitude = 1.2, .cycles = 2});
   const auto points = MeasureWorkPrecision(law, {.displacement = drive});
@@ -77,7 +77,6 @@ TEST(MeasureWorkPrecision, MeasuresEachInItsOrder) {
   const auto exact = DefinedForce<Extended>(law, drive);
   for (std::size_t i = 0; i < ways.size(); ++i) {
     EXPECT_EQ(Describe(points[i].approximation), Describe(ways[i]));
-    EXPECT_GT(points[i].measured_cost, 0.0);
     EXPECT_EQ(points[i].cost, CostOf(ways[i], law, {.displacement = drive}));
     std::vector<double> force(drive.size());
     Prepare(ways[i], law)({.displacement = drive}, force);

@@ -1,7 +1,9 @@
 #include "coverage.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <random>
 #include <span>
@@ -92,6 +94,46 @@ std::vector<double> LateForce(const BranchLaw& law, std::span<const double> disp
   return late;
 }
 
+/// A contact behind a gap of width g that bears no force while it is crossed:
+///   δ = x + (g/2)·sgn T,  |δ − x| <= g/2 where T = 0
+/// A contact that bears nothing stands still until the gap is closed again on either side.
+class ContactBehindGap {
+ public:
+  ContactBehindGap(models::ContactState contact, double gap)
+      : contact_(std::move(contact)), gap_(gap) {}
+
+  /// Moves the far side of the gap on to δ and returns the force there.
+  double Move(double displacement) {
+    for (const double side : {1.0, -1.0}) {
+      const double there = displacement - side * gap_ / 2;
+      if (!(side * contact_.Peek(there) > 0)) continue;
+      is_open_ = false;
+      return contact_.Move(there);
+    }
+    if (is_open_) return 0.0;
+    is_open_ = true;
+    const double lower = displacement - gap_ / 2;
+    const double upper = displacement + gap_ / 2;
+    const double of_lower = contact_.Peek(lower);
+    const double of_upper = contact_.Peek(upper);
+    double where = of_lower == 0 ? lower : upper;
+    if (of_lower < 0 && of_upper > 0) {
+      std::uintmax_t steps = 200;
+      const auto [below, above] = boost::math::tools::toms748_solve(
+          [&](double x) { return contact_.Peek(x); }, lower, upper, of_lower, of_upper,
+          boost::math::tools::eps_tolerance<double>(), steps);
+      where = std::midpoint(below, above);
+    }
+    contact_.Move(where);
+    return 0.0;
+  }
+
+ private:
+  models::ContactState contact_;
+  double gap_;
+  bool is_open_ = true;
+};
+
 /// Width of the gap before the contact [m].
 double GapOf(const Scenario& scenario) {
   return 0.1 * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
@@ -117,8 +159,7 @@ void AddBeside(const Scenario& scenario, Record& record) {
   }
   if (scenario.beside == Beside::kLag) record.force = LateForce(law, record.displacement);
   if (scenario.beside == Beside::kBacklash) {
-    models::ContactBehindGap contact({*models::FindFrictionModel(scenario.model), law},
-                                     GapOf(scenario));
+    ContactBehindGap contact({*models::FindFrictionModel(scenario.model), law}, GapOf(scenario));
     std::ranges::transform(record.displacement, record.force.begin(),
                            [&](double x) { return contact.Move(x); });
   }

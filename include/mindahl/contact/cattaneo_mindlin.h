@@ -59,48 +59,6 @@ double MindlinTangentialStiffness(double contact_radius, double tangential_compl
 /// @throws InvalidArgument as Validate
 double GrossSlipDisplacement(const MindlinContact& contact);
 
-/// Radius of the stick disc over that of the contact, c/a [-], on the virgin curve.
-///   c/a = (1 − |T|/Tc)^{1/3}
-/// Johnson (1985) §7.2; eq. 5 of the paper.
-/// @param tangential_force  T [N], |T| <= Tc
-/// @param slip_force        Tc [N], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Relative error < 5 ulp up to T = Tc, where the difference Tc − |T| is exact.
-double StickRadiusRatio(double tangential_force, double slip_force);
-
-/// Returns the area of the slip annulus over that of the contact, 1 − (c/a)² [-], on the virgin
-/// curve. It equals |δ|/δc. It stays below 1 in partial slip and is 1/2, slip area equal to stick
-/// area, at T = (1 − 2^{−3/2})·Tc ≈ 0.646·Tc.
-/// @param tangential_force  T [N], |T| <= Tc
-/// @param slip_force        Tc [N], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Relative error < 8 ulp; no cancellation as T → 0.
-double SlipAreaFraction(double tangential_force, double slip_force);
-
-/// Returns the displacement δ₀ [m] on the virgin curve, odd in T.
-///   δ₀ = δc·[1 − (1 − T/Tc)^{2/3}] = δc·t(1 + s)/(1 + s + s²),  t = T/Tc,  s = ∛(1 − t)
-/// Johnson (1985) §7.2; eq. 6 of the paper.
-/// @param tangential_force  T [N], |T| <= Tc
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Relative error < 10 ulp for every |T| <= Tc: the second form, used here, subtracts nothing.
-double MindlinVirginDisplacement(const MindlinContact& contact, double tangential_force);
-
-/// Returns the displacement δ₁ [m] on the unloading branch of the loop with extremes ±T*.
-///   δ₁ = δ₀(T*) − 2·δ₀((T* − T)/2)
-/// Johnson (1985) §7.4; eq. 8 of the paper.
-/// @param tangential_force  T [N], |T| <= T*
-/// @param peak_force        T* [N], 0 <= T* <= Tc
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Absolute error < 24 ulp of δ₀(T*); exactly ±δ₀(T*) at ±T*.
-double MindlinUnloadingDisplacement(const MindlinContact& contact, double tangential_force,
-                                    double peak_force);
-
-/// Returns the displacement δ₂ [m] on the reloading branch of the loop with extremes ±T*.
-///   δ₂(T) = −δ₁(−T)
-/// Eq. 9 of the paper. Parameters, errors and accuracy as MindlinUnloadingDisplacement.
-double MindlinReloadingDisplacement(const MindlinContact& contact, double tangential_force,
-                                    double peak_force);
-
 /// Returns the force T₀ [N] on the virgin curve, odd in δ; ±Tc beyond ±δc.
 ///   T₀ = Tc·[1 − z√z] = Tc·w(1 + z + z²)/(1 + z√z),  w = δ/δc,  z = 1 − w
 /// Eq. 13 of the paper.
@@ -126,23 +84,5 @@ double MindlinUnloadingForce(const MindlinContact& contact, double displacement,
 /// Parameters, errors and accuracy as MindlinUnloadingForce.
 double MindlinReloadingForce(const MindlinContact& contact, double displacement,
                              double displacement_amplitude);
-
-/// Returns the energy lost per closed cycle [J] of the loop in partial slip with extremes ±T*.
-///   W = (9Tc²G*/10a)·{1 − s⁵ − (5r/6)(1 + s²)} = (3Tc²G*/20a)·(1 + 3s + s²)·(r/(1 + s + s²))³
-/// with r = T*/Tc and s = ∛(1 − r). Johnson (1985) eq. 7.57; the second form divides the triple
-/// root at s = 1 out of 1 − 5s² + 5s³ − s⁵ (docs/theory.md §8). W → G*·T*³/(36a·Tc) as T* → 0.
-/// @param peak_force  T* [N], 0 <= T* <= Tc
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Relative error < 20 ulp for every T*; the printed form has lost every digit at r = 1e-5.
-double MindlinEnergyPerCycle(const MindlinContact& contact, double peak_force);
-
-/// Returns the energy lost per closed cycle [J] with extremes ±δ*, in partial or gross slip.
-///   W = (3Tc²G*/20a)·(1 + 3s + s²)·(1 − s)³,  s = √(1 − δ*/δc),     δ* <= δc
-///   W = 3Tc²G*/(20a) + 4Tc·(δ* − δc),                               δ* >  δc
-/// @param displacement_amplitude  δ* [m], finite, >= 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
-/// Relative error < 16 ulp for every δ*: 1 − s is taken as (δ*/δc)/(1 + s).
-double MindlinEnergyPerCycleAtAmplitude(const MindlinContact& contact,
-                                        double displacement_amplitude);
 
 }  // namespace mindahl::contact

@@ -59,15 +59,6 @@ double HertzContactRadius(double normal_load, double equivalent_radius, double e
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus);
 
-/// Returns the normal load N [N] that makes a circle of the given radius.
-///   N = 4E*a³/(3ρ)
-/// The inverse of HertzContactRadius in N.
-/// @param contact_radius     a [m], finite, > 0
-/// @param equivalent_radius  ρ [m], finite, > 0
-/// @param effective_modulus  E* [Pa], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
-double HertzNormalLoad(double contact_radius, double equivalent_radius, double effective_modulus);
-
 /// Returns the pressure p₀ [Pa] at the centre of the contact circle, 3/2 of the mean.
 ///   p₀ = 3N/(2πa²)
 /// Johnson (1985) eq. 4.24.

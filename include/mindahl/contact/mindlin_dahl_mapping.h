@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
@@ -34,8 +33,7 @@ struct UncertainValue {
   operator double() const { return value; }
 
   double value = 0.0;
-  /// Same unit, >= 0. Finite for what is known; of a fit infinity where it leaves the value open.
-  double standard_error = 0.0;
+  double standard_error = 0.0;  ///< same unit, finite, >= 0
 };
 
 /// Holds the known properties of one body; any member may be missing.
@@ -57,128 +55,85 @@ struct KnownContact {
   std::optional<UncertainValue> tangential_compliance = std::nullopt;  ///< G* [1/Pa], finite, > 0
 };
 
-/// A result with the parts of its uncertainty: standard_error² = fit_error² + input_error².
-struct PropagatedValue : UncertainValue {
-  double fit_error = 0.0;    ///< from σ and Tc, their correlation included; same unit
-  double input_error = 0.0;  ///< from what is known besides the fit; same unit
-  /// The input that contributes most, "radius of body 1"; empty where all are exact. To be measured
-  /// better first.
-  std::string_view largest_input;
-
-  /// Returns the fraction of the variance from the fit [-], 1 where it leaves the value open; 0
-  /// where nothing is uncertain.
-  [[nodiscard]] double FitShare() const;
-  /// Returns the fraction of the variance from the inputs [-]; with FitShare() it makes 1, or 0
-  /// where nothing is uncertain.
-  [[nodiscard]] double InputShare() const;
-};
-
 /// Holds what materials and radii, or contact radius and compliance, predict under a load.
 struct PredictedContact {
-  std::optional<PropagatedValue> effective_modulus;  ///< E* [Pa]; of materials
-  std::optional<PropagatedValue> equivalent_radius;  ///< ρ [m]; of two radii
-  std::optional<PropagatedValue> approach;           ///< a²/ρ [m]; of two radii
-  PropagatedValue tangential_compliance;             ///< G* [1/Pa]
-  PropagatedValue contact_radius;                    ///< a [m]
-  PropagatedValue maximum_pressure;                  ///< p₀ [Pa]
-  PropagatedValue tangential_stiffness;              ///< σ = 8a/G* [N/m]
-  PropagatedValue slip_force;                        ///< Tc = μN [N]
-  PropagatedValue gross_slip_displacement;           ///< δc = 3·μN·G*/(16a) [m]
+  std::optional<UncertainValue> effective_modulus;  ///< E* [Pa]; of materials
+  std::optional<UncertainValue> equivalent_radius;  ///< ρ [m]; of two radii
+  std::optional<UncertainValue> approach;           ///< a²/ρ [m]; of two radii
+  UncertainValue tangential_compliance;             ///< G* [1/Pa]
+  UncertainValue contact_radius;                    ///< a [m]
+  UncertainValue maximum_pressure;                  ///< p₀ [Pa]
+  UncertainValue tangential_stiffness;              ///< σ = 8a/G* [N/m]
+  UncertainValue slip_force;                        ///< Tc = μN [N]
+  UncertainValue gross_slip_displacement;           ///< δc = 3·μN·G*/(16a) [m]
 };
 
-/// Applies Hertz, Mindlin and the mapping with the uncertainty of every input; values as the
-/// functions of hertz.h and MapMindlinToDahl() give them. All uncertainty is that of inputs:
-/// fit_error is 0.
+/// Applies Hertz, Mindlin and the mapping; values as the functions of hertz.h and
+/// MapMindlinToDahl() give them, errors as of IdentifyContact().
 /// @param known  N, and either a and G* alone or E, ν and R of both bodies
 /// @param friction_coefficient  μ [-], finite, > 0
 /// @throws InvalidArgument naming what is missing, or the parameter, its value and the rule
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient);
 
-/// Holds the predictions of Hertz and Mindlin when materials, radii and load are all known.
-struct HertzPrediction {
-  PropagatedValue effective_modulus;     ///< E* [Pa]
-  PropagatedValue equivalent_radius;     ///< ρ [m] of the two radii
-  PropagatedValue contact_radius;        ///< a [m] of Hertz
-  PropagatedValue maximum_pressure;      ///< p₀ [Pa] of Hertz
-  PropagatedValue tangential_stiffness;  ///< σ [N/m] = 8a/G*, with the G* in use
-  /// δc [m] = 3·Tc·G*/(16a) with the measured Tc
-  PropagatedValue gross_slip_displacement;
-  /// Measured over predicted σ [-]; 1 when the theory holds. Also the ratio of the identified
-  /// contact radius to Hertz's.
-  PropagatedValue sigma_over_hertz_mindlin;
-  /// Mindlin's δc of the measured σ and Tc over the predicted [-]: the inverse of the ratio of σ,
-  /// for Tc is in both.
-  PropagatedValue gross_slip_displacement_ratio;
-};
-
-/// Holds what fit and knowledge of the contact identify together; empty where they do not.
-struct IdentifiedContact {
-  std::optional<PropagatedValue> friction_coefficient;  ///< μ = Tc/N [-]; needs N
-  std::optional<PropagatedValue> contact_radius;        ///< a = σG*/8 [m]; needs G*
-  std::optional<PropagatedValue>
-      tangential_compliance;                         ///< G* = 8a/σ [1/Pa]; needs a given radius a
-  std::optional<PropagatedValue> equivalent_radius;  ///< ρ = 4E*a³/(3N) [m]; needs E*, a, N
-  std::optional<PropagatedValue> maximum_pressure;   ///< p₀ = 3N/(2πa²) [Pa]; needs a, N
-  /// Mindlin's δc = 3Tc/(2σ) [m]; needs nothing. That of the fitted α is Tc/(σ(1 − α)).
-  PropagatedValue gross_slip_displacement;
-  /// Measured σ over 8a/G* [-], for a given radius a and a known G*; 1 when the theory holds.
-  std::optional<PropagatedValue> sigma_over_mindlin;
-  std::optional<HertzPrediction> hertz;  ///< needs E, ν and R of both bodies, and N
-
-  /// A sentence for each quantity that is missing, with the inputs that would give it:
-  /// "friction coefficient needs the normal load".
-  std::vector<std::string> unidentified;
-  /// A sentence for each quantity that was given and also follows from other inputs, with both
-  /// values and which one is used.
-  std::vector<std::string> redundant;
-};
-
 /// Names the quantities that a fit together with known properties may identify.
 enum class ContactQuantity {
-  kFrictionCoefficient,
-  kContactRadius,
-  kTangentialCompliance,
-  kEquivalentRadius,
-  kMaximumPressure,
+  kFrictionCoefficient,   ///< μ = Tc/N [-]; needs N
+  kContactRadius,         ///< a = σG*/8 [m]; needs G*
+  kTangentialCompliance,  ///< G* = 8a/σ [1/Pa]; needs a given radius a
+  kEquivalentRadius,      ///< ρ = 4E*a³/(3N) [m]; needs E*, a, N
+  kMaximumPressure,       ///< p₀ = 3N/(2πa²) [Pa]; needs a, N
+  /// σ over 8a/G* [-], 1 when the theory holds: of Hertz's a, which needs E, ν and R of both bodies
+  /// and N, else of a given a and a known G*
+  kStiffnessRatio,
+  kHertzPressure,  ///< p₀ [Pa] of Hertz; needs E, ν and R of both bodies, and N
+  // Of a smooth sphere, whose stiffness follows the load as Hertz predicts, with known radii:
+  kSphereCompliance,        ///< G* [1/Pa] where it is not known
+  kSphereEffectiveModulus,  ///< E* [Pa] where it is not known
+  kSphereYoungsModulus,     ///< E [Pa] of the one body whose E is not known
 };
 
-/// Returns, in words ("the normal load"), the inputs that IdentifyContact() still needs for a
-/// quantity; empty where nothing is missing.
+/// Returns, in words ("the normal load"), the inputs that one of the first five quantities still
+/// needs; empty where nothing is missing.
 std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity);
 
-/// Inverts the mapping: from a fitted stiffness and slip force to the contact.
+/// Inverts the mapping: from a stiffness and a slip force to a quantity of the contact.
 ///
-/// Knowledge may be redundant. What is given directly wins over what follows from other inputs:
-///  - G* given and E, ν of both bodies: the given G* is used throughout, E* comes from the
-///  materials;
-///  - a given and G* known: a = σG*/8 and G* = 8a/σ are both reported, each ignoring the other's
-///  given
-///    value, and sigma_over_mindlin compares them; ρ and p₀ use the given a and nothing of the fit;
-///  - a given and Hertz complete: Hertz's a serves the prediction alone.
-/// The first and the last are also named in `redundant`, whatever the discrepancy.
+/// Knowledge may be redundant. What is given directly wins over what follows from other inputs: G*
+/// over the materials, of which E* still comes, and a given a over σG*/8 in ρ and p₀.
 ///
-/// Standard errors are propagated to first order (GUM, JCGM 100:2008, eq. 13) from σ and Tc with
-/// their correlation and from every input, each counted once however many ways it enters: E of a
-/// body is in G*, in E* and so in Hertz's a. A relative error of a counts twice in p₀ and three
-/// times in ρ.
+/// A smooth sphere of equivalent radius ρ makes known of its materials
 ///
-/// @param tangential_stiffness  σ [N/m], finite, > 0; standard error >= 0, may be infinite
-/// @param slip_force            Tc [N], finite, > 0; standard error >= 0, may be infinite
-/// @param known                 standard errors finite, >= 0, 0 for a plane's radius
-/// @param correlation           of the errors of σ and Tc [-], in [−1, 1]; of no account where
-///   either is infinite
+/// | known | identified |
+/// |---|---|
+/// | G* | E* = 3Nρ/(4a³), a = σG*/8 |
+/// | E of one body, ν of both | the other E, of which σ = 8a/G* with Hertz's a; G* and E* |
+/// | one ν for both bodies | G*E* = 2(2 − ν)/(1 − ν), so G* = √(384Nρ/(G*E*·σ³)); E* |
+///
+/// With one ν the product G*E* is the same whatever the two E are, since both compliances are sums
+/// of 1/E: it is why no modulus is needed. E of a body exists where σ is less than against a rigid
+/// body in its place.
+///
+/// The standard error is that of the inputs, to first order (GUM, JCGM 100:2008, eq. 13), each
+/// counted once however many ways it enters: E of a body is in G*, in E* and so in Hertz's a. σ and
+/// Tc are exact here: their intervals are mapped end by end.
+///
+/// @param stiffness   σ [N/m], finite, > 0
+/// @param slip_force  Tc [N], finite, > 0
+/// @param known       standard errors finite, >= 0, 0 for a plane's radius
+/// @returns empty where the inputs do not determine it
 /// @throws InvalidArgument naming the parameter, its value and the rule, also for knowledge that is
 ///   invalid but not needed
 /// The first order is symmetric, the truth is not: 10 % of a is +33 % or −27 % of ρ, not ±30 %.
-IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
-                                  const UncertainValue& slip_force, const KnownContact& known,
-                                  double correlation = 0.0);
+/// Values are exact to rounding; derivatives are central differences, to 1e-9.
+std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double stiffness,
+                                              double slip_force, const KnownContact& known);
 
 /// Returns a sentence for each value that is possible but implausible, with what to check: most
 /// often a unit. Each limit lies beyond what is measured of dry solids:
 ///   G* > 1 1/Pa    a body softer than foam; many texts write G* for its inverse
 ///   E < 1 MPa      softer than rubber
+///   E > 2 TPa      stiffer than diamond
 ///   a > R/3        of the smaller radius: Hertz's parabola is no sphere any more (Johnson §4.1)
 ///   μ > 5
 /// @param friction_coefficient  μ [-], given or identified

@@ -8,9 +8,8 @@
 namespace mindahl::io {
 
 /// Points are small dots for dense records; markers are large, and of another shape in each series.
-/// Intervals are markers with a bar from lower to upper ends, a band is a line with the area
-/// between these.
-enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals, kBand };
+/// A band is a line with the area between the lower and upper ends.
+enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kBand };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
@@ -18,7 +17,7 @@ struct PlotSeries {
   std::vector<double> x = {};  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y = {};  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
-  std::vector<double> lower = {};  ///< ends of y, as many; for kIntervals and kBand
+  std::vector<double> lower = {};  ///< ends of y, as many; for kBand
   std::vector<double> upper = {};
   /// Place on a scale of colours from 0 to 1, where series follow each other as cycles do; else
   /// each has a colour of its own, and a line without a label that of the series before.

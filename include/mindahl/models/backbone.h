@@ -25,11 +25,9 @@ namespace mindahl::models::backbone {
 
 /// Largest α accepted: beyond it (1−α)·y could overflow.
 template <typename Real>
-inline constexpr Real kLargestShapeExponent = std::numeric_limits<Real>::max_exponent10 < 300
-                                                  ? Real(1e10)
-                                                  : Real(1e100);
+inline constexpr Real kLargestShapeExponent = Real(1e100);
 
-/// Largest y: 3e20 in single precision, 1e200 in double. For α <= 1 the force is Tc there.
+/// Largest y: 1.8e200 in double. For α <= 1 the force is Tc there.
 template <typename Real>
 inline constexpr Real kLargestDisplacement = std::numeric_limits<Real>::max() /
                                              (kLargestShapeExponent<Real> * Real(1e8));
@@ -57,8 +55,7 @@ struct Reduced {
 template <typename Real>
 struct SmallSeries {
   static constexpr Real kSmall = Real(0.25);
-  static constexpr std::size_t kTerms = std::numeric_limits<Real>::digits <= 24   ? 4
-                                        : std::numeric_limits<Real>::digits <= 53 ? 9
+  static constexpr std::size_t kTerms = std::numeric_limits<Real>::digits <= 53   ? 9
                                         : std::numeric_limits<Real>::digits <= 64 ? 11
                                                                                   : 21;
   static_assert(std::numeric_limits<Real>::digits <= 113);

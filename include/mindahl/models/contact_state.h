@@ -82,10 +82,6 @@ class ContactState {
   /// would make. Cost: as of Move.
   [[nodiscard]] double TangentStiffness() const;
 
-  /// Returns the TangentStiffness() after Move(δ), without moving.
-  /// @throws InvalidArgument as Move
-  [[nodiscard]] double PeekTangentStiffness(double displacement) const;
-
   /// Returns to the virgin contact at δ₀; keeps the memory that was reserved.
   void Reset();
 
@@ -165,8 +161,6 @@ class ContactState {
   [[nodiscard]] Entry Enter(double displacement) const;
   void Turn(double displacement);
   [[nodiscard]] double PeekAcrossBranches(double displacement) const;
-  [[nodiscard]] double TangentStiffnessOn(const Course& course, const Shape& shape,
-                                          double displacement) const;
 
   const FrictionModel* model_;
   BranchLaw law_;
@@ -179,33 +173,6 @@ class ContactState {
   double displacement_ = 0.0;
   double force_over_slip_ = 0.0;
   std::vector<OpenBranch> suspended_;  // the open branches below the present one, oldest first
-};
-
-/// A contact behind a gap of width g that bears no force while it is crossed and has no friction of
-/// its own, moved step by step:
-///   δ = x + (g/2)·sgn T,  |δ − x| <= g/2 where T = 0
-/// A contact that bears nothing stands still until the gap is closed again on either side.
-class ContactBehindGap {
- public:
-  /// @param contact  as it is when the gap is open, in its middle where the contact has not moved
-  /// @param gap      g [m], finite, >= 0
-  /// @throws InvalidArgument for an invalid gap
-  ContactBehindGap(ContactState contact, double gap);
-
-  /// Moves the far side of the gap on to δ and returns the force there.
-  /// @param displacement  δ [m], within ±1e307
-  /// @returns T [N], 0 inside the gap
-  /// @throws InvalidArgument as ContactState::Move
-  /// The contact that a stroke leaves inside the gap stands where its force ends to 4 ε of the
-  /// larger of δ and g; else as ContactState::Move, at the cost of two branch laws more.
-  double Move(double displacement);
-
-  [[nodiscard]] const ContactState& contact() const { return contact_; }
-
- private:
-  ContactState contact_;
-  double gap_;
-  bool is_open_ = true;
 };
 
 }  // namespace mindahl::models

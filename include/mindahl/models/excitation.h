@@ -46,8 +46,7 @@ struct Excitation {
 /// The extremes of `nested` fall and grow by equal steps, 7 3 1 5 9 about the innermost: each loop
 /// lies inside the one before, and x_{c+j} on the way back passes x_{c−j} and so closes its loop.
 ///
-/// The envelope is A of sine, triangle and random, A·g^{t/t_end − 1} of the growing sine, and of
-/// `nested` the |x_k| joined by half-cosines, which |displacement| nowhere exceeds.
+/// The envelope is A·g^{t/t_end − 1} of the growing sine, and A of the others.
 ///
 /// The sine is exact at its zeros and extremes and repeats bit for bit. Random and nested waveforms
 /// are exact at time 0 and reach A to the last digit where samples fall on the extremes. A seed

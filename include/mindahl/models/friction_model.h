@@ -37,7 +37,6 @@ struct SteadyPeak {
 struct FrictionModel {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< in reports
-  std::string_view source;
   Memory memory = Memory::kReturnPoint;
   std::optional<double> shape_exponent = std::nullopt;  ///< α where the model prescribes it
   bool bounded = true;                                  ///< |T| <= Tc on every path

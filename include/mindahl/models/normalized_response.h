@@ -171,25 +171,21 @@ class NormalizedDisplacement {
                      const DisplacementGradient& gradient);
 
  private:
+  struct Point {
+    double d = 0.0;
+    double per_log_rate = 0.0;  // of 1/Tc
+    double per_shape = 0.0;
+    double per_zero = 0.0;  // of T₀/Tc
+  };
   struct Branch {
     double origin = 0.0;     // T_r [N]
     double height = 0.0;     // m·v·Tc [N]
     double span = 1.0;       // m
     double remaining = 1.0;  // v
     bool is_virgin = false;
-    // v and d at the origin, and their derivatives:
-    double remaining_per_log_rate = 0.0;  // of 1/Tc
-    double remaining_per_zero = 0.0;      // of T₀/Tc
-    double d = 0.0;
-    double per_log_rate = 0.0;
-    double per_shape = 0.0;
-    double per_zero = 0.0;
-  };
-  struct Point {
-    double d = 0.0;
-    double per_log_rate = 0.0;
-    double per_shape = 0.0;
-    double per_zero = 0.0;
+    double remaining_per_log_rate = 0.0;
+    double remaining_per_zero = 0.0;
+    Point start = {};  // at the origin
   };
   static bool PointOn(const Branch& branch, const ForcedLaw& law, double force, bool with_gradient,
                       Point& point);

@@ -37,20 +37,6 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
 /// Relative error 4 ε.
 double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law);
 
-/// Returns A = W/(4·X·T*) at the onset of gross slip, with X of contact and rig together:
-///   α/(2−α)·X_s/(X_s + Tc/k_r),  X_s = SteadyGrossSlipAmplitude
-/// of either kind of law, since a steady loop of one amplitude is the same curve for both
-/// (docs/theory.md §6); 1 for α >= 1, where slip is only approached.
-/// @throws InvalidArgument for an invalid law
-/// Relative error 8 ε.
-double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
-                            const SeriesSpring& rig);
-
-/// Returns the energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2
-/// for Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1
-/// for α >= 1, where slip is only approached. Relative error below 1 ε.
-double GrossSlipEnergyRatio(double shape_exponent);
-
 /// Masing's law (Mindlin's, Full-Dahl) and Dahl's own law (eq. 10) on a steady loop of one
 /// amplitude: they are one curve there, each with a σ and a Tc of its own (docs/theory.md §6).
 

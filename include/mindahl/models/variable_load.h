@@ -91,7 +91,7 @@ struct InitialLoading {
 ///
 /// Exact for steps that are straight in (δ, δc(N)): variable_load.h and docs/theory.md §11 say what
 /// it solves. A state is a value. Copies go on by themselves, and an assignment to a state that is
-/// there reuses its memory; Peek tries a step without either.
+/// there reuses its memory.
 class LoadedContactState {
  public:
   /// @throws InvalidArgument for an invalid law, load or displacement
@@ -110,7 +110,7 @@ class LoadedContactState {
   /// slip or a falling load covers it.
   double Move(double displacement, double normal_load);
 
-  /// Returns or throws what Move(δ, N) would, without moving.
+  /// Returns or throws what Move(δ, N) would, without moving; copies the zones.
   [[nodiscard]] double Peek(double displacement, double normal_load) const;
 
   /// Returns T [N] after the last step.
@@ -140,11 +140,8 @@ class LoadedContactState {
     LoadRim<double> at;
   };
 
-  class TrialZones;
-
   [[nodiscard]] Rim RimUnder(double normal_load) const;
-  template <typename Zones>
-  [[nodiscard]] double StepTo(Zones& zones, const Rim& rim, double displacement) const;
+  [[nodiscard]] double StepTo(std::vector<Zone>& zones, const Rim& rim, double displacement) const;
 
   LoadDependentLaw law_;
   InitialLoading initial_;

@@ -28,16 +28,14 @@ Precision Compare(std::span<const double> exact, std::span<const double> displac
 struct WorkPrecision {
   Approximation approximation = {};
   Precision precision = {};
-  double cost = 0.0;           ///< [ns/sample], of CostOf()
-  double measured_cost = 0.0;  ///< [ns/sample], the least of several runs
+  double cost = 0.0;  ///< [ns/sample], of CostOf()
   /// True if no other point beats it both in cost and in the largest force error.
   bool is_on_front = false;
 };
 
-/// Runs and times every one of AllApproximations() along the drive, one after the other in one
-/// process, and compares each with the exact response of the contact's Masing law.
+/// Runs every one of AllApproximations() along the drive, and compares each with the exact response
+/// of the contact's Masing law.
 /// @throws InvalidArgument for an invalid law, an empty drive or a displacement that is not finite
-/// Takes about 10 ms for each, or three runs where that is longer.
 std::vector<WorkPrecision> MeasureWorkPrecision(const models::BranchLaw& law,
                                                 const methods::Drive& drive);
 
