@@ -25,7 +25,7 @@ class CycleTable(Told, Table):
     energy_counts: number of fits that `accumulated_energy` counts with their own energy,
         "measured", with that of the fits before them, "replaced", or not at all, "left_out".
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
-        "first", "last", "steps" and "trends".
+        "first", "last", "settled_at", "steps" and "trends".
     established: did any fit converge?
     """
 

@@ -14,6 +14,7 @@ namespace {
 constexpr double kChance = 0.01;         // of a change, or of a trend, where there is none
 constexpr double kSmallestStep = 0.02;   // [-] of the value before it
 constexpr double kSmallestTrend = 0.01;  // [-] of the segment's mean
+constexpr double kSettled = 0.05;        // [-] of the whole change
 constexpr std::size_t kLeastBins = 4;    // of a segment: two beyond a line
 constexpr int kDepth = 3;                // up to eight segments
 
@@ -160,13 +161,33 @@ std::vector<Course::Bin> WithoutOutliers(Bins bins) {
   return kept;
 }
 
+std::optional<std::size_t> SettledAt(Bins bins) {
+  if (bins.size() < 4 * kLeastBins) return std::nullopt;
+  const std::size_t tail = std::max<std::size_t>(1, bins.size() / 10);
+  std::vector<double> ends;
+  for (const Course::Bin& bin : bins.last(tail)) ends.push_back(bin.value);
+  const double level = boost::math::statistics::median(ends);
+  const double change = std::abs(level - bins.front().value);
+  const double band = std::max(kSettled * change, 3 * Scatter(bins));
+  if (!(change > 2 * band)) return std::nullopt;
+  std::size_t settled = bins.size();
+  while (settled > 0 && std::abs(bins[settled - 1].value - level) <= band) --settled;
+  if (settled + tail >= bins.size()) return std::nullopt;
+  // Nor does it go on beyond the scatter.
+  const Bins rest = bins.subspan(settled);
+  const double drift = LineThrough(rest).slope * (rest.back().cycle - rest.front().cycle);
+  if (std::abs(drift) > 2 * kSettled * change) return std::nullopt;
+  return bins[settled].first_cycle;
+}
+
 }  // namespace
 
 std::optional<CourseDescription> Describe(const Course& course) {
   if (course.bins().empty()) return std::nullopt;
   const std::vector<Course::Bin> kept = WithoutOutliers(course.bins());
   const Bins bins = kept;
-  CourseDescription description{.first = course.first(), .last = course.last()};
+  CourseDescription description{
+      .first = course.first(), .last = course.last(), .settled_at = SettledAt(bins)};
   std::vector<std::pair<std::size_t, double>> ends;
   Divide(bins, 0, kDepth, ends);
   std::size_t begin = 0;

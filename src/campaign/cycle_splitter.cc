@@ -136,6 +136,10 @@ void AppendSamples(const io::Samples& from, io::Samples& to) {
 
 }  // namespace
 
+loop::RecordView ViewOf(const io::Samples& samples) {
+  return {samples.displacement, samples.force, samples.time, samples.normal_load};
+}
+
 io::Samples ReadHead(io::RecordStream& stream) {
   constexpr std::size_t kReversals = 8;
   constexpr std::size_t kMostSamples = 1'000'000;

@@ -92,6 +92,10 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
     panel.marks.push_back(
         {.x = static_cast<double>(step.cycle), .label = fmt::format("step, {}", step.cycle)});
   }
+  if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
+    panel.marks.push_back(
+        {.x = static_cast<double>(*settled), .label = fmt::format("settled, {}", *settled)});
+  }
   return panel;
 }
 
@@ -144,6 +148,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
     } else {
       text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);
     }
+    if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
   }
   return text;
 }

@@ -112,6 +112,18 @@ TEST(Describe, FindsATrend) {
   EXPECT_EQ(description.trends[0].first_cycle, 1U);
   EXPECT_EQ(description.trends[0].last_cycle, 300U);
   EXPECT_NEAR(description.trends[0].to / description.trends[0].from, 0.8, 0.02);
+  EXPECT_FALSE(description.settled_at) << "it changes to the end";
+}
+
+TEST(Describe, SaysWhereARunInHasSettled) {
+  // Within 5 % of its change after three time constants.
+  const CourseDescription description = *Describe(CourseOf(
+      1000, 5,
+      [](std::size_t cycle) { return 0.6 - 0.25 * std::exp(-static_cast<double>(cycle) / 100); },
+      0.0, 0.002));
+  ASSERT_TRUE(description.settled_at);
+  EXPECT_NEAR(static_cast<double>(*description.settled_at), 300.0, 60.0);
+  EXPECT_FALSE(Describe(CourseOf(1000, 5, Level))->settled_at);
 }
 
 TEST(Describe, DoesNotMindOneCycleThatIsOff) {

@@ -19,7 +19,11 @@ Evolution Of(std::string_view name, std::string unit, CourseDescription descript
 
 std::vector<Evolution> RunIn() {
   return {Of("friction_coefficient", "-",
-             {.first = 0.352, .last = 0.6, .steps = {}, .trends = {{1, 480, 0.352, 0.6, 1e-20}}}),
+             {.first = 0.352,
+              .last = 0.6,
+              .settled_at = 480,
+              .steps = {},
+              .trends = {{1, 480, 0.352, 0.6, 1e-20}}}),
           Of("slip_force", "N",
              {.first = 35.2, .last = 60, .steps = {}, .trends = {{1, 480, 35.2, 60, 1e-20}}}),
           Of("sigma", "N/m", {.first = 5e7, .last = 8e7, .steps = {{61, 5e7, 8e7, 0.003}}}),
@@ -29,7 +33,7 @@ std::vector<Evolution> RunIn() {
 }
 
 TEST(Headline, SaysTheTestInOneLine) {
-  EXPECT_EQ(Headline(RunIn()), "μ 0.352 → 0.600; σ +60 %; a 250 → 400 µm");
+  EXPECT_EQ(Headline(RunIn()), "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400 µm");
   std::vector<Evolution> still = {Of("slip_force", "N", {.first = 15.0, .last = 15.1}),
                                   Of("half_gap", "N", {.first = 14.0, .last = 14.1}),
                                   Of("sigma", "N/m", {.first = 4.8e7, .last = 4.81e7})};
@@ -72,7 +76,8 @@ TEST(EvolutionPanels, DrawEachQuantityOverALogarithmicAxisOfCycles) {
   ASSERT_THAT(panels, SizeIs(4));  // slip_force says what friction_coefficient does
   EXPECT_EQ(panels[0].y_label, "friction_coefficient");
   EXPECT_TRUE(panels[0].log_x);
-  EXPECT_THAT(panels[0].marks, IsEmpty());
+  ASSERT_THAT(panels[0].marks, SizeIs(1));
+  EXPECT_EQ(panels[0].marks[0].label, "settled, 480");
   EXPECT_EQ(panels[1].y_label, "sigma [N/µm]");
   EXPECT_EQ(panels[1].marks[0].label, "step, 61");
   const io::PlotSeries& course = panels[1].series[0];

@@ -80,6 +80,9 @@ struct Reading {
   std::size_t samples = 0;  ///< number of samples examined
 };
 
+/// Returns the samples as every stage takes them, valid as long as they.
+loop::RecordView ViewOf(const io::Samples& samples);
+
 /// Reads the first samples, as many as determine how the record is read: some cycles, or the
 /// first million.
 io::Samples ReadHead(io::RecordStream& stream);

@@ -66,10 +66,13 @@ struct Trend {
 struct CourseDescription {
   double first = 0.0;  ///< value of the first cycle, as the table has it
   double last = 0.0;   ///< value of the last cycle
+  /// First cycle from which on the quantity stays within 5 % of its whole change around where it
+  /// ends; empty where it changed by no more than its scatter, or until the last tenth of the test.
+  std::optional<std::size_t> settled_at = std::nullopt;
   std::vector<Step> steps = {};
   std::vector<Trend> trends = {};
 
-  [[nodiscard]] bool changed() const { return !steps.empty() || !trends.empty(); }
+  [[nodiscard]] bool changed() const { return !steps.empty() || !trends.empty() || settled_at; }
 };
 
 /// Divides a time history into straight segments: in two where the F test of two lines against one
@@ -116,9 +119,9 @@ class TrackedCourses {
   std::vector<Course> courses_;
 };
 
-/// Returns the whole test in one line: "μ 0.352 → 0.600; σ +60 %; a 250 → 400 µm"; the friction
-/// coefficient, or without a load the slip force, or the half gap where that is open, then
-/// stiffness and contact radius.
+/// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
+/// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
+/// open, then stiffness and contact radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, of more than `most` the

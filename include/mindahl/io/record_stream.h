@@ -12,8 +12,14 @@
 namespace mindahl::io {
 
 /// Samples of a record [m, N, s, N], or [rad, N m, s, N], in the order of the file.
-struct Samples : loop::Record {
-  std::vector<std::size_t> lines{};  ///< lines in the file, 1-based
+struct Samples {
+  std::vector<double> displacement{};
+  std::vector<double> force{};
+  std::vector<double> time{};         ///< empty where the file has none
+  std::vector<double> normal_load{};  ///< likewise
+  std::vector<std::size_t> lines{};   ///< lines in the file, 1-based
+
+  [[nodiscard]] std::size_t size() const { return lines.size(); }
 };
 
 /// A record read piece by piece, in memory that does not depend on its length.
