@@ -12,7 +12,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/reversals.h"
-#include "mindahl/models/response.h"
+#include "mindahl/models/normalized_response.h"
 #include "processor_time.h"
 
 namespace {
@@ -43,12 +43,23 @@ double MedianMilliseconds(int repeats, const std::function<void()>& call) {
 /// The floor of any fit: reversals, branches, forces and their derivatives once.
 double OneGradientMilliseconds(int repeats, const Record& record, const BranchLaw& law) {
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
-  std::vector<double> force(record.size());
-  std::vector<double> gradient(record.size() * kGradientColumns);
+  const auto size = record.size();
+  std::vector<double> t(size);
+  std::vector<double> columns(4 * size);
+  const auto column = [&](std::size_t index) {
+    return std::span(columns).subspan(index * size, size);
+  };
+  const NormalizedGradient gradient{.log_rate = column(0),
+                                    .shape_exponent = column(1),
+                                    .unloaded_displacement = column(2),
+                                    .log_spring_travel = column(3)};
+  const NormalizedLaw normalized{.rate = law.tangential_stiffness / law.slip_force,
+                                 .shape_exponent = law.shape_exponent};
+  NormalizedResponse response;
   return MedianMilliseconds(repeats, [&] {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    EvaluateForceAndGradient(model, law, path, record.displacement, force, gradient);
+    response.Differentiate(model, normalized, path, record.displacement, t, gradient);
   });
 }
 

@@ -49,7 +49,6 @@ class LinePieces {
   ///   a workbook of a spreadsheet, or has a line of more than kLongestLine
   std::string_view Next();
 
-  [[nodiscard]] bool at_end() const { return at_end_; }
   /// Returns the number of bytes that were read.
   [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
   /// Returns what was assumed of the encoding, a sentence; "" where nothing was.

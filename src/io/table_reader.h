@@ -39,7 +39,6 @@ class TableReader {
   bool ReadCells(std::string_view row);
   bool BelongsToHeader(std::string_view row);
   void EndGap(bool repeats);
-  void AddCellFault(std::size_t place, bool is_missing, const std::string& message);
   void Refuse(const std::string& fault);
   [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
   double ValueOf(std::size_t place, std::string_view text);

@@ -12,7 +12,6 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/loading_path.h"
-#include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
@@ -31,38 +30,6 @@ void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   RequireSameSize("displacement", displacement.size(), "loading path",
                   path.runs.empty() ? 0 : path.runs.back().end);
-}
-
-template <typename Shape>
-void EvaluateWithGradient(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                          const BranchScaling& scaling, const Shape& shape,
-                          std::span<const double> displacement, std::span<double> force,
-                          std::span<double> gradient) {
-  const ScaledBranches branches = ScaleBranches(scaling, path, shape);
-  RequireReach(law, branches, displacement);
-  const Differentiation differentiation(scaling, law, shape);
-  const auto branch_gradients = differentiation.Differentiate(path, branches);
-  const double limit = ForceLimit(model, path.asymmetry);
-  for (const BranchRun& run : path.runs) {
-    const auto branch = static_cast<std::size_t>(run.branch);
-    const auto& shape_on_branch = ShapeOn(shape, branches[branch]);
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      double t = 0.0;
-      const auto g = differentiation.DifferentiateSample(
-          shape_on_branch, branches[branch], branch_gradients[branch], displacement[i], t);
-      force[i] = law.slip_force * std::clamp(t, -limit, limit);
-      double* row = &gradient[i * kGradientColumns];
-      row[kPerLogStiffness] = law.slip_force * g[kRate];
-      row[kPerShapeExponent] = law.slip_force * g[kShape];
-      row[kPerLogSlipForce] = law.slip_force * (t - g[kRate]);
-      row[kPerUnloadedDisplacement] = law.slip_force * g[kUnloaded];
-      row[kPerLogSeriesStiffness] = 0.0;
-      if constexpr (differentiation.kSprung) {  // c = Tc/k_r
-        row[kPerLogSlipForce] += law.slip_force * g[kSpring];
-        row[kPerLogSeriesStiffness] = -law.slip_force * g[kSpring];
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -95,21 +62,6 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
       EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
                   displacement.subspan(run.begin, count), force.subspan(run.begin, count));
     }
-  });
-}
-
-void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
-                              const LoadingPath& path, std::span<const double> displacement,
-                              std::span<double> force, std::span<double> gradient,
-                              const SeriesSpring& rig) {
-  Validate(law);
-  RequireSizes(path, displacement, force);
-  RequireSameSize("gradient", gradient.size(), "displacement times gradient columns",
-                  displacement.size() * kGradientColumns);
-  const double travel = models::IsRigid(rig) ? 0.0 : models::SpringTravel(model, law, rig);
-  WithDifferentiableShape(law.shape_exponent, travel, [&](const auto& shape) {
-    EvaluateWithGradient(model, law, path, BranchScaling(model, law, travel), shape, displacement,
-                         force, gradient);
   });
 }
 

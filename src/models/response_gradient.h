@@ -63,13 +63,7 @@ class Differentiation {
   Differentiation(const BranchScaling& scaling, const BranchLaw& law, const Shape& shape)
       : scaling_(scaling), shape_(shape), shape_exponent_(law.shape_exponent) {}
 
-  /// Returns the derivatives of every branch of `scaled`, which ScaleBranches made.
-  std::vector<BranchGradient> Differentiate(const LoadingPath& path,
-                                            const ScaledBranches& scaled) const {
-    std::vector<BranchGradient> gradients;
-    Differentiate(path, scaled, gradients);
-    return gradients;
-  }
+  /// Writes the derivatives of every branch of `scaled`, which ScaleBranches made.
   void Differentiate(const LoadingPath& path, const ScaledBranches& scaled,
                      std::vector<BranchGradient>& gradients) const {
     gradients.clear();

@@ -4,6 +4,7 @@
 #include <cfenv>
 
 #include "../../tools/reference/box.h"
+#include "../../tools/reference/force_and_gradient.h"
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"

@@ -1,10 +1,11 @@
-// EvaluateForceAndGradient against central differences of the literal laws at 100 digits.
+// The gradients of fits against central differences of the literal laws at 100 digits.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <ostream>
 #include <tuple>
 
 #include "../../tools/reference/exact_history.h"
+#include "../../tools/reference/force_and_gradient.h"
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"

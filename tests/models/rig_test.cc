@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "../../tools/reference/exact_history.h"
+#include "../../tools/reference/force_and_gradient.h"
 #include "../support/histories.h"
 #include "../support/worst.h"
 #include "mindahl/models/backbone.h"

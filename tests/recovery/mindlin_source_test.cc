@@ -1,6 +1,7 @@
 
 #include <tuple>
 
+#include "contact/printed_equations.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "recovery/recovered.h"

@@ -3,7 +3,7 @@
 set terminal pngcairo size 1100,900 font "sans,12" enhanced
 set output image
 functions = "'BackboneForce double' 'SteadyLoopEnergy, Masing double' 'EvaluateForce double' \
-'…AndGradient, α double'"
+'NormalizedResponse, α double'"
 titles = "'f(x), scalar' 'W, Masing loop' 'T, response' '∂T/∂α (of Tc)'"
 exponents = "'0' '10^{-300}' '10^{-16}' '10^{-8}' '0.1' '1/3' '1/2' '1−10^{-8}' '1−10^{-15}' '1' \
 '1+10^{-15}' '1+10^{-8}' '2' '10' '100'"

@@ -10,6 +10,7 @@
 
 #include "../reference/box.h"
 #include "../reference/exact_branch_law.h"
+#include "../reference/force_and_gradient.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
@@ -203,26 +204,26 @@ inline std::vector<Measurement> Measurements() {
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginForce(law, x), exact.force);
        }},
-      {"…AndGradient, force", "value", 6.0,
+      {"NormalizedResponse, force", "value", 6.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginGradient(law, x).force, exact.force);
        }},
-      {"…AndGradient, ln σ", "Tc", 16.0,
+      {"NormalizedResponse, ln σ", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogStiffness],
                               exact, &Exact::per_log_stiffness, law.slip_force);
        }},
-      {"…AndGradient, α", "Tc", 16.0,
+      {"NormalizedResponse, α", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerShapeExponent],
                               exact, &Exact::per_shape, law.slip_force);
        }},
-      {"…AndGradient, ln Tc", "Tc", 16.0,
+      {"NormalizedResponse, ln Tc", "Tc", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogSlipForce],
                               exact, &Exact::per_log_slip_force, law.slip_force);
        }},
-      {"…AndGradient, δ₀", "σ", 16.0,
+      {"NormalizedResponse, δ₀", "σ", 32.0,
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return GradientError(law, x,
                               -VirginGradient(law, x).gradient[models::kPerUnloadedDisplacement],

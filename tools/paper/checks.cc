@@ -10,6 +10,8 @@
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/steady_loop.h"
 #include "responses.h"
 
 namespace mindahl::paper {

@@ -31,7 +31,6 @@ FrictionModel PrintedFullDahl() {
   FrictionModel model = Model("simplified-dahl");
   model.name = "full-dahl";
   model.title = "Full-Dahl as printed, with a T* from outside";
-  model.source = "Peyret et al. (2017) eqs 26, 27";
   model.scale = FullDahlScale;
   return model;
 }

@@ -44,9 +44,13 @@ struct OriginSensitivity {
   std::vector<double> sample_gain;   ///< derivative by t at the origin of its branch
 };
 
-/// EvaluateForce and its gradient over Tc (response.h has the equations and the accuracy), for
-/// solvers: columns instead of rows, and buffers that are kept, so that nothing is allocated once
-/// they are large enough. Tc itself and all other linear terms are the caller's.
+/// EvaluateForce (response.h has the equations) over Tc, and its gradient in closed form, for
+/// solvers: buffers are kept, so that nothing is allocated once they are large enough. Tc itself
+/// and all other linear terms are the caller's. Where the law has a corner (α = 0 at slip) the
+/// derivatives are those of the slipping side; that by δ₀ keeps the amplitude that a peak-scaled
+/// model refers to. On the virgin curve the error is below 6 ε of the force, and below 32 ε of 1,
+/// by δ₀ of κ, to what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound
+/// next to slip.
 class NormalizedResponse {
  public:
   NormalizedResponse();

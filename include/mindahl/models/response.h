@@ -52,26 +52,6 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig = {});
 
-/// Columns of the gradient that EvaluateForceAndGradient writes.
-enum GradientColumn : std::size_t {
-  kPerLogStiffness = 0,   ///< ∂T/∂ln σ [N]
-  kPerShapeExponent = 1,  ///< ∂T/∂α [N]
-  kPerLogSlipForce = 2,   ///< ∂T/∂ln Tc [N]
-  kPerUnloadedDisplacement = 3,  ///< ∂T/∂δ₀ [N/m], δ₀ the unloaded displacement of a virgin contact
-  kPerLogSeriesStiffness = 4,  ///< ∂T/∂ln k_r [N]; 0 for a rigid rig
-  kGradientColumns = 5,
-};
-
-/// Computes the force with closed-form derivatives. Where the law has a corner (α = 0 at slip) they
-/// are those of the slipping side. On the virgin curve the error is below 16 ε of Tc, of ∂T/∂δ₀ of
-/// σ, to what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound next to
-/// slip. ∂T/∂δ₀ keeps the amplitude that a peak-scaled model refers to.
-/// @param gradient  written, row-major, displacement.size() × kGradientColumns
-void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
-                              const LoadingPath& path, std::span<const double> displacement,
-                              std::span<double> force, std::span<double> gradient,
-                              const SeriesSpring& rig = {});
-
 /// Computes the tangential displacement [m] of a contact at each sample of an imposed force: exact,
 /// no time step, the inverse of EvaluateForce for a contact that starts unloaded, T = 0 at δ = 0.
 ///
