@@ -57,7 +57,7 @@ std::string ShellWord(std::string_view word) {
 
 std::string CommandLine(int argc, const char* const* argv) {
   std::string line = "mindahl";
-  for (int i = 1; i < argc; ++i) line += " " + ShellWord(argv[i]);
+  for (int i = 1; i < argc; ++i) line.append(" ").append(ShellWord(argv[i]));
   return line;
 }
 
