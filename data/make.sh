@@ -14,7 +14,7 @@ contact="--model mindlin --normal-load 50 --friction 0.3
 loop() { "$mindahl" simulate $contact --samples-per-cycle 200 --noise-force 0.075 "$@"; }
 
 # The first cycle and a fifth of the second are left out.
-loop --lambda 1.2 --cycles 4 --seed 11 | awk 'NR == 1 || NR > 242' >"$folder/steady.csv"
+loop --lambda 1.2 --cycles 4 --seed 31 | awk 'NR == 1 || NR > 242' >"$folder/steady.csv"
 
 # A load cell on the other body.
 loop --lambda 1.2 --cycles 3 --seed 12 | awk -F, -v OFS=, '

@@ -17,7 +17,6 @@ struct Console {
   std::ostream& err;  // messages and progress
   int exit_status = 0;
   std::vector<std::string> inputs = {};  // files that were read already: the configuration
-  bool has_colours = false;              // results are read on a terminal that shows them
   std::string command_line = {};         // as a shell takes it
 };
 

@@ -60,7 +60,7 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
   if (options.json_path != "-") {
     console.out << report::ToText(
-        report, {.has_colours = console.has_colours, .has_details = options.has_details});
+        report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
   } else {
     const Messages messages{console.err, "fit"};
     for (const std::string& note : report.notes) messages.Note(note);

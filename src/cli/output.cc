@@ -2,27 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "core/platform.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 
 namespace mindahl::cli {
-
-bool HasColours(const std::ostream& results) {
-  if (&results != &std::cout || !IsTerminal(Stream::kOutput)) return false;
-  const char* const no_colour = std::getenv("NO_COLOR");
-  if (no_colour != nullptr && *no_colour != '\0') return false;
-  const char* const terminal = std::getenv("TERM");
-  return terminal != nullptr && std::string_view(terminal) != "dumb";
-}
 
 void WriteText(std::string_view text, const std::string& path, Console& console) {
   if (path == "-") {

@@ -11,10 +11,6 @@
 
 namespace mindahl::cli {
 
-/// True if results are shown by a terminal that has colours: the stream is standard output and a
-/// terminal, TERM is not `dumb`, and NO_COLOR is not set (https://no-color.org).
-bool HasColours(const std::ostream& results);
-
 /// Writes to a file, whole or not at all, or to standard output for "-".
 /// @throws InputError when the file cannot be written
 void WriteText(std::string_view text, const std::string& path, Console& console);

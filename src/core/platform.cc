@@ -21,17 +21,9 @@ extern char** environ;  // macOS has it in no header
 namespace mindahl {
 namespace {
 
-int NumberOf(Stream stream) {
-  return stream == Stream::kInput    ? STDIN_FILENO
-         : stream == Stream::kOutput ? STDOUT_FILENO
-                                     : STDERR_FILENO;
-}
-
 constexpr std::uintmax_t kUnknown = std::numeric_limits<std::uintmax_t>::max();
 
 }  // namespace
-
-bool IsTerminal(Stream stream) { return ::isatty(NumberOf(stream)) != 0; }
 
 void WriteMessage(std::string_view text) {
   while (!text.empty()) {

@@ -11,10 +11,6 @@ namespace mindahl {
 // anew. Only that file includes headers of POSIX; instruction_sets.h has what compilers differ in.
 // Functions that return an error return errno's value, 0 where there is none.
 
-enum class Stream { kInput, kOutput, kMessages };
-
-/// True if a person sees what is written there.
-bool IsTerminal(Stream stream);
 /// Writes past all buffers; a failure is ignored. A signal handler may call it.
 void WriteMessage(std::string_view text);
 /// Opens nothing in the place of a standard stream that whoever started the program had closed: the

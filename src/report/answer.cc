@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mindahl/identification/model_comparison.h"
+#include "mindahl/identification/terms.h"
 #include "report/fields.h"
 #include "report/names.h"
 
@@ -74,6 +75,7 @@ class Writer {
     AddShape();
     AddLoad();
     AddTerms();
+    AddColumnsNotTried();
     AddLaw();
     Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
     AddMeasured();
@@ -209,12 +211,8 @@ class Writer {
   void AddLoad() {
     const ParameterEstimate* exponent = fit_.Find("load_exponent");
     if (exponent == nullptr) return;
-    std::vector<std::string> fits;
-    for (const LoadHypothesis& hypothesis : report_.load_hypotheses) {
-      if (hypothesis.p_value && *hypothesis.p_value >= kSignificance) {
-        fits.push_back(fmt::format("{} ({:.3g})", hypothesis.name, hypothesis.exponent));
-      }
-    }
+    const std::vector<std::string> fits =
+        report_.is_torsional() ? std::vector<std::string>() : TheoriesOfLoad(fit_);
     AddParameter("load", "σ ∝ N^p, p", *exponent, {},
                  {fits.empty() ? "" : fmt::format("as {}", fmt::join(fits, ", ")),
                   fmt::format("σ and Tc are at the mean of {} loads", fit_.records.size())});
@@ -231,6 +229,20 @@ class Writer {
       terms.push_back(std::move(text));
     }
     Add("terms", fmt::format("{}", fmt::join(terms, ", ")));
+  }
+
+  /// Says which columns the choice of terms took for repeats of another: one may be the cause.
+  void AddColumnsNotTried() {
+    if (!report_.terms) return;
+    std::vector<std::string> columns;
+    for (const identification::ConsideredTerm& term : report_.terms->considered) {
+      if (term.obstacle != "same_channel") continue;
+      columns.push_back(term.name.substr(identification::NameOfCovariate("").size()));
+    }
+    if (columns.empty()) return;
+    Add("not tried", fmt::format("column{} {}, as it moves like another: --covariate COL if one "
+                                 "causes the force",
+                                 columns.size() == 1 ? "" : "s", fmt::join(columns, ", ")));
   }
 
   void AddLaw() {
@@ -278,6 +290,10 @@ class Writer {
       parts.push_back(fmt::format("{} cycle{}", widest.measures.cycles,
                                   widest.measures.cycles == 1 ? "" : "s"));
       if (loop::Slides(facts)) parts.emplace_back("it slides");
+      const loop::PreparationOptions& selected = report_.options.preparation;
+      if (selected.cycles || selected.samples || selected.load_window) {
+        parts.emplace_back("of the whole record");
+      }
     } else {
       parts.push_back("±" + Quantity(widest.measures.amplitude, units.displacement, 4));
       parts.push_back("±" + Quantity(widest.measures.peak_force, units.force, 4));
@@ -307,10 +323,8 @@ class Writer {
   }
 
   void AddNext() {
-    const NextStep& next = *report_.next;
-    Add("next", fmt::format("{}: {}misfit {:.2g} → {:.2g} % of the half gap (tried)", next.options,
-                            next.text.empty() ? "" : next.text + ", ", 100 * next.misfit_before,
-                            100 * next.misfit_after));
+    Add("next",
+        fmt::format("{}: {}", report_.next->options, NextStatement(report_, *report_.next)));
   }
 
   /// Says what else a person should act on: of the record, where the model is inadequate.
@@ -370,10 +384,7 @@ std::string MisfitStatement(const Report& report) {
   }
   std::string text = Quantity(adequacy.misfit, unit, 3);
   if (adequacy.misfit_over_half_gap) {
-    const double percent = 100 * *adequacy.misfit_over_half_gap;
-    constexpr double kWhole = 100.0;
-    text += percent < kWhole ? fmt::format(", {:.2g} % of the half gap", percent)
-                             : ", more than the half gap";
+    text += ", " + MisfitShare(report, *adequacy.misfit_over_half_gap);
   }
   if (IsAlikeInStrokes(fit)) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
@@ -401,9 +412,11 @@ std::vector<Line> DetailLines(const Report& report) {
                                         fit.has_mixed_states()
                                             ? std::string("initial states differ")
                                             : fmt::format("{} contact", Name(fit.initial_state)))});
+  const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
     const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
-    if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing) continue;
+    const bool is_said = std::ranges::find(terms, &estimate) != terms.end();
+    if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
   }
   for (const char* section : {"adequacy", "residuals", "solver"}) {
@@ -420,11 +433,6 @@ std::vector<Line> DetailLines(const Report& report) {
                                                std::min(100.0, 100 * cause.explains))});
   }
   if (report.alpha.p_value) lines.push_back({"α = 1/3", ChanceText(*report.alpha.p_value)});
-  for (const LoadHypothesis& hypothesis : report.load_hypotheses) {
-    if (!hypothesis.p_value) continue;
-    lines.push_back({fmt::format("p = {:.3g}", hypothesis.exponent),
-                     fmt::format("{}: {}", hypothesis.name, ChanceText(*hypothesis.p_value))});
-  }
   if (report.terms) {
     for (const identification::ConsideredTerm& term : report.terms->considered) {
       constexpr double kWorthSaying = 0.01;

@@ -27,9 +27,7 @@ Json LinesData(std::string_view caption, const std::vector<Line>& lines) {
 Json NextData(const Report& report, const Provenance& provenance) {
   if (!report.next) return nullptr;
   const std::string command = provenance.command.empty() ? "mindahl fit FILE" : provenance.command;
-  return {{"text", fmt::format("{}{}misfit {:.2g} → {:.2g} % of the half gap (tried):",
-                               report.next->text, report.next->text.empty() ? "" : ", ",
-                               100 * report.next->misfit_before, 100 * report.next->misfit_after)},
+  return {{"text", NextStatement(report, *report.next) + ':'},
           {"command", fmt::format("{} {}", command, report.next->options)}};
 }
 

@@ -212,7 +212,6 @@ Report MakeReport(ReportInput input) {
     if (!report.is_torsional()) {
       report.alpha = TestAlpha(report.fit);
       report.contact = DescribeContact(report.fit, report.known);
-      report.load_hypotheses = TestLoadExponent(report.fit);
     }
     report.check = WhatToCheck(report);
     // No term repairs a fit that mixes up loads or units.

@@ -33,7 +33,8 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"glitches_left_out", "measurement faults are left out"},
     {"path_too_long",
      "the path is far longer than the strokes: noise is taken for motion; give --reversal-gate"},
-    {"no_closed_cycle", "no cycle is closed: record one and a half cycles or more"},
+    {"no_closed_cycle",
+     "no cycle ends where it began: record one and a half or more of one amplitude"},
     {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},
     {"load_not_followed",
      "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
@@ -108,7 +109,7 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
   if (colon != std::string_view::npos) {
     return Quantity(number, UnitOf(place.substr(colon + 1), units), 3);
   }
-  if (is_percent) return fmt::format("{} %", Quantity(100 * std::max(number, 0.0), "-", 2));
+  if (is_percent) return PercentText(std::max(number, 0.0));
   return number == std::round(number) ? fmt::format("{:.0f}", number)
                                       : fmt::format("{:.2g}", number);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "mindahl/core/error.h"
@@ -75,6 +76,43 @@ std::string ValueText(const ParameterEstimate& estimate) {
 
 std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {
   return fmt::format("{} {}", symbol, ValueText(estimate));
+}
+
+std::string PercentText(double share) {
+  constexpr double kLeast = 1e-4;
+  if (share > 0 && share < kLeast) return "< 0.01 %";
+  return fmt::format("{} %", Quantity(100 * share, "-", 2));
+}
+
+namespace {
+
+/// What a misfit is compared with, and over the half gap.
+struct MisfitScale {
+  std::string_view name;
+  double over_half_gap = 1.0;
+};
+
+MisfitScale ScaleOf(const Report& report) {
+  const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
+  const double peak_force = report.fit.PeakForce();
+  if (!facts.half_gap || loop::Slides(facts) || !(peak_force > 0)) return {"half gap"};
+  return {"peak force", peak_force / std::abs(*facts.half_gap)};
+}
+
+}  // namespace
+
+std::string MisfitShare(const Report& report, double over_half_gap) {
+  const MisfitScale scale = ScaleOf(report);
+  const double share = over_half_gap / scale.over_half_gap;
+  if (share >= 1) return fmt::format("more than the {}", scale.name);
+  return fmt::format("{} of the {}", PercentText(share), scale.name);
+}
+
+std::string NextStatement(const Report& report, const NextStep& next) {
+  const double scale = ScaleOf(report).over_half_gap;
+  return fmt::format("{}{}misfit {} → {} (tried)", next.text, next.text.empty() ? "" : ", ",
+                     PercentText(next.misfit_before / scale),
+                     MisfitShare(report, next.misfit_after));
 }
 
 std::string ChanceText(double p_value, int digits) {

@@ -43,6 +43,18 @@ std::string ValueText(const identification::ParameterEstimate& estimate);
 std::string ParameterText(std::string_view symbol,
                           const identification::ParameterEstimate& estimate);
 
+/// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
+std::string PercentText(double share);
+
+/// Says a misfit as it was judged: over the half gap of a loop that slides, else over the peak
+/// force.
+/// @param over_half_gap  as Adequacy::misfit_over_half_gap
+/// @returns "5.6 % of the half gap", "more than the half gap"
+std::string MisfitShare(const Report& report, double over_half_gap);
+
+/// Says what the next step would do: "a lag, misfit 5.6 % → 2.1 % of the half gap (tried)".
+std::string NextStatement(const Report& report, const NextStep& next);
+
 /// Returns "p = 0.012" of two digits; no p-value is 0.
 std::string ChanceText(double p_value, int digits = 3);
 

@@ -1,8 +1,5 @@
 #include "core/text.h"
 
-#include <fmt/color.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -54,31 +51,22 @@ std::string Wrapped(std::string_view text) {
   return wrapped;
 }
 
-std::string Coloured(const std::string& label, Judgement judgement) {
-  using enum fmt::terminal_color;
-  if (judgement == Judgement::kNone) return label;
-  const auto colour = judgement == Judgement::kGood   ? green
-                      : judgement == Judgement::kPoor ? yellow
-                                                      : red;
-  return fmt::format(fmt::fg(colour), "{}", label);
-}
-
-std::string LinesText(const std::vector<Line>& lines, bool has_colours) {
+std::string LinesText(const std::vector<Line>& lines) {
   std::string text;
   for (const Line& line : lines) {
     const std::size_t width = CharactersIn(line.label);
-    text += has_colours ? Coloured(line.label, line.judgement) : line.label;
-    text += std::string(width < kLabel ? kLabel - width : 1, ' ') + Wrapped(line.text) + '\n';
+    text += line.label + std::string(width < kLabel ? kLabel - width : 1, ' ') +
+            Wrapped(line.text) + '\n';
   }
   return text;
 }
 
 }  // namespace
 
-std::string ToText(const Report& report, const TextOptions& options) {
+std::string ToText(const Report& report, Detail detail) {
   RequireFitted(report, "a text");
-  std::string text = LinesText(AnswerLines(report), options.has_colours);
-  if (options.has_details) text += '\n' + LinesText(DetailLines(report), false);
+  std::string text = LinesText(AnswerLines(report));
+  if (detail == Detail::kAll) text += '\n' + LinesText(DetailLines(report));
   return text;
 }
 

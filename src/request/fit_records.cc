@@ -258,6 +258,18 @@ AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
   return asked;
 }
 
+/// Takes back a preference for the law that the program did not choose.
+/// @returns true where there was one
+bool WithdrawPreference(FitResult& fit) {
+  if (!fit.law_choice || fit.law_choice->preferred != fit.law_choice->alternative) return false;
+  fit.law_choice->decided = false;
+  fit.law_choice->preferred = nullptr;
+  std::erase_if(fit.findings, [](const identification::Finding& finding) {
+    return finding.code == "other_law_fits_better";
+  });
+  return true;
+}
+
 /// Makes the requested fit; with `--model auto` by Masing's law or, where the record supports it,
 /// by Dahl's own. Terms are chosen for the law that is better without them.
 AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
@@ -270,12 +282,19 @@ AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
-    if (other.fit.converged) asked = std::move(other);
+    if (other.fit.converged) {
+      asked = std::move(other);
+    } else {
+      WithdrawPreference(asked.fit);
+    }
   }
   if (!chooses_terms) return asked;
   FitOptions of_law = options;
   of_law.model = asked.options.model;
-  return FitLaw(request, of_law, records, chooses_terms);
+  asked = FitLaw(request, of_law, records, chooses_terms);
+  // The law was chosen before the terms: of the other one with them nothing is said.
+  if (WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
+  return asked;
 }
 
 /// Adds a term to a request for the law alone.
@@ -333,13 +352,21 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   std::optional<report::NextStep> best;
+  // A rig that cannot be told from the law is to be measured.
+  const bool measures_rig = fit.FindFinding("shape_or_rig") != nullptr;
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
+    if (measures_rig && name == "rig_stiffness") continue;
     FitRequest with = request;
     report::NextStep step{.text = name,
                           .options = AddTermTo(with, name, records),
                           .misfit_before = *before,
                           .misfit_after = *before};
     if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
+    // With the term another law may be the better one, and miss otherwise.
+    if (request.model == kAutomatic) {
+      const bool is_dahl = options.model != nullptr && options.model->name == "dahl";
+      step.options += is_dahl ? " --model dahl" : " --model mindlin-dahl";
+    }
     try {
       FitOptions tried = MakeFitOptions(with);
       tried.preparation = options.preparation;

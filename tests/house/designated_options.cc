@@ -36,7 +36,6 @@ const loop::PreparationOptions kPreparation{.cycles = loop::CountRange{.first = 
 const loop::Record kRecord{.displacement = {0.0, 1.0}, .force = {0.0, 1.0}};
 const models::ContactStateOptions kState{.unloaded_displacement = 1e-6};
 const models::ExcitationOptions kExcitation{.cycles = 2.0};
-const report::TextOptions kText{.has_details = true};
 const request::ContactOptions kContactOptions{.friction_coefficient = {}};
 const request::FitRequest kRequest{.files = {"loop.csv"}};
 

@@ -21,7 +21,7 @@ using testing::MadeParameter;
 std::string Answer(ReportInput input) { return ToText(MakeReport(std::move(input))); }
 
 std::string Details(ReportInput input) {
-  return ToText(MakeReport(std::move(input)), {.has_details = true});
+  return ToText(MakeReport(std::move(input)), Detail::kAll);
 }
 
 /// Returns a line by its label; "" where there is none.
@@ -239,9 +239,51 @@ TEST(Answer, HasTheNextStepThatWasTried) {
                 .misfit_after = 0.021};
   EXPECT_EQ(
       LineOf(input, "next"),
-      "--terms slip_position: a slip force that depends on the position, misfit 5.6 → 2.1 % of "
+      "--terms slip_position: a slip force that depends on the position, misfit 5.6 % → 2.1 % of "
       "the half gap (tried)");
   EXPECT_EQ(LineOf(Doubtful(), "next"), "");
+}
+
+TEST(Answer, SaysNoShareBelowAHundredthOfAPerCent) {
+  ReportInput input = Doubtful();
+  input.fit.adequacy.misfit_over_half_gap = 3.4e-8;
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("< 0.01 % of the half gap"));
+}
+
+TEST(Answer, ComparesAMisfitWithThePeakForceWhereTheLoopDoesNotSlide) {
+  ReportInput input = Doubtful();
+  input.fit.records[0].facts = Facts(10.0);
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("5 % of the half gap"));
+  input.fit.records[0].facts.half_gap = 2.0;  // a fifth of T*: it was judged over that
+  input.fit.records[0].facts.energy_ratio = 0.1;
+  EXPECT_THAT(LineOf(input, "misfit"), HasSubstr("1 % of the peak force"));
+}
+
+TEST(Answer, HasATermOnceInAnswerAndDetails) {
+  ReportInput input = Doubtful();
+  input.fit.parameters.push_back(MadeParameter("viscous", "N s/m", 12.5, 0.5));
+  input.fit.correlation.assign(16, 0.0);
+  const std::string text = Details(input);
+  EXPECT_NE(text.find("viscous"), std::string::npos);
+  EXPECT_EQ(text.find("viscous"), text.rfind("viscous")) << text;
+}
+
+TEST(Answer, SaysThatTheMeasureIsOfTheWholeRecordWhereAPartIsFitted) {
+  ReportInput input = Doubtful();
+  input.fit.records[0].facts = Facts(10.0);
+  EXPECT_THAT(LineOf(input, "measured"), Not(HasSubstr("whole record")));
+  input.options.preparation.cycles = loop::CountRange{.first = 2, .last = 3};
+  EXPECT_THAT(LineOf(input, "measured"), EndsWith("of the whole record"));
+}
+
+TEST(Answer, NamesTheColumnsThatWereTakenForRepeats) {
+  ReportInput input = Doubtful();
+  input.terms.emplace();
+  identification::ConsideredTerm column;
+  column.name = "covariate_6";
+  column.obstacle = "same_channel";
+  input.terms->considered = {column};
+  EXPECT_THAT(LineOf(input, "not tried"), StartsWith("column 6, as it moves like another"));
 }
 
 TEST(Answer, HasNoFractionAboveTheWhole) {

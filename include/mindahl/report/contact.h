@@ -47,26 +47,18 @@ struct AlphaTest {
 };
 AlphaTest TestAlpha(const identification::FitResult& fit);
 
-/// Compares a theory of how the stiffness follows the load, σ ∝ N^p, with the fitted exponent.
-struct LoadHypothesis {
-  std::string_view name;               ///< "smooth sphere (Hertz)"
-  double exponent = 0.0;               ///< predicted p
-  std::optional<double> p_value = {};  ///< two-sided; empty where p was held or is not identifiable
-};
+/// Returns the theories of docs/theory.md §9 of how the stiffness follows the load, σ ∝ N^p, whose
+/// exponent lies within the interval of the fitted one, "smooth sphere (0.333)"; none where the
+/// records have one load, or it is open.
+std::vector<std::string> TheoriesOfLoad(const identification::FitResult& fit);
 
-/// Returns the theories of docs/theory.md §9; empty where the records have one load.
-std::vector<LoadHypothesis> TestLoadExponent(const identification::FitResult& fit);
-
-/// True if a load series denies Hertz's law: p = 1/3 is rejected, or p was held at another value.
-/// Then no ρ and no pressure follow from a contact radius.
+/// True if a load series denies Hertz's law: 1/3 lies outside the interval of p, or p was held at
+/// another value. Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
 
 /// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip; of a law with
 /// α >= 1, which never quite does, 99 % of its slip force.
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
                   double contact_amplitude);
-
-/// Significance at which tests are called rejected in words: the usual convention.
-inline constexpr double kSignificance = 0.05;
 
 }  // namespace mindahl::report

@@ -64,8 +64,7 @@ struct Report : ReportInput {
   Units units;                           ///< units of all numbers in words
   std::vector<ContactQuantity> contact;  ///< empty where the fit failed, and of a torque
   AlphaTest alpha;
-  std::vector<LoadHypothesis> load_hypotheses;  ///< empty where the records have one load
-  std::vector<Warning> warnings;                ///< on which a person should act
+  std::vector<Warning> warnings;  ///< on which a person should act
   /// Names a unit or a load that is most likely wrong, to look at first; "" where none is.
   std::string check;
 
@@ -84,15 +83,13 @@ struct Report : ReportInput {
 ///   and as DescribeContact()
 Report MakeReport(ReportInput input);
 
-struct TextOptions {
-  bool has_colours = false;  ///< escape sequences of a terminal around the labels
-  bool has_details = false;  ///< adds what the answer leaves out
-};
+/// What a text has: the answer alone, or also what that leaves out.
+enum class Detail { kAnswer, kAll };
 
 /// Returns the answer for people, one line a quantity, each with one uncertainty: its interval.
 /// UTF-8, at most 100 columns.
 /// @throws InvalidArgument for a fit that failed
-std::string ToText(const Report& report, const TextOptions& options = {});
+std::string ToText(const Report& report, Detail detail = Detail::kAnswer);
 
 /// Returns the JSON of schema mindahl.fit/2, as `mindahl fit --json` writes it, with the end of
 /// line: docs/contract.md. UTF-8; bytes of a file name that are not are replaced.
