@@ -53,7 +53,7 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
   others.model = &other;
   others.start.clear();
   for (const ParameterEstimate& estimate : fit.parameters) {
-    if (estimate.status != ParameterStatus::kFixed) others.start[estimate.name] = estimate.value;
+    if (estimate.status == ParameterStatus::kFree) others.start[estimate.name] = estimate.value;
   }
   others.start["sigma"] = law.tangential_stiffness;
   others.start["slip_force"] = law.slip_force;

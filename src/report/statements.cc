@@ -95,7 +95,8 @@ struct MisfitScale {
 MisfitScale ScaleOf(const Report& report) {
   const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
   const double peak_force = report.fit.PeakForce();
-  if (!facts.half_gap || loop::Slides(facts) || !(peak_force > 0)) return {"half gap"};
+  if (!facts.half_gap || loop::Slides(facts) || loop::ReachesSlip(facts) || !(peak_force > 0))
+    return {"half gap"};
   return {"peak force", peak_force / std::abs(*facts.half_gap)};
 }
 

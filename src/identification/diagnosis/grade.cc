@@ -63,7 +63,8 @@ double ScaleOfMisfit(const FitResult& result) {
   const RecordFit& widest = result.WidestRecord();
   if (result.response == loop::Channel::kDisplacement) return widest.measures.amplitude;
   const std::optional<double> half_gap = MeasuredHalfGap(result);
-  if (half_gap && loop::Slides(widest.facts)) return *half_gap;
+  const bool slips = loop::Slides(widest.facts) || loop::ReachesSlip(widest.facts);
+  if (half_gap && slips) return *half_gap;
   return result.PeakForce();
 }
 

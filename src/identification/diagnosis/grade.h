@@ -34,8 +34,8 @@ std::optional<FitOptions> WithinMeasuredForce(const loop::LoopFacts& facts, doub
 /// load of all; empty in a fit of the displacement, and where none was measured or it is not > 0.
 std::optional<double> MeasuredHalfGap(const FitResult& result);
 
-/// Returns what a misfit is held against [N or m]: the half gap of a loop that slides, else T*; of
-/// a displacement its amplitude.
+/// Returns what a misfit is held against [N or m]: the half gap of a loop that slides or reaches
+/// slip, else T*; of a displacement its amplitude.
 double ScaleOfMisfit(const FitResult& result);
 
 /// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the

@@ -59,16 +59,16 @@ class HeldParameter {
 /// @param root_at  the root at a step
 template <typename RootAt>
 std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
-  constexpr int kMostLooks = 12;
+  constexpr int kMostLooks = 24;
   constexpr double kClose = 0.01;       // of the root of F over the critical one
-  constexpr double kLeastGrowth = 0.3;  // the next step is at most 1/0.3 times the last
+  constexpr double kLeastGrowth = 0.1;  // the next step is at most ten times the last
   double inside = 0.0;
   double root_inside = 0.0;
   std::optional<double> outside;
   double root_outside = 0.0;
   for (int look = 0; look < kMostLooks; ++look) {
     const double root = root_at(step);
-    if (std::abs(root - 1) < kClose) break;
+    if (std::abs(root - 1) < kClose) return step;
     if (root < 1) {
       inside = step;
       root_inside = root;
@@ -85,7 +85,7 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
       step = std::min(step / std::max(root, kLeastGrowth), limit);
     }
   }
-  return step;
+  return outside ? std::optional(step) : std::nullopt;
 }
 
 /// A start beside a solution: α/Tc is what a loop far from slip determines.
