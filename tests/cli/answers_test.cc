@@ -90,7 +90,7 @@ const std::vector<Answer> kAnswers = {
      {"N/m²"}},
     {"GravityOfAJointIsAForceOfPosition",
      {"fit", "@gravity.csv"},
-     {"--terms slip_position_quadratic: force and slip force that depend on the position"}},
+     {"--terms slip_position_quadratic --model mindlin-dahl: force and slip force that depend on"}},
 };
 
 class MisleadingAnswer : public ::testing::TestWithParam<Answer> {
