@@ -50,7 +50,8 @@ std::string ToJson(const ContactAnswer& contact) {
 std::string ToText(const ContactAnswer& contact) {
   Json rows = SectionOf(contact, "contact");
   rows.update(SectionOf(contact, "parameters"));
-  return report::TableText(rows);
+  constexpr int kEveryDigit = 17;
+  return report::TableText(rows, kEveryDigit);
 }
 
 void RunContact(const ContactCommandOptions& options, Console& console) {

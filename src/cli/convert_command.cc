@@ -206,10 +206,12 @@ std::string ToJson(const ConvertedContact& made) {
 }
 
 std::string ToText(const ConvertedContact& made) {
+  constexpr int kDigits = 8;
   const auto& within = made.conversion.within;
   return fmt::format(
       "{}; {}\n\n{}{}\n{}\n", made.target.title, ErrorAtAmplitude(made),
-      report::TableText(ParametersJson(made)), report::TableText(ElementsJson(made)),
+      report::TableText(ParametersJson(made), kDigits),
+      report::TableText(ElementsJson(made), kDigits),
       within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
                            Percent(made.options.tolerance), within->lower, within->upper)
              : fmt::format("not within {} at the amplitude", Percent(made.options.tolerance)));

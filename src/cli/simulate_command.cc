@@ -41,7 +41,7 @@ using tradeoff::Approximation;
 
 namespace {
 
-/// What is asked for the motion of a contact: a waveform, or a file.
+/// Holds what is asked for the motion of a contact: a waveform, or a file.
 struct DriveOptions {
   std::string waveform = "sine";
   std::optional<double> lambda;

@@ -191,7 +191,7 @@ std::string ToText(const Tradeoff& study) {
       text += fmt::format("and of the dissipated energy: {}\n",
                           ChoiceText(scene, scene.cheapest_with_energy));
     }
-    text += report::TableText(PointRows(scene));
+    text += report::TableText(PointRows(scene), 3);
   }
   return text;
 }

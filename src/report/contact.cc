@@ -44,12 +44,6 @@ std::optional<double> EndOf(const ParameterEstimate& estimate, End end) {
   return estimate.*end && *(estimate.*end) > 0 ? estimate.*end : std::nullopt;
 }
 
-/// True if a value lies outside the interval of a parameter.
-bool LiesOutside(const ParameterEstimate& estimate, double value) {
-  return (estimate.lower95 && *estimate.lower95 > value) ||
-         (estimate.upper95 && *estimate.upper95 < value);
-}
-
 /// Distances of the logarithm of a quantity from its value to where the ends of a parameter take
 /// it, of either sign; empty towards an end that is open.
 struct LogWays {
@@ -307,7 +301,8 @@ AlphaTest TestAlpha(const FitResult& fit) {
   constexpr double kThird = contact::kMindlinShapeExponent;
   test.minus_third = alpha.value - kThird;
   if (!alpha.is_known()) return test;
-  test.is_rejected = LiesOutside(alpha, kThird);
+  test.is_rejected =
+      (alpha.lower95 && *alpha.lower95 > kThird) || (alpha.upper95 && *alpha.upper95 < kThird);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {
     test.p_value = PValueOfT(*test.minus_third / error, fit.ErrorDegreesOfFreedom());
@@ -317,13 +312,16 @@ AlphaTest TestAlpha(const FitResult& fit) {
 
 namespace {
 
-/// True if a load series may follow σ ∝ N^p with that exponent: within the interval of the fitted
-/// one, or of what it is held at, as written with three digits.
-bool MayHaveExponent(const FitResult& fit, double exponent) {
+/// True if a load series may follow σ ∝ N^p with an exponent between two values: where the interval
+/// of the fitted one, or what it is held at, as written with three digits, reaches one of these.
+bool MayHaveExponent(const FitResult& fit, double least, double greatest) {
   constexpr double kWritten = 1e-3;
   const ParameterEstimate& fitted = *fit.Find("load_exponent");
-  if (fitted.status == ParameterStatus::kFixed) return std::abs(fitted.value - exponent) < kWritten;
-  return !fitted.is_known() || !LiesOutside(fitted, exponent);
+  if (fitted.status == ParameterStatus::kFixed) {
+    return fitted.value > least - kWritten && fitted.value < greatest + kWritten;
+  }
+  return !fitted.is_known() || !((fitted.lower95 && *fitted.lower95 > greatest) ||
+                                 (fitted.upper95 && *fitted.upper95 < least));
 }
 
 }  // namespace
@@ -331,19 +329,25 @@ bool MayHaveExponent(const FitResult& fit, double exponent) {
 std::vector<std::string> TheoriesOfLoad(const FitResult& fit) {
   std::vector<std::string> theories;
   if (!fit.is_load_series() || !fit.Find("load_exponent")->is_known()) return theories;
-  for (const auto& [name, exponent] : {std::pair("smooth sphere", contact::kMindlinShapeExponent),
-                                       {"elements in parallel", fit.Find("alpha")->value},
-                                       {"cone", 0.5},
-                                       {"flat punch", 0.0},
-                                       {"rough surfaces", 1.0}}) {
-    if (MayHaveExponent(fit, exponent))
-      theories.push_back(fmt::format("{} ({:.3g})", name, exponent));
+  const auto add = [&](const char* name, double exponent, double least, double greatest) {
+    if (!MayHaveExponent(fit, least, greatest)) return;
+    theories.push_back(fmt::format("{} ({:.3g})", name, exponent));
+  };
+  constexpr double kThird = contact::kMindlinShapeExponent;
+  const ParameterEstimate& alpha = *fit.Find("alpha");
+  add("smooth sphere", kThird, kThird, kThird);
+  add("elements in parallel, α", alpha.value, alpha.lower95.value_or(alpha.value),
+      alpha.upper95.value_or(alpha.value));
+  for (const auto& [name, exponent] :
+       {std::pair("cone", 0.5), {"flat punch", 0.0}, {"rough surfaces", 1.0}}) {
+    add(name, exponent, exponent, exponent);
   }
   return theories;
 }
 
 bool DeniesHertz(const FitResult& fit) {
-  return fit.is_load_series() && !MayHaveExponent(fit, contact::kMindlinShapeExponent);
+  constexpr double kThird = contact::kMindlinShapeExponent;
+  return fit.is_load_series() && !MayHaveExponent(fit, kThird, kThird);
 }
 
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,

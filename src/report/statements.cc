@@ -86,7 +86,7 @@ std::string PercentText(double share) {
 
 namespace {
 
-/// What a misfit is compared with, and over the half gap.
+/// Says what a misfit is compared with.
 struct MisfitScale {
   std::string_view name;
   double over_half_gap = 1.0;
@@ -95,9 +95,11 @@ struct MisfitScale {
 MisfitScale ScaleOf(const Report& report) {
   const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
   const double peak_force = report.fit.PeakForce();
-  if (!facts.half_gap || loop::Slides(facts) || loop::ReachesSlip(facts) || !(peak_force > 0))
-    return {"half gap"};
-  return {"peak force", peak_force / std::abs(*facts.half_gap)};
+  if (!facts.half_gap) return {"half gap"};
+  const double half_gap = std::abs(*facts.half_gap);
+  constexpr double kNarrow = 0.5;  // of T*: such a loop does not slide, and is judged over T*
+  if (!(half_gap > 0) || half_gap > kNarrow * peak_force) return {"half gap"};
+  return {"peak force", peak_force / half_gap};
 }
 
 }  // namespace

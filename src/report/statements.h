@@ -46,8 +46,8 @@ std::string ParameterText(std::string_view symbol,
 /// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
 std::string PercentText(double share);
 
-/// Says a misfit as it was judged: over the half gap of a loop that slides, else over the peak
-/// force.
+/// Says a misfit over the half gap, of a loop that is narrower than half its peak force over that,
+/// as it was judged.
 /// @param over_half_gap  as Adequacy::misfit_over_half_gap
 /// @returns "5.6 % of the half gap", "more than the half gap"
 std::string MisfitShare(const Report& report, double over_half_gap);

@@ -59,14 +59,14 @@ void AddCell(std::string& line, const std::string& cell, std::size_t width, bool
 
 }  // namespace
 
-std::string CellText(const Json& value) {
+std::string CellText(const Json& value, int digits) {
   if (value.is_null()) return "-";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return fmt::format("{:.5g}", value.get<double>());
+  if (value.is_number_float()) return fmt::format("{:.{}g}", value.get<double>(), digits);
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-std::string TableText(const Json& rows) {
+std::string TableText(const Json& rows, int digits) {
   const std::vector<Cells> all = RowsOf(rows);
   if (all.empty()) return "";
   // Members that not every row has come last.
@@ -78,7 +78,7 @@ std::string TableText(const Json& rows) {
     bool is_right = false;
     std::size_t width = 0;
     for (const Cells& cells : all) {
-      column.push_back(c < cells.size() ? CellText(cells[c].second) : "");
+      column.push_back(c < cells.size() ? CellText(cells[c].second, digits) : "");
       width = std::max(width, CharactersIn(column.back()));
       is_right = is_right || (c < cells.size() && cells[c].second.is_number());
     }

@@ -11,11 +11,11 @@
 // CSV and page.
 namespace mindahl::report {
 
-/// Returns a cell for people: five digits of a number, "yes" or "no", "-" of null.
-std::string CellText(const Json& value);
+/// Returns a cell for people: a number, "yes" or "no", "-" of null.
+std::string CellText(const Json& value, int digits = 5);
 
 /// Returns the rows as aligned columns below their names; "" of none.
-std::string TableText(const Json& rows);
+std::string TableText(const Json& rows, int digits = 5);
 
 /// Returns the rows as CSV with every digit, nothing where a member is null.
 std::string TableCsv(const Json& rows);

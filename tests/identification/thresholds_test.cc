@@ -187,7 +187,7 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {
            const ParameterEstimates before = Made().parameters;
-           return IncludeRig({1e6, ratio * 1e6}, t, before)[kShape].lower95 !=
+           return IncludeRig({1e6, {ratio * 1e6, 1.0 / 3, 1.0}}, t, before)[kShape].lower95 !=
                   before[kShape].lower95;
          };
          return widens_alpha(kBelow * 30) && !widens_alpha(kAbove * 30);

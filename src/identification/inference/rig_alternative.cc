@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory_resource>
+#include <utility>
 
 #include "identification/inference/noise.h"
 
@@ -38,21 +39,23 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
-  return RigAlternative{
-      .rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-      .tangential_stiffness = sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
+  return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
+                        .law = sprung.problem.parameters.LawAt(solution.theta)};
 }
 
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
                               ParameterEstimates parameters) {
-  if (rig.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
+  const models::BranchLaw& law = rig.law;
+  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
     return parameters;
   }
   Include(parameters[kShape], {.lower = kMindlinExponent, .upper = kMindlinExponent});
-  ParameterEstimate& sigma = parameters[kStiffness];
-  const double ratio = rig.tangential_stiffness / sigma.value;
-  if (sigma.lower95 && sigma.upper95) {
-    Include(sigma, {.lower = ratio * *sigma.lower95, .upper = ratio * *sigma.upper95});
+  for (const auto& [p, value] :
+       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
+    ParameterEstimate& estimate = parameters[p];
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    const double ratio = value / estimate.value;
+    Include(estimate, {.lower = ratio * *estimate.lower95, .upper = ratio * *estimate.upper95});
   }
   return parameters;
 }

@@ -7,13 +7,14 @@
 #include "identification/solve/search.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::identification {
 
 /// Holds α = 1/3 in a compliant rig.
 struct RigAlternative {
-  double rig_stiffness = 0.0;         // [N/m]
-  double tangential_stiffness = 0.0;  // σ of the contact [N/m]
+  double rig_stiffness = 0.0;  // [N/m]
+  models::BranchLaw law;       // of the contact
 };
 
 /// A rig makes a loop more angular, as a smaller α does: where Mindlin's exponent lies above the
@@ -24,9 +25,9 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
                                      const ParameterEstimate& shape, const FitOptions& options,
                                      SearchBuffers& buffers);
 
-/// Includes in the intervals of σ and α those that they have in a compliant rig: the record does
-/// not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the same
-/// curve, no other α.
+/// Includes in the intervals of σ, α and Tc those that they have in a compliant rig: the record
+/// does not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the
+/// same curve, no other α.
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
                               ParameterEstimates parameters);
 
