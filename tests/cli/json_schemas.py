@@ -276,9 +276,9 @@ def check_outputs(program):
 CONTACT = {
     "schema": "mindahl.contact/1", "version": "0.1.0", "compliance_definition": "G*",
     "compliance_unit": "1/Pa",
-    "parameters": {name: {"value": 1.0, "standard_error": 0.0, "unit": "N"}
+    "parameters": {name: {"value": 1.0, "standard_error": 0.0, "unit": "N", "meaning": ""}
                    for name in ("sigma", "alpha", "slip_force")},
-    "contact": {name: {"value": 1.0, "standard_error": 0.0, "unit": "m"}
+    "contact": {name: {"value": 1.0, "standard_error": 0.0, "unit": "m", "meaning": ""}
                 for name in ("friction_coefficient", "normal_load", "compliance", "contact_radius",
                              "gross_slip_displacement")},
 }
