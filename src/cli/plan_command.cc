@@ -142,6 +142,7 @@ void SetExpectation(const PlanOptions& options, Plan& plan) {
           "--record excludes --sigma, --slip-force and other options that describe a contact");
     }
     ExpectFromRecord(options, plan);
+    for (std::string& note : plan.notes) note = fmt::format("{}: {}", options.record, note);
   } else {
     RequireNoColumns(options.columns);
     if (!options.force_noise) {

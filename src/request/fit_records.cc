@@ -352,10 +352,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   std::optional<report::NextStep> best;
-  // A rig that cannot be told from the law is to be measured.
-  const bool measures_rig = fit.FindFinding("shape_or_rig") != nullptr;
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
-    if (measures_rig && name == "rig_stiffness") continue;
     FitRequest with = request;
     report::NextStep step{.text = name,
                           .options = AddTermTo(with, name, records),
@@ -385,6 +382,9 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     if (best->misfit_after < kGoodEnough * *before) break;
   }
   if (!best || best->misfit_after > (1 - kLeastGain) * *before) return std::nullopt;
+  // A rig that cannot be told from the law is to be measured.
+  const bool is_rig = best->options.starts_with("--rig-stiffness");
+  if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
   return best;
 }
 

@@ -180,7 +180,7 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
     (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), "want: 'alpha=much' is no precision"),
     (lambda: mindahl.plan(**LAW, force_noise=1, initial_state="old"), "initial_state: 'old'"),
     (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' cannot be planned"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' is unknown"),
     (lambda: mindahl.command("tradeoff", excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
     (lambda: mindahl.command("validate", cases=0), "cases: '0' is invalid: must be a whole number from 1"),
     (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
