@@ -142,10 +142,14 @@ std::vector<ModelScore> CompareModels(std::span<const RecordView> records,
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     ModelScore& score = scores[i];
     if (!score.converged) continue;
-    const std::optional<double> mean_square =
-        PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
-                     score.free_parameters, samples, cycles, folds);
-    if (mean_square) score.held_out_rms = std::sqrt(*mean_square);
+    try {
+      const std::optional<double> mean_square =
+          PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
+                       score.free_parameters, samples, cycles, folds);
+      if (mean_square) score.held_out_rms = std::sqrt(*mean_square);
+    } catch (const InvalidArgument&) {
+      continue;  // a rig that ran rigid, beyond what the rest of the record can see
+    }
   }
   return scores;
 }
