@@ -25,7 +25,9 @@ std::vector<Cells> RowsOf(const Json& rows) {
       if (value.is_array()) continue;
       if (!value.is_object()) cells.emplace_back(name, value);
       if (!value.is_object()) continue;
-      for (const auto& [inner, cell] : value.items()) cells.emplace_back(name + '\n' + inner, cell);
+      for (const auto& [inner, cell] : value.items()) {
+        cells.emplace_back(fmt::format("{}\n{}", name, inner), cell);
+      }
     }
   }
   return all;
@@ -108,7 +110,8 @@ std::string TableCsv(const Json& rows) {
       if (value.is_null() || value == "") continue;
       line += value.is_number() ? value.dump() : io::CsvCell(CellText(value));
     }
-    text += text.empty() ? names + '\n' + line + '\n' : line + '\n';
+    if (text.empty()) text.append(names).append(1, '\n');
+    text.append(line).append(1, '\n');
   }
   return text;
 }
