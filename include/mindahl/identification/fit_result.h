@@ -61,7 +61,7 @@ enum class Depth {
                ///< and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
-  kFull,       ///< and tests of α and of the law: what the program asks for
+  kFull,       ///< and a rig in place of another α, and the other law: what the program asks for
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };

@@ -6,7 +6,6 @@
 
 #include "identification/inference/local.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/rig_alternative.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"

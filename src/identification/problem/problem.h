@@ -25,11 +25,6 @@ struct Problem {
   Parameters parameters;
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }
-  [[nodiscard]] Problem WithFixed(std::size_t parameter, double theta) const {
-    Problem copy = *this;
-    copy.parameters.Fix(parameter, theta);
-    return copy;
-  }
 };
 
 /// Holds what the normalized response t depends on, in units of the data: all but its factor.
