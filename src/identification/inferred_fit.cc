@@ -226,6 +226,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     if (!options.initial_state && options.initial_states.empty()) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
+    Append(result.findings, FindFewPlaces(problem, thresholds));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));

@@ -59,6 +59,9 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
      "the force keeps changing while the contact slides"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
+    {"few_places",
+     "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
+     "often"},
     {"unknown_past",
      "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
      "--initial-state virgin"},

@@ -57,6 +57,7 @@ inline constexpr auto kFindings = [] {
       {"slip_force_bounded_below", kBoundedBelow},
       {"alpha_limited_by_load", kBoundedBelow},
       {"search_limit", kNotIdentifiable},
+      {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
       {.code = "shape_or_rig", .severity = kNote},
       {.code = "prior_contradicted"},

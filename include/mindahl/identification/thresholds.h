@@ -33,6 +33,7 @@ struct Thresholds {
   double rival_cause = 0.5;
   double noise_memory = 0.5;
   double rival_past = 10.0;
+  double fewest_places = 16.0;
   double starts_unloaded = 0.02;
   double mobilised_by_asymptote = 0.9;
   double one_amplitude = 0.01;

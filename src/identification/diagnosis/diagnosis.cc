@@ -228,6 +228,45 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
   return finding;
 }
 
+std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
+  constexpr double kSamePlace = 0.005;  // of the range: closer samples say the same
+  std::size_t places = 0;
+  std::size_t samples = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    std::array<std::vector<double>, 2> ways;  // down, up
+    std::size_t turn = 0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      while (turn < record.reversals.size() && record.reversals[turn] < i) ++turn;
+      const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
+      if (record.counts[i] == 0 || is_inserted) continue;
+      const std::size_t end =
+          turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
+      const std::size_t begin = turn > 0 ? record.reversals[turn - 1] : 0;
+      const std::span<const double> excitation = record.excitation();
+      ways[excitation[end] > excitation[begin] ? 1 : 0].push_back(excitation[i]);
+      ++samples;
+    }
+    for (std::vector<double>& way : ways) {
+      std::ranges::sort(way);
+      double last = -std::numeric_limits<double>::infinity();
+      for (const double place : way) {
+        if (place - last <= 2 * kSamePlace) continue;  // the range is 2 in units of the data
+        ++places;
+        last = place;
+      }
+    }
+  }
+  // Few samples alone make wide intervals; these make narrow ones.
+  constexpr std::size_t kAgain = 2;
+  if (static_cast<double>(places) >= thresholds.fewest_places || samples < kAgain * places) {
+    return std::nullopt;
+  }
+  return Finding{.code = "few_places",
+                 .parameters = {"sigma", "alpha"},
+                 .numbers = {{"places", static_cast<double>(places)},
+                             {"samples", static_cast<double>(samples)}}};
+}
+
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
   const double r_squared = result.residuals.r_squared;
   // If a robust loss reduced the weight of readings, the variance is mostly theirs.

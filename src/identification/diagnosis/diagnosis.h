@@ -38,6 +38,10 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
 /// held, the offsets of the records in which it does not.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
+/// Samples that come back to the same few places of the loop in every cycle, however many they are:
+/// what lies between them, the turning points too, no cycle shows.
+std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
+
 /// A loop that is so small against the rest of the force that its shape and height are
 /// those of the rest.
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds);

@@ -95,6 +95,9 @@ constexpr std::array kTable = {
                  "one record of several is virgin, or steady, unlike the others if it gains more",
                  "evidence of e⁵ = 150 to 1: the two differ in a few samples only, where a single "
                  "odd reading decides"},
+    ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
+                 "if every cycle samples fewer, σ and α are not identifiable",
+                 "four each for σ, α, Tc and for where the motion turns between them"},
     ThresholdRow{"starts_unloaded", &Thresholds::starts_unloaded, "of X",
                  "a contact unloaded this near to the first sample was unloaded before it",
                  "the end of a record counts as a turning point within the same distance"},
