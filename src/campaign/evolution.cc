@@ -143,7 +143,7 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     if (!course.changed()) {
-      // What differs between the first and the last cycle is scatter.
+      // The first and the last cycle differ by scatter only, so one value stands for both.
       text += report::Quantity(course.first, evolution.unit, 3) + " throughout, but for scatter";
     } else {
       text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);

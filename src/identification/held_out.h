@@ -10,8 +10,8 @@
 
 namespace mindahl::identification {
 
-/// What fits are compared by: their residuals, and predictions of parts of records by fits to the
-/// rest.
+/// Two measures compare fits: the rms of their residuals, and the error with which a fit to one
+/// part of a record predicts the rest.
 
 /// One vector a record, one entry a sample, 1 where it counts.
 using SampleMask = std::vector<std::vector<unsigned char>>;

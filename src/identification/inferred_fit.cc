@@ -167,7 +167,8 @@ void UseProfiles(const FittedProblem& fitted, const FitOptions& options, SearchB
   const bool slips =
       result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
-  // Where only rounding is left, the parabola has the derivatives at a corner.
+  // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
+  // parabola is wrong.
   const double counted = static_cast<double>(fitted.problem.data->counted);
   const bool only_rounding = std::sqrt(fitted.solution.sum_of_squares / counted) < kOnlyRounding;
   std::vector<std::size_t> profiled;

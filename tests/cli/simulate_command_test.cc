@@ -3,7 +3,7 @@
 #include "mindahl/models/friction_model.h"
 #include "support/prelude.h"
 
-// What simulate takes from files, and adds.
+// These tests read a path from a file and simulate its loop with noise, rows and headers.
 namespace mindahl::cli::simulate_command_test {
 namespace {
 

@@ -93,7 +93,7 @@ TEST(WidenByOmittedTerms, MovesEachEndByTheStepAndTwiceItsError) {
     std::vector<ParameterEstimate> estimates(reported.size());
     const auto k =
         static_cast<std::size_t>(std::ranges::find(reported, parameter) - reported.begin());
-    // Of a union with nothing the part is left.
+    // The interval starts empty, so the union with it is the omitted term's part alone.
     estimates[k].lower95 = HUGE_VAL;
     estimates[k].upper95 = -HUGE_VAL;
     WidenByOmittedTerms(problem, solution, test, {}, kQuantile, estimates);

@@ -32,7 +32,7 @@ inline double Normal(Generator& generator) {  // Box and Muller
   return radius * std::cos(kTwoPi * Uniform(generator, 0, 1));
 }
 
-/// Of amplitude 1 and mean 0, samples at both ends.
+/// Returns a sine of amplitude 1 and mean 0, with a sample at each end.
 inline History Sine(double cycles, std::size_t samples_per_cycle, double phase = 0.0) {
   const auto per_cycle = static_cast<double>(samples_per_cycle);
   History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);

@@ -87,7 +87,8 @@ enum class ContactQuantity {
   /// and N, else of a given a and a known G*
   kStiffnessRatio,
   kHertzPressure,  ///< p₀ [Pa] of Hertz; needs E, ν and R of both bodies, and N
-  // Of a smooth sphere, whose stiffness follows the load as Hertz predicts, with known radii:
+  // The next three need a smooth sphere of known radius whose stiffness grows with the load as
+  // Hertz predicts:
   kSphereCompliance,        ///< G* [1/Pa] where it is not known
   kSphereEffectiveModulus,  ///< E* [Pa] where it is not known
   kSphereYoungsModulus,     ///< E [Pa] of the one body whose E is not known

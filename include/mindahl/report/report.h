@@ -83,7 +83,7 @@ struct Report : ReportInput {
 ///   and as DescribeContact()
 Report MakeReport(ReportInput input);
 
-/// What a text has: the answer alone, or also what that leaves out.
+/// How much ToText() prints: the answer, or every quantity and finding as well.
 enum class Detail { kAnswer, kAll };
 
 /// Returns the answer for people, one line a quantity, each with one uncertainty: its interval.

@@ -34,7 +34,7 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
   std::erase_if(causes, [&](const DepartureFit& fit) {
     return fit.explains < thresholds.rival_cause * best;
   });
-  // What can be fitted is what can be tried.
+  // Causes that a fit can model come first: the user can try only those.
   std::ranges::stable_partition(
       causes, [](const DepartureFit& fit) { return !Departures()[fit.departure].group.empty(); });
   return causes;

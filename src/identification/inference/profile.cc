@@ -120,7 +120,7 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
     last = held.solution().theta;
     return root;
   });
-  // Where the bound of α ends the valley, the data do not.
+  // Where α reaches its bound, the bound ends the interval and the data do not.
   const Parameter& shape = problem.parameters[kShape];
   const bool by_shape = towards > 0 && parameter == kSlipForce && !shape.fixed &&
                         SideOf(shape, last[kShape]) == BoundSide::kUpper;
@@ -228,8 +228,7 @@ ParameterEstimates WithProfiles(const FittedProblem& fitted, std::span<const std
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];
   if (slip_force.status == ParameterStatus::kFixed || slip_force.upper95) return parameters;
-  // Where it is the bound of α that ends the valley, its lower end is none of the likelihood
-  // either.
+  // Where α reaches its bound, the likelihood does not determine the lower end either.
   const bool by_bound = parameters[kShape].status == ParameterStatus::kAtUpperBound;
   if (by_bound) SetInterval(slip_force, {.lower = 0.0});
   if (parameters[kShape].status != ParameterStatus::kFixed) OpenAbove(parameters[kShape]);
