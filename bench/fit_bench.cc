@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "gradient_buffers.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
@@ -48,24 +49,16 @@ void FitLoop(benchmark::State& state) {
 void OneGradient(benchmark::State& state) {
   const Record record = NoisyLoop(state.range(0));
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
-  const auto size = record.size();
-  std::vector<double> t(size);
-  std::vector<double> columns(4 * size);
-  const auto column = [&](std::size_t index) {
-    return std::span(columns).subspan(index * size, size);
-  };
-  const NormalizedGradient gradient{.log_rate = column(0),
-                                    .shape_exponent = column(1),
-                                    .unloaded_displacement = column(2),
-                                    .log_spring_travel = column(3)};
+  GradientBuffers buffers(record.size());
   const NormalizedLaw normalized{.rate = kLaw.tangential_stiffness / kLaw.slip_force,
                                  .shape_exponent = kLaw.shape_exponent};
   NormalizedResponse response;
   for (auto _ : state) {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    response.Differentiate(model, normalized, path, record.displacement, t, gradient);
-    benchmark::DoNotOptimize(columns.data());
+    response.Differentiate(model, normalized, path, record.displacement, buffers.t,
+                           buffers.gradient());
+    benchmark::DoNotOptimize(buffers.columns.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(record.size()));
 }

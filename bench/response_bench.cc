@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gradient_buffers.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/normalized_response.h"
@@ -78,23 +79,14 @@ void Force(benchmark::State& state, const FrictionModel& model, double shape_exp
 void Gradient(benchmark::State& state, const FrictionModel& model, const SeriesSpring& rig) {
   const std::vector<double> x = Displacements(50);
   const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
-  const auto size = x.size();
-  std::vector<double> t(size);
-  std::vector<double> columns(4 * size);
-  const auto column = [&](std::size_t index) {
-    return std::span(columns).subspan(index * size, size);
-  };
-  const NormalizedGradient gradient{.log_rate = column(0),
-                                    .shape_exponent = column(1),
-                                    .unloaded_displacement = column(2),
-                                    .log_spring_travel = column(3)};
+  GradientBuffers buffers(x.size());
   const NormalizedLaw law{.rate = kLaw.tangential_stiffness / kLaw.slip_force,
                           .shape_exponent = kLaw.shape_exponent,
                           .spring_travel = kLaw.slip_force / rig.stiffness};
   NormalizedResponse response;
   for (auto _ : state) {
-    response.Differentiate(model, law, path, x, t, gradient);
-    benchmark::DoNotOptimize(columns.data());
+    response.Differentiate(model, law, path, x, buffers.t, buffers.gradient());
+    benchmark::DoNotOptimize(buffers.columns.data());
   }
   ReportPerSample(state, x.size());
 }

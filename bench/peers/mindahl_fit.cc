@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gradient_buffers.h"
 #include "mindahl/core/version.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
@@ -43,23 +44,15 @@ double MedianMilliseconds(int repeats, const std::function<void()>& call) {
 /// The floor of any fit: reversals, branches, forces and their derivatives once.
 double OneGradientMilliseconds(int repeats, const Record& record, const BranchLaw& law) {
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
-  const auto size = record.size();
-  std::vector<double> t(size);
-  std::vector<double> columns(4 * size);
-  const auto column = [&](std::size_t index) {
-    return std::span(columns).subspan(index * size, size);
-  };
-  const NormalizedGradient gradient{.log_rate = column(0),
-                                    .shape_exponent = column(1),
-                                    .unloaded_displacement = column(2),
-                                    .log_spring_travel = column(3)};
+  GradientBuffers buffers(record.size());
   const NormalizedLaw normalized{.rate = law.tangential_stiffness / law.slip_force,
                                  .shape_exponent = law.shape_exponent};
   NormalizedResponse response;
   return MedianMilliseconds(repeats, [&] {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    response.Differentiate(model, normalized, path, record.displacement, t, gradient);
+    response.Differentiate(model, normalized, path, record.displacement, buffers.t,
+                           buffers.gradient());
   });
 }
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mindahl/models/normalized_response.h"
+
+/// Holds T/Tc and its derivatives with respect to ln κ, α, δ₀ and ln c: what one evaluation of a
+/// model with its gradient writes, which is the floor of any fit.
+struct GradientBuffers {
+  explicit GradientBuffers(std::size_t samples) : t(samples), columns(4 * samples) {}
+
+  [[nodiscard]] mindahl::models::NormalizedGradient gradient() {
+    return {.log_rate = Column(0),
+            .shape_exponent = Column(1),
+            .unloaded_displacement = Column(2),
+            .log_spring_travel = Column(3)};
+  }
+
+  std::vector<double> t;
+  std::vector<double> columns;
+
+ private:
+  [[nodiscard]] std::span<double> Column(std::size_t index) {
+    return std::span(columns).subspan(index * t.size(), t.size());
+  }
+};
