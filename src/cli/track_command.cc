@@ -30,7 +30,7 @@
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
-#include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/interruption.h"
 #include "mindahl/core/version.h"
@@ -256,19 +256,6 @@ io::Plot ToPlot(const TrackedTest& test) {
 
 // --- the run
 
-/// Returns the compliance G* [1/Pa], where it or the materials are known.
-std::optional<double> ComplianceOf(const contact::KnownContact& known) {
-  if (known.tangential_compliance) return known.tangential_compliance->value;
-  const contact::KnownBody& one = known.body_1;
-  const contact::KnownBody& two = known.body_2;
-  if (!one.youngs_modulus || !one.poisson_ratio || !two.youngs_modulus || !two.poisson_ratio) {
-    return std::nullopt;
-  }
-  return contact::TangentialCompliance(
-      {.youngs_modulus = one.youngs_modulus->value, .poisson_ratio = one.poisson_ratio->value},
-      {.youngs_modulus = two.youngs_modulus->value, .poisson_ratio = two.poisson_ratio->value});
-}
-
 void RequireTrackOptions(const TrackCommandOptions& options) {
   MakeCycleFitOptions(options.fit);
   Validate(options.fit.contact);
@@ -420,7 +407,7 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
   }
   campaign::TrackOptions options{
       .fit = fit_,
-      .compliance = test_.is_torsional ? std::nullopt : ComplianceOf(known),
+      .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
       .together = options_.average,
       .every = options_.every,
       .threads = options_.threads};

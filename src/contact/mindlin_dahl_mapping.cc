@@ -264,6 +264,10 @@ models::BranchLaw MapMindlinToDahl(const MindlinContact& contact) {
           .slip_force = contact.slip_force};
 }
 
+std::optional<double> TangentialCompliance(const KnownContact& known) {
+  return KnowsCompliance(known) ? std::optional(ComplianceOf(known)) : std::nullopt;
+}
+
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient) {
   RequireKnown(known);

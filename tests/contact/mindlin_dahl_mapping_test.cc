@@ -219,6 +219,17 @@ TEST(IdentifyContact, ComparesTheStiffnessWithAGivenRadiusAndCompliance) {
               truth.tangential_compliance / 0.9);
 }
 
+TEST(TangentialComplianceOfAKnownContact, IsTheGivenOneElseThatOfItsBodies) {
+  const ExactContact truth = Truth();
+  KnownContact known = KnowBodies();
+  ExpectValue(TangentialCompliance(known), truth.tangential_compliance);
+  known.tangential_compliance = 1.25 * truth.tangential_compliance;
+  EXPECT_EQ(TangentialCompliance(known), 1.25 * truth.tangential_compliance);
+  KnownContact one_body = KnowBodies();
+  one_body.body_2.poisson_ratio.reset();
+  EXPECT_FALSE(TangentialCompliance(one_body));
+}
+
 TEST(IdentifyContact, DeterminesNothingIfNothingIsKnown) {
   for (int quantity = 0; quantity <= static_cast<int>(Quantity::kSphereYoungsModulus); ++quantity) {
     EXPECT_FALSE(Identify(static_cast<Quantity>(quantity), {}));

@@ -76,6 +76,11 @@ struct PredictedContact {
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient);
 
+/// Returns G* [1/Pa]: the given one, else that of both bodies' E and ν; empty where neither is
+/// known.
+/// @throws InvalidArgument as TangentialCompliance(Body, Body)
+std::optional<double> TangentialCompliance(const KnownContact& known);
+
 /// Names the quantities that a fit together with known properties may identify.
 enum class ContactQuantity {
   kFrictionCoefficient,   ///< μ = Tc/N [-]; needs N

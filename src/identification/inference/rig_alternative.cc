@@ -5,13 +5,11 @@
 #include <utility>
 
 #include "identification/inference/noise.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 
 namespace mindahl::identification {
-namespace {
 
-constexpr double kMindlinExponent = 1.0 / 3;
-
-}  // namespace
+using contact::kMindlinShapeExponent;
 
 std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
                                      const ParameterEstimate& shape, const FitOptions& options,
@@ -20,13 +18,13 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   // The law of a load that varies has none, nor has that of an imposed force.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
       shape.status == ParameterStatus::kFixed || !shape.upper95 ||
-      !(*shape.upper95 < kMindlinExponent) ||
-      !(kMindlinExponent - shape.value > options.thresholds.shape_effect)) {
+      !(*shape.upper95 < kMindlinShapeExponent) ||
+      !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
     return std::nullopt;
   }
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
-  with_rig.fixed["alpha"] = kMindlinExponent;
+  with_rig.fixed["alpha"] = kMindlinShapeExponent;
   with_rig.start.clear();
   Candidate sprung(*problem.data, with_rig, problem.state, std::pmr::get_default_resource());
   Solution solution;
@@ -49,7 +47,7 @@ ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thres
   if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
     return parameters;
   }
-  Include(parameters[kShape], {.lower = kMindlinExponent, .upper = kMindlinExponent});
+  Include(parameters[kShape], {.lower = kMindlinShapeExponent, .upper = kMindlinShapeExponent});
   for (const auto& [p, value] :
        {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
     ParameterEstimate& estimate = parameters[p];
