@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identification/inference/noise.h"
+#include "mindahl/core/error.h"
 
 namespace mindahl::identification {
 
@@ -44,28 +45,25 @@ ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> r
   return samples;
 }
 
-std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit,
-                                                 const ScoredSamples& samples) {
-  std::vector<std::vector<double>> residuals(samples.mask.size());
-  for (std::size_t r = 0; r < residuals.size(); ++r) {
-    residuals[r].reserve(samples.mask[r].size());
-    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
-      if (samples.mask[r][i] != 0) residuals[r].push_back(fit.records[r].residual[i]);
-    }
+ScoredSquares SquaresOf(const FitResult& fit, const ScoredSamples& samples, std::size_t record) {
+  ScoredSquares squares;
+  const std::vector<double>& residual = fit.records[record].residual;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (samples.mask[record][i] == 0) continue;
+    squares.sum += residual[i] * residual[i];
+    ++squares.count;
   }
-  return residuals;
+  return squares;
 }
 
 double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples) {
   double logarithms = 0.0;
   double count = 0.0;
-  for (const std::vector<double>& series : ScoredResiduals(fit, samples)) {
-    if (series.empty()) continue;
-    double sum = 0.0;
-    for (const double residual : series) sum += residual * residual;
-    const auto size = static_cast<double>(series.size());
-    logarithms += size * std::log(sum / size) / 2;
-    count += size;
+  for (std::size_t r = 0; r < samples.mask.size(); ++r) {
+    const ScoredSquares squares = SquaresOf(fit, samples, r);
+    if (squares.count == 0) continue;
+    logarithms += squares.count * std::log(squares.sum / squares.count) / 2;
+    count += squares.count;
   }
   return std::exp(logarithms / count);
 }
@@ -124,8 +122,12 @@ std::optional<double> PredictParts(std::span<const RecordView> records, FitOptio
     auto left = static_cast<double>(samples.count);
     for (std::size_t c = fold; c < parts.size(); c += folds) left -= parts[c].samples;
     if (left < static_cast<double>(free)) return std::nullopt;
-    Fitter fitter(options);
-    const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
+    FitResult fit;
+    try {
+      fit = Fitter(options).Fit(records, Depth::kEstimate);
+    } catch (const InvalidArgument&) {
+      return std::nullopt;  // a rig that ran rigid, beyond what the rest of the record can see
+    }
     if (!fit.converged) return std::nullopt;
     for (std::size_t c = fold; c < parts.size(); c += folds) {
       const Part& part = parts[c];

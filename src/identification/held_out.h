@@ -36,9 +36,12 @@ bool IsFitted(const FitResult& fit);
 /// Returns the samples that count in a fit.
 ScoredSamples CountedSamples(const FitResult& fit, std::span<const loop::RecordView> records);
 
-/// Returns the residuals [N] that are scored, one series a record.
-std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit,
-                                                 const ScoredSamples& samples);
+/// The residuals of a record that are scored.
+struct ScoredSquares {
+  double sum = 0.0;  // [unit of the response, squared]
+  double count = 0.0;
+};
+ScoredSquares SquaresOf(const FitResult& fit, const ScoredSamples& samples, std::size_t record);
 
 /// The rms [N] by which fits are compared: of records whose noise differs the mean of the
 /// logarithms over the samples, so that each counts by its own noise.
@@ -61,7 +64,7 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 
 /// Returns the mean square error [N²] of the prediction of parts by fits to the others, dealt in
 /// turn to the folds so that slow changes of the contact are in every one; empty where a fit
-/// failed. Samples held out still make history.
+/// failed or refused its options. Samples held out still make history.
 /// @param options  of those fits, as ContinuedFrom() makes them; what they hold out stays so
 /// @param free     parameters of those fits
 std::optional<double> PredictParts(std::span<const loop::RecordView> records, FitOptions options,

@@ -46,8 +46,11 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
 
 double RobustScaleOf(const FitResult& fit, const ScoredSamples& samples) {
   std::vector<double> residuals;
-  for (const std::vector<double>& series : ScoredResiduals(fit, samples)) {
-    residuals.insert(residuals.end(), series.begin(), series.end());
+  residuals.reserve(samples.count);
+  for (std::size_t r = 0; r < samples.mask.size(); ++r) {
+    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
+      if (samples.mask[r][i] != 0) residuals.push_back(fit.records[r].residual[i]);
+    }
   }
   return RobustScale(std::move(residuals));
 }
@@ -75,9 +78,7 @@ void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
 
 double Rms(const FitResult& fit, const ScoredSamples& samples) {
   double sum = 0.0;
-  for (const std::vector<double>& series : ScoredResiduals(fit, samples)) {
-    for (const double residual : series) sum += residual * residual;
-  }
+  for (std::size_t r = 0; r < samples.mask.size(); ++r) sum += SquaresOf(fit, samples, r).sum;
   return std::sqrt(sum / static_cast<double>(samples.count));
 }
 
@@ -142,14 +143,10 @@ std::vector<ModelScore> CompareModels(std::span<const RecordView> records,
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     ModelScore& score = scores[i];
     if (!score.converged) continue;
-    try {
-      const std::optional<double> mean_square =
-          PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
-                       score.free_parameters, samples, cycles, folds);
-      if (mean_square) score.held_out_rms = std::sqrt(*mean_square);
-    } catch (const InvalidArgument&) {
-      continue;  // a rig that ran rigid, beyond what the rest of the record can see
-    }
+    const std::optional<double> mean_square =
+        PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
+                     score.free_parameters, samples, cycles, folds);
+    if (mean_square) score.held_out_rms = std::sqrt(*mean_square);
   }
   return scores;
 }
