@@ -1,7 +1,6 @@
 #include "identification/inferred_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -29,7 +28,6 @@
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
-#include "mindahl/core/error.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -47,6 +45,13 @@ std::span<const double> Counting(std::span<const double> values, const RecordFit
     if (fit.counts[i] != 0) counting.push_back(values[i]);
   }
   return counting;
+}
+
+/// True if the residuals are rounding errors: they are no noise, are autocorrelated as they like,
+/// and nothing is to be learnt from what they look like.
+bool LeavesOnlyRounding(const Problem& problem, const Solution& solution) {
+  const auto counted = static_cast<double>(problem.data->counted);
+  return std::sqrt(solution.sum_of_squares / counted) < kOnlyRounding;
 }
 
 /// Statistics of the residuals that count, as the files have them.
@@ -108,10 +113,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
                         FitResult& result) {
   const auto& [problem, solution, noise, estimates] = fitted;
   const Thresholds& thresholds = options.thresholds;
-  // Rounding errors are no noise: nothing is to be learnt from what they look like.
-  const double rms =
-      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
-  if (rms < kOnlyRounding) {
+  if (LeavesOnlyRounding(problem, solution)) {
     result.adequacy.tried = 1;
     result.adequacy = GradeUse(thresholds, result);
     return;
@@ -137,10 +139,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
                   std::span<const double> residual, Noise& noise, FitResult& result) {
   const FitOptions& options = attempt.options;
-  // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
-  const double rms =
-      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
-  const bool only_rounding = rms < kOnlyRounding;
+  const bool only_rounding = LeavesOnlyRounding(problem, solution);
   if (!only_rounding) {
     noise.autocorrelation = AutocorrelationOf(*problem.data, residual);
   }
@@ -169,8 +168,7 @@ void UseProfiles(const FittedProblem& fitted, const FitOptions& options, SearchB
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
   // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
   // parabola is wrong.
-  const double counted = static_cast<double>(fitted.problem.data->counted);
-  const bool only_rounding = std::sqrt(fitted.solution.sum_of_squares / counted) < kOnlyRounding;
+  const bool only_rounding = LeavesOnlyRounding(fitted.problem, fitted.solution);
   std::vector<std::size_t> profiled;
   if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, buffers) ||
       NeedsProfile(fitted, kRig, options, buffers)) {

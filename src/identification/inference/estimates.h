@@ -48,6 +48,12 @@ class Estimates {
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Returns the half width of an interval of confidence() in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
+  /// Returns the F beyond which a held parameter is outside its interval.
+  [[nodiscard]] double critical() const { return quantile_ * quantile_; }
+  /// Returns the half width of the parabola's interval of θ.
+  [[nodiscard]] double HalfWidth(std::size_t parameter) const {
+    return quantile_ * ErrorOfTheta(parameter);
+  }
   [[nodiscard]] double confidence() const { return confidence_; }
   /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }

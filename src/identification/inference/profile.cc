@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/probability.h"
 #include "mindahl/loop/disturbances.h"
 
 namespace mindahl::identification {
@@ -109,14 +108,13 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
   const double from = best.theta[parameter];
   const double limit =
       towards < 0 ? std::max(of.lower, from - kFarthest) : std::min(of.upper, from + kFarthest);
-  const double critical = estimates.quantile() * estimates.quantile();
-  const double first = std::min({estimates.quantile() * estimates.ErrorOfTheta(parameter),
-                                 kParabolic, std::abs(limit - from)});
+  const double first =
+      std::min({estimates.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
   std::vector<double> last = estimates.Beside(parameter, towards * first);
   const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
     const double theta = from + towards * at;
     const double root =
-        std::sqrt(held.At(theta, Continue(problem, last, parameter, theta)) / critical);
+        std::sqrt(held.At(theta, Continue(problem, last, parameter, theta)) / estimates.critical());
     last = held.solution().theta;
     return root;
   });
@@ -165,8 +163,7 @@ double CarriedForce(const Problem& problem, const FitResult& result) {
 
 bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter,
                   const Thresholds& thresholds) {
-  const double half = fitted.estimates.quantile() * fitted.estimates.ErrorOfTheta(parameter);
-  return !(half <= thresholds.parabola_error);
+  return !(fitted.estimates.HalfWidth(parameter) <= thresholds.parabola_error);
 }
 
 bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
@@ -176,13 +173,13 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   const bool is_inside =
       std::ranges::all_of(std::array{parameter, kSlipForce, kStiffness, kShape},
                           [&](std::size_t p) { return best.side[p] == BoundSide::kInside; });
-  const double half = estimates.quantile() * estimates.ErrorOfTheta(parameter);
+  const double half = estimates.HalfWidth(parameter);
   if (!is_inside || IsBadlyKnown(fitted, parameter, options.thresholds)) return true;
   SolverOptions search = SolverOptionsOf(options);
   // The parabola predicts the cost at the ends.
   search.predicts_last = true;
   constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
-  const double critical = estimates.quantile() * estimates.quantile();
+  const double critical = estimates.critical();
   search.last_step = kLastGain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(fitted, parameter, search, buffers);
   return std::ranges::any_of(std::array{-half, half}, [&](double step) {
