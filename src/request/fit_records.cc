@@ -261,7 +261,7 @@ AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
 /// Takes back a preference for the law that the program did not choose.
 /// @returns true where there was one
 bool WithdrawPreference(FitResult& fit) {
-  if (!fit.law_choice || fit.law_choice->preferred != fit.law_choice->alternative) return false;
+  if (!fit.law_choice || !fit.law_choice->prefers_alternative()) return false;
   fit.law_choice->decided = false;
   fit.law_choice->preferred = nullptr;
   std::erase_if(fit.findings, [](const identification::Finding& finding) {
@@ -352,6 +352,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   std::optional<report::NextStep> best;
+  std::string best_term;
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
     FitRequest with = request;
     report::NextStep step{.text = name,
@@ -378,12 +379,15 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
     }
-    if (!best || step.misfit_after < best->misfit_after) best = std::move(step);
+    if (!best || step.misfit_after < best->misfit_after) {
+      best = std::move(step);
+      best_term = name;
+    }
     if (best->misfit_after < kGoodEnough * *before) break;
   }
   if (!best || best->misfit_after > (1 - kLeastGain) * *before) return std::nullopt;
   // A rig that cannot be told from the law is to be measured.
-  const bool is_rig = best->options.starts_with("--rig-stiffness");
+  const bool is_rig = best_term == "rig_stiffness";
   if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
   return best;
 }
