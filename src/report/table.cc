@@ -1,6 +1,7 @@
 #include "report/table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -23,8 +24,10 @@ std::vector<Cells> RowsOf(const Json& rows) {
     if (rows.is_object()) cells.emplace_back("", key);
     for (const auto& [name, value] : row.items()) {
       if (value.is_array()) continue;
-      if (!value.is_object()) cells.emplace_back(name, value);
-      if (!value.is_object()) continue;
+      if (!value.is_object()) {
+        cells.emplace_back(name, value);
+        continue;
+      }
       for (const auto& [inner, cell] : value.items()) {
         cells.emplace_back(fmt::format("{}\n{}", name, inner), cell);
       }
@@ -51,6 +54,11 @@ std::vector<std::string> NameLines(std::string name, std::size_t& width) {
     }
   }
   return lines;
+}
+
+std::string CellCsv(const Json& value) {
+  if (value.is_null() || value == "") return "";
+  return value.is_number() ? value.dump() : io::CsvCell(CellText(value));
 }
 
 /// Puts a cell into its column: numbers to the right.
@@ -86,9 +94,8 @@ std::string TableText(const Json& rows, int digits) {
     }
     std::vector<std::string> name = NameLines(longest[c].first, width);
     name.resize(std::min(name.size(), kNameLines));
-    column.insert(column.begin(), kNameLines - name.size(), "");
-    column.insert(column.begin() + static_cast<std::ptrdiff_t>(kNameLines - name.size()),
-                  name.begin(), name.end());
+    name.insert(name.begin(), kNameLines - name.size(), "");  // stands right above the cells
+    column.insert(column.begin(), name.begin(), name.end());
     for (std::size_t k = 0; k < lines.size(); ++k) AddCell(lines[k], column[k], width, is_right);
   }
   std::string text;
@@ -102,16 +109,14 @@ std::string TableText(const Json& rows, int digits) {
 std::string TableCsv(const Json& rows) {
   std::string text;
   for (const Cells& cells : RowsOf(rows)) {
-    std::string names;
-    std::string line;
+    std::vector<std::string> names;
+    std::vector<std::string> line;
     for (const auto& [name, value] : cells) {
-      names += (&name == &cells.front().first ? "" : ",") + name;
-      line += &name == &cells.front().first ? "" : ",";
-      if (value.is_null() || value == "") continue;
-      line += value.is_number() ? value.dump() : io::CsvCell(CellText(value));
+      names.push_back(name);
+      line.push_back(CellCsv(value));
     }
-    if (text.empty()) text.append(names).append(1, '\n');
-    text.append(line).append(1, '\n');
+    if (text.empty()) text += fmt::format("{}\n", fmt::join(names, ","));
+    text += fmt::format("{}\n", fmt::join(line, ","));
   }
   return text;
 }
