@@ -17,7 +17,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"

@@ -16,7 +16,6 @@
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
-#include "identification/inference/reweighting.h"
 #include "identification/inferred_fit.h"
 #include "identification/intervals.h"
 #include "identification/law_choice.h"

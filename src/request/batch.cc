@@ -19,8 +19,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
-#include "mindahl/io/csv_table.h"
-#include "mindahl/report/units.h"
 #include "report/fields.h"
 #include "report/statements.h"
 #include "report/table.h"

@@ -1,17 +1,12 @@
 #include "identification/diagnosis/adequacy.h"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
-#include "identification/problem/moved_samples.h"
-#include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
 

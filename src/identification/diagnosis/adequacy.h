@@ -2,15 +2,11 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "identification/gram/omitted_terms.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
-#include "mindahl/identification/finding.h"
-#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 

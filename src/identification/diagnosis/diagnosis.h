@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "identification/inference/local.h"
-#include "identification/inference/profile.h"
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"

@@ -1,18 +1,13 @@
 #include "identification/diagnosis/record_findings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "identification/diagnosis/grade.h"
-#include "identification/intervals.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
-#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 namespace {

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "core/probability.h"
-#include "identification/dense.h"
 #include "identification/gram/gram.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
