@@ -69,7 +69,7 @@ bool IsConstant(std::span<const double> values) {
 }
 
 /// A candidate of one selection.
-struct Candidate {
+struct TermCandidate {
   ConsideredTerm considered;
   TermChoice choice;
 
@@ -81,16 +81,16 @@ struct Candidate {
   }
 };
 
-Candidate CandidateOf(const TermGroup& group) {
-  Candidate candidate;
+TermCandidate CandidateOf(const TermGroup& group) {
+  TermCandidate candidate;
   candidate.considered.name = group.name;
   candidate.choice.terms.assign(group.terms.begin(), group.terms.end());
   return candidate;
 }
 
-std::vector<Candidate> ListCandidates(std::span<const RecordView> records,
-                                      const FitOptions& options, const FitResult& law) {
-  std::vector<Candidate> candidates;
+std::vector<TermCandidate> TermCandidates(std::span<const RecordView> records,
+                                          const FitOptions& options, const FitResult& law) {
+  std::vector<TermCandidate> candidates;
   const auto is_timed = [](const RecordView& record) { return !record.time.empty(); };
   const bool timed = std::ranges::all_of(records, is_timed);
   for (const TermGroup& group : TermGroups()) {
@@ -105,7 +105,7 @@ std::vector<Candidate> ListCandidates(std::span<const RecordView> records,
       return HasCovariate(record, covariate.name);
     };
     if (is_there || !std::ranges::all_of(records, has_it) || IsConstant(covariate.values)) continue;
-    Candidate& candidate = candidates.emplace_back();
+    TermCandidate& candidate = candidates.emplace_back();
     candidate.considered.name = NameOfCovariate(covariate.name);
     candidate.considered.obstacle = ObstacleToColumn(covariate, records.front(), law, columns);
     if (candidate.considered.obstacle == "same_channel") continue;  // reported, never fitted
@@ -241,7 +241,8 @@ class Selection {
     TermScore score;
   };
 
-  bool Begin(const FitOptions& options, const FitResult& law, std::vector<Candidate> candidates);
+  bool Begin(const FitOptions& options, const FitResult& law,
+             std::vector<TermCandidate> candidates);
   [[nodiscard]] std::optional<std::size_t> Find(std::string_view name) const;
   std::vector<Gain> Score();
   [[nodiscard]] bool IsRefused(const Gain& gain);
@@ -261,7 +262,7 @@ class Selection {
   std::span<const RecordView> records_;
   const TermSelectionOptions& selection_;
   TermSelection& result_;
-  std::vector<Candidate> candidates_;
+  std::vector<TermCandidate> candidates_;
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
   std::vector<Alternative> alternatives_;
@@ -272,7 +273,7 @@ class Selection {
 };
 
 std::optional<std::size_t> Selection::Find(std::string_view name) const {
-  const auto found = std::ranges::find(candidates_, name, [](const Candidate& candidate) {
+  const auto found = std::ranges::find(candidates_, name, [](const TermCandidate& candidate) {
     return std::string_view(candidate.considered.name);
   });
   if (found == candidates_.end()) return std::nullopt;
@@ -283,11 +284,11 @@ std::optional<std::size_t> Selection::Find(std::string_view name) const {
 /// all, and fits the law to them.
 /// @returns false where it has no fit
 bool Selection::Begin(const FitOptions& options, const FitResult& law,
-                      std::vector<Candidate> candidates) {
+                      std::vector<TermCandidate> candidates) {
   candidates_ = std::move(candidates);
   std::vector<TermChoice> choices;
   choices.reserve(candidates_.size());
-  for (const Candidate& candidate : candidates_) choices.push_back(candidate.choice);
+  for (const TermCandidate& candidate : candidates_) choices.push_back(candidate.choice);
   FitOptions as_fitted = options;
   as_fitted.preparation.force_sense = law.force_sense;
   try {
@@ -326,7 +327,7 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
 /// Scores the candidates at the present solution and returns them, the best first.
 std::vector<Selection::Gain> Selection::Score() {
   std::vector<TermChoice> choices;
-  for (Candidate& candidate : candidates_) {
+  for (TermCandidate& candidate : candidates_) {
     std::erase_if(candidate.choice.terms,
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
     choices.push_back(candidate.considered.added ? TermChoice() : candidate.choice);
@@ -352,7 +353,7 @@ std::vector<Selection::Gain> Selection::Score() {
 
 /// True if a candidate that gains is not to be added, and says why where that is to be reported.
 bool Selection::IsRefused(const Gain& gain) {
-  Candidate& candidate = candidates_[gain.candidate];
+  TermCandidate& candidate = candidates_[gain.candidate];
   // Beside a slip force of the speed a further force of speed and the slip force at rest are
   // confounded; a drag is that force with the slip force that at v₀.
   if (candidate.considered.name == "drag" && !HasTerm(base_.options, "slip_speed")) return true;
@@ -486,7 +487,7 @@ bool Selection::Round() {
   });
   const std::vector<Gain> explaining = gains;
   std::erase_if(gains, [&](const Gain& gain) {
-    Candidate& candidate = candidates_[gain.candidate];
+    TermCandidate& candidate = candidates_[gain.candidate];
     const bool is_of_speed = candidate.Has("lag") && of_speed > kOfSpeed * gain.score.gain;
     if (is_of_speed) candidate.considered.obstacle = "rate_dependent";
     return IsRefused(gain);
@@ -510,7 +511,7 @@ void Selection::Run(const FitOptions& options) {
   const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
   const FitResult law = result_.fit;
-  if (!Begin(options, law, ListCandidates(records_, options, law))) return;
+  if (!Begin(options, law, TermCandidates(records_, options, law))) return;
   // A gap that was measured without a model is tried first: no linear step from a contact that is
   // too soft for the want of a gap predicts it.
   if (HasGap(law)) {
@@ -520,7 +521,7 @@ void Selection::Run(const FitOptions& options) {
   while (Round()) {
   }
   if (!result_.added.empty()) FitLast(law);
-  for (const Candidate& candidate : candidates_) {
+  for (const TermCandidate& candidate : candidates_) {
     const ConsideredTerm& considered = candidate.considered;
     if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
     result_.considered.push_back(considered);
@@ -567,9 +568,9 @@ void Selection::FitLast(const FitResult& law) {
 /// @returns false where one of them cannot be fitted so
 bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
   result_.options = options;
-  std::vector<Candidate> candidates;
+  std::vector<TermCandidate> candidates;
   for (const std::string& name : names) {
-    Candidate candidate = CandidateOf(*FindTermGroup(name));
+    TermCandidate candidate = CandidateOf(*FindTermGroup(name));
     std::erase_if(candidate.choice.terms,
                   [&](const std::string& term) { return std::erase(options.terms, term) == 0; });
     candidates.push_back(std::move(candidate));
@@ -594,7 +595,7 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
 
 std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
   std::vector<std::string> names;
-  if (!IsFitted(law) || !Begin(options, law, ListCandidates(records_, options, law))) return names;
+  if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return names;
   if (HasGap(law)) names.emplace_back("backlash");
   for (const Gain& gain : Score()) {
     const std::string& name = candidates_[gain.candidate].considered.name;

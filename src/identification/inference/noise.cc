@@ -17,7 +17,7 @@ constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
 constexpr std::size_t kSamplesPerOrder = 10;
 /// Fraction of its largest output below which a filter's memory is rounding.
 constexpr double kForgotten = 1e-9;
-constexpr std::size_t kLongest = 100'000;  // samples that it is given to forget
+constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to forget
 
 using Series = std::span<const double>;
 using Mask = std::span<const unsigned char>;
@@ -126,7 +126,7 @@ double Autocorrelation::SquaredCorrelations() const {
     recent[order - lag] = correlations[lag];
   }
   // Beyond the order ρ obeys the recursion of r itself.
-  for (std::size_t lag = order + 1; lag < kLongest; ++lag) {
+  for (std::size_t lag = order + 1; lag < kLongestMemory; ++lag) {
     double value = 0.0;
     double largest = 0.0;
     for (std::size_t k = 0; k < order; ++k) value += coefficients[k] * recent[k];
@@ -147,7 +147,7 @@ Eigen::MatrixXd Autocorrelation::FilterBackwards(
   const auto depth = static_cast<Eigen::Index>(order);
   double largest = 0.0;
   Eigen::Index i = 0;
-  for (; i < rows + static_cast<Eigen::Index>(kLongest); ++i) {
+  for (; i < rows + static_cast<Eigen::Index>(kLongestMemory); ++i) {
     if (i == filtered.cols()) filtered.conservativeResize(Eigen::NoChange, 2 * i);
     auto out = filtered.col(i);
     if (i < rows) {
