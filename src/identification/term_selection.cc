@@ -226,7 +226,8 @@ class Selection {
 
   void Run(const FitOptions& options);
   bool RunNamed(FitOptions options, std::span<const std::string> names);
-  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law);
+  std::vector<std::string> Likely(const FitOptions& options, const FitResult& law,
+                                  std::size_t most);
 
  private:
   /// A model of the selection, fitted at Depth::kEstimate.
@@ -593,16 +594,29 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
   return candidates_.size() == names.size() && IsFitted(result_.fit);
 }
 
-std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law) {
-  std::vector<std::string> names;
-  if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return names;
-  if (HasGap(law)) names.emplace_back("backlash");
-  for (const Gain& gain : Score()) {
-    const std::string& name = candidates_[gain.candidate].considered.name;
-    const bool is_there = std::ranges::find(names, name) != names.end();
-    if (gain.score.gain < selection_.smallest_gain || is_there || IsRefused(gain)) continue;
-    names.push_back(name);
+/// Fits each of the few candidates that promise most, and returns those that can be added, the one
+/// that leaves least first.
+std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law,
+                                           std::size_t most) {
+  if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return {};
+  std::vector<Gain> tried = Score();
+  std::erase_if(tried, [&](const Gain& gain) {
+    return gain.score.gain < selection_.smallest_gain || IsRefused(gain);
+  });
+  if (HasGap(law)) {
+    const std::size_t gap = *Find("backlash");
+    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == gap; });
+    tried.insert(tried.begin(), {gap, {}});
   }
+  tried.resize(std::min(tried.size(), most));
+  std::multimap<double, std::string> by_rms;
+  for (const auto& [c, score] : tried) {
+    const TermChoice& choice = candidates_[c].choice;
+    const Model model = score.values.empty() ? FitAnew(choice) : FitWith(choice, score.values);
+    if (ObstacleTo(model).empty()) by_rms.emplace(model.fit.rms, candidates_[c].considered.name);
+  }
+  std::vector<std::string> names;
+  for (auto& [rms, name] : by_rms) names.push_back(std::move(name));
   return names;
 }
 
@@ -639,9 +653,7 @@ std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const 
   if (options.response() != loop::Channel::kForce) return {};
   const TermSelectionOptions defaults;
   TermSelection unused;
-  std::vector<std::string> names = Selection(records, defaults, unused).Likely(options, fit);
-  names.resize(std::min(names.size(), most));
-  return names;
+  return Selection(records, defaults, unused).Likely(options, fit, most);
 }
 
 }  // namespace mindahl::identification

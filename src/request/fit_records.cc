@@ -336,23 +336,20 @@ bool LosesSlipForce(const FitResult& before, const FitResult& after) {
   return share > kMost || share < 1 / kMost;
 }
 
-/// Fits the record again with each of the few most likely terms, where the law alone is not
-/// adequate, and returns the one that misses least, if by a tenth less than the law. A term with
-/// which the slip force is lost is none.
+/// Fits the record again with the term that explains most of what the law misses, where the law
+/// alone is not adequate; with the next one where it does not gain a tenth, or the slip force is
+/// lost.
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records,
                                              const FitResult& fit) {
   constexpr std::size_t kMostTried = 3;
   constexpr double kLeastGain = 0.1;
-  constexpr double kGoodEnough = 0.5;  // of the misfit: no other term is tried
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !before || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       !options.terms.empty() || !options.covariates.empty()) {
     return std::nullopt;
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  std::optional<report::NextStep> best;
-  std::string best_term;
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
     FitRequest with = request;
     report::NextStep step{.text = name,
@@ -373,23 +370,18 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       const FitResult found =
           FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
-      if (LosesSlipForce(fit, found)) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
+      if (step.misfit_after > (1 - kLeastGain) * *before || LosesSlipForce(fit, found)) continue;
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
     }
-    if (!best || step.misfit_after < best->misfit_after) {
-      best = std::move(step);
-      best_term = name;
-    }
-    if (best->misfit_after < kGoodEnough * *before) break;
+    // A rig that cannot be told from the law is to be measured.
+    const bool is_rig = name == "rig_stiffness";
+    if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
+    return step;
   }
-  if (!best || best->misfit_after > (1 - kLeastGain) * *before) return std::nullopt;
-  // A rig that cannot be told from the law is to be measured.
-  const bool is_rig = best_term == "rig_stiffness";
-  if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
-  return best;
+  return std::nullopt;
 }
 
 }  // namespace

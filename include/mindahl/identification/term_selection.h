@@ -79,9 +79,9 @@ TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOp
 TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
                           const TermSelectionOptions& selection = {});
 
-/// Returns the terms that may explain what a fit misses, at most `most`, the best first: scored as
-/// SelectTerms() scores its candidates, by one Gauss-Newton step; a gap that was measured comes
-/// first. None of them is fitted.
+/// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
+/// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are
+/// fitted at Depth::kEstimate, and those with an obstacle to them left out.
 /// @param options  of the fit
 std::vector<std::string> LikelyTerms(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const FitResult& fit,
