@@ -257,6 +257,7 @@ class Selection {
   bool Add(std::size_t candidate, Model model);
   bool Round();
   void KeepAlternatives(const Gain& added, std::span<const Gain> gains);
+  FitResult FitFromHere();
   void FitLast(const FitResult& law);
 
   static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
@@ -267,7 +268,6 @@ class Selection {
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
   std::vector<Alternative> alternatives_;
-  bool is_found_anew_ = true;  // from starts of its own
   std::vector<Part> parts_;
   std::vector<std::vector<bool>> held_out_;
   loop::LoopFacts facts_;  // of the widest record
@@ -450,9 +450,9 @@ bool Selection::Add(std::size_t candidate, Model model) {
   // An initial state that was found without the term may be another with it.
   Model anew = FitAnew({});
   const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
-  const double gain = is_fit ? 1 - anew.fit.rms / base_.fit.rms : -1.0;
-  is_found_anew_ = gain > -selection_.smallest_gain;
-  if (gain > selection_.smallest_gain) base_ = std::move(anew);
+  if (is_fit && anew.fit.rms < (1 - selection_.smallest_gain) * base_.fit.rms) {
+    base_ = std::move(anew);
+  }
   return true;
 }
 
@@ -533,18 +533,21 @@ void Selection::Run(const FitOptions& options) {
   });
 }
 
-/// Fits the chosen model at full depth: from starts of its own, as where the terms are named, if
-/// these lead there, else from where it is. The law stays where its Tc would be lost.
-void Selection::FitLast(const FitResult& law) {
+/// Fits the model with all terms at the depth that is asked for, from where it is.
+FitResult Selection::FitFromHere() {
   FitOptions from_here = base_.options;
-  HoldInitialStates(base_.fit, from_here);
   StartFrom(base_.fit, from_here);
-  std::vector<FitOptions> tried = {std::move(from_here)};
-  if (is_found_anew_) tried.insert(tried.begin(), base_.options);
-  for (const FitOptions& options : tried) {
-    FitResult last = FitTo(options, selection_.depth);
-    if (!IsFitted(last) || Leaves(last)) continue;
-    if (OpensSlipForce(law, last, options.thresholds.widest_ratio)) continue;
+  return FitTo(from_here, selection_.depth);
+}
+
+/// Fits the chosen model: from starts of its own, as where the terms are named, unless these leave
+/// more than is known to be left, else from where it is. The law stays where its Tc would be lost.
+void Selection::FitLast(const FitResult& law) {
+  FitResult last = FitTo(base_.options, selection_.depth);
+  const double most_left = (1 + selection_.smallest_gain) * base_.fit.rms;
+  if (!IsFitted(last) || last.rms > most_left) last = FitFromHere();
+  if (IsFitted(last) && !Leaves(last) &&
+      !OpensSlipForce(law, last, base_.options.thresholds.widest_ratio)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
         result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
@@ -552,7 +555,7 @@ void Selection::FitLast(const FitResult& law) {
       return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
              (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
     });
-    IncludeAlternatives(alternatives_, options.thresholds, last);
+    IncludeAlternatives(alternatives_, base_.options.thresholds, last);
     result_.fit = std::move(last);
     result_.options = base_.options;
     return;
@@ -587,10 +590,7 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
     if (!IsFitted(model.fit) || !model.fit.converged) return false;
     base_ = std::move(model);
   }
-  FitOptions from_here = base_.options;
-  StartFrom(base_.fit, from_here);
-  ++result_.estimates;
-  result_.fit = Fitter(from_here).Fit(records_, selection_.depth);
+  result_.fit = FitFromHere();
   return candidates_.size() == names.size() && IsFitted(result_.fit);
 }
 
