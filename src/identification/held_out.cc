@@ -38,7 +38,9 @@ ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> r
     const std::vector<unsigned char>& counts = fit.records[r].counts;
     samples.mask.emplace_back(counts);
     samples.count += counts.size() - fit.records[r].left_out;
-    const auto [lowest, highest] = std::ranges::minmax(records[r].force);
+    const bool is_forced = fit.response == loop::Channel::kDisplacement;
+    const auto [lowest, highest] =
+        std::ranges::minmax(is_forced ? records[r].displacement : records[r].force);
     half_range = std::max(half_range, highest / 2 - lowest / 2);
   }
   samples.rounding = kRoundingRms * half_range;

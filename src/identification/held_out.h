@@ -19,7 +19,7 @@ using SampleMask = std::vector<std::vector<unsigned char>>;
 struct ScoredSamples {
   SampleMask mask;
   std::size_t count = 0;
-  double rounding = 0.0;  // [N]: residuals below it mean nothing
+  double rounding = 0.0;  // [unit of the response]: residuals below it mean nothing
 };
 
 /// A closed cycle or a stroke, [begin, end).
@@ -43,8 +43,8 @@ struct ScoredSquares {
 };
 ScoredSquares SquaresOf(const FitResult& fit, const ScoredSamples& samples, std::size_t record);
 
-/// The rms [N] by which fits are compared: of records whose noise differs the mean of the
-/// logarithms over the samples, so that each counts by its own noise.
+/// The rms [unit of the response] by which fits are compared: of records whose noise differs the
+/// mean of the logarithms over the samples, so that each counts by its own noise.
 double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples);
 
 /// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.

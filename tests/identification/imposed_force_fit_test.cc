@@ -163,6 +163,15 @@ TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   EXPECT_EQ(fit.law_choice->preferred, fit.model);
 }
 
+TEST(ImposedForceFit, EvidenceForALawDoesNotDependOnTheUnit) {
+  const auto evidence = [](double sigma) {
+    const FitResult fit = FitOne(ForcedLoop({sigma, 0.4, kSlipForce}), OfDisplacement());
+    return fit.law_choice && fit.law_choice->delta_aicc ? *fit.law_choice->delta_aicc : 0.0;
+  };
+  EXPECT_GT(evidence(5e5), 1e3);
+  EXPECT_NEAR(evidence(5e3) / evidence(5e5), 1.0, 0.3) << "of residuals that are rounding";
+}
+
 TEST(ImposedForceFit, RefusesOptionsOfForceFits) {
   const Record loop = ForcedLoop(LawOf(0.4));
   const auto refusal = [&](auto change) {
