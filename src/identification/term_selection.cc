@@ -76,9 +76,6 @@ struct TermCandidate {
   [[nodiscard]] bool Has(std::string_view term) const {
     return std::ranges::find(choice.terms, term) != choice.terms.end();
   }
-  [[nodiscard]] bool is_of_speed() const {
-    return Has("viscous") || Has("speed_exponent") || Has("slip_speed") || Has("drag_fraction");
-  }
 };
 
 TermCandidate CandidateOf(const TermGroup& group) {
@@ -475,24 +472,14 @@ void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains)
 
 /// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
-  constexpr double kOfSpeed = 0.5;  // of a lag's gain
   std::vector<Gain> gains = Score();
-  double of_speed = 0.0;
-  for (const auto& [c, score] : gains) {
-    if (candidates_[c].is_of_speed()) of_speed = std::max(of_speed, score.gain);
-  }
   const double chance =
       selection_.chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
   std::erase_if(gains, [&](const Gain& gain) {
     return gain.score.gain < selection_.smallest_gain || !(gain.score.p_value < chance);
   });
   const std::vector<Gain> explaining = gains;
-  std::erase_if(gains, [&](const Gain& gain) {
-    TermCandidate& candidate = candidates_[gain.candidate];
-    const bool is_of_speed = candidate.Has("lag") && of_speed > kOfSpeed * gain.score.gain;
-    if (is_of_speed) candidate.considered.obstacle = "rate_dependent";
-    return IsRefused(gain);
-  });
+  std::erase_if(gains, [&](const Gain& gain) { return IsRefused(gain); });
   while (!gains.empty() && result_.estimates + kLastFits < selection_.most_fits) {
     const Gain& best = Simplest(gains);
     const std::size_t candidate = best.candidate;

@@ -187,7 +187,7 @@ TEST(TermSelection, NegativeDampingIsNotAdded) {
   EXPECT_FALSE(TermOf(selection, "viscous").added);
 }
 
-TEST(TermSelection, LagIsAddedWhereNoForceOfSpeedDoesHalfAsWell) {
+TEST(TermSelection, LagIsAddedAloneAndRecovered) {
   Record record = Clean();
   constexpr std::size_t kLate = 2;  // samples
   const std::vector<double> force = record.force;

@@ -38,8 +38,8 @@ struct ConsideredTerm {
   double p_value = 1.0;  ///< probability that the gain to first order is chance
   bool is_predicted = false;
   bool added = false;
-  /// Reason why it was not added: "", of one that gains "confounded", "rate_dependent",
-  /// "unphysical" or "not_converged", of a column that repeats another one "same_channel".
+  /// Reason why it was not added: "", of one that gains "confounded", "unphysical" or
+  /// "not_converged", of a column that repeats another one "same_channel".
   std::string_view obstacle;
 };
 
@@ -68,8 +68,6 @@ struct TermSelection {
 /// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:
 /// its factor and the slip force then share what the record shows. No term is added with which Tc
 /// of a loop that slides leaves the half gap that was measured, unless it leaves nothing but noise.
-/// A lag is added where it gains twice what the best force of speed does: a lag is the same at
-/// every speed, and a knee that is rounded by speed looks like one.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
 /// @throws InvalidArgument as Fit does, for folds < 2 or a chance outside (0, 1)
