@@ -46,7 +46,8 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
                      const std::string& kind, const Tell& note) {
   constexpr std::array<std::string_view, 2> kKinds = {"secant", "tangent"};
   RequireOneOf("--sweep", kind, kKinds);
-  const std::string model = request.model == kAutomatic ? "mindlin-dahl" : request.model;
+  const std::string_view model =
+      request.fit.model == nullptr ? "mindlin-dahl" : std::string_view(request.fit.model->name);
   if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
     throw InputError(fmt::format(
         "--model {}: a sweep needs a Masing law: mindlin-dahl, mindlin or jenkins", model));
@@ -58,7 +59,7 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
                                       : identification::SweepStiffness::kSecant;
   asked.over_force = fitted.sweep.over_force;
   asked.is_compliance = fitted.sweep.is_compliance;
-  asked.confidence = request.confidence;
+  asked.confidence = request.fit.confidence;
   if (model == "mindlin") asked.fixed["alpha"] = 1.0 / 3.0;
   if (model == "jenkins") asked.fixed["alpha"] = 0.0;
   for (const auto& [name, value] : MakeFitOptions(request).fixed) asked.fixed[name] = value;

@@ -32,8 +32,8 @@ FittedSweep FitWith(FitRequest request) {
 TEST(FitSweepFile, HasIntervalsOfTheConfidenceThatIsAsked) {
   const auto width = [](double confidence) {
     FitRequest request;
-    request.model = "jenkins";
-    request.confidence = confidence;
+    request.fit.model = models::FindFrictionModel("jenkins");
+    request.fit.confidence = confidence;
     const identification::ParameterEstimate slip_force =
         FitWith(request).fit.parameter("slip_force");
     return *slip_force.upper95 - *slip_force.lower95;
@@ -46,9 +46,9 @@ TEST(FitSweepFile, HasIntervalsOfTheConfidenceThatIsAsked) {
 
 TEST(FitSweepFile, HoldsTheShapeThatAModelPrescribes) {
   FitRequest request;
-  request.model = "jenkins";
+  request.fit.model = models::FindFrictionModel("jenkins");
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 0.0);
-  request.model = "mindlin";
+  request.fit.model = models::FindFrictionModel("mindlin");
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 1.0 / 3.0);
 }
 
@@ -114,7 +114,7 @@ TEST(FitSweepFile, RefusesWhatASweepHasNot) {
   };
   FitRequest request;
   EXPECT_THAT(refusal(request, "chord"), HasSubstr("--sweep"));
-  request.model = "dahl";
+  request.fit.model = models::FindFrictionModel("dahl");
   EXPECT_THAT(refusal(request, "secant"), HasSubstr("--model dahl: a sweep needs a Masing law"));
   request.files = {"a.csv", "b.csv"};
   EXPECT_THROW(FitSweepFile(request, "secant", {}, [](std::string_view) {}), InputError);
@@ -122,8 +122,8 @@ TEST(FitSweepFile, RefusesWhatASweepHasNot) {
 
 TEST(FitSweepFile, HoldsWhatIsGiven) {
   FitRequest request;
-  request.model = "mindlin-dahl";
-  request.fix["alpha"] = 0.125;
+  request.fit.model = models::FindFrictionModel("mindlin-dahl");
+  request.fit.fixed["alpha"] = 0.125;
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").value, 0.125);
   EXPECT_EQ(FitWith(request).fit.parameter("alpha").status,
             identification::ParameterStatus::kFixed);
