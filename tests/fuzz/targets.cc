@@ -15,7 +15,7 @@ constexpr std::array kTargets = {
     Target{"models", &EvaluateModels, 1024},   Target{"contact_state", &MoveContacts, 1024},
     Target{"fit", &FitRecords, 4096},          Target{"track", &TrackRecords, 4096},
     Target{"resume", &ResumeTables, 256},      Target{"join", &JoinRecords, 4096},
-    Target{"sweep", &FitSweeps, 1024},         Target{"encodings", &ReadEncodedRecords, 4096}};
+    Target{"encodings", &ReadEncodedRecords, 4096}};
 
 }  // namespace
 
