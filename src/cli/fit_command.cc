@@ -37,29 +37,29 @@ struct FitCommandOptions {
 /// @param provenance  asked for where a page is written: it reads the files once more
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
                      const std::function<report::Provenance()>& provenance, Console& console) {
-  if (report.failed()) {  // no curve to draw, no residual to list
+  const bool failed = report.failed();  // then there is no curve to draw, no residual to list
+  if (failed) {
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
-    if (!options.report_path.empty()) {
-      io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
-    }
-    if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-    return;
   }
   // The plot first: it alone may still fail.
-  if (!options.plot_path.empty()) io::WritePlot(report::ToPlot(report), options.plot_path);
+  if (!failed && !options.plot_path.empty()) {
+    io::WritePlot(report::ToPlot(report), options.plot_path);
+  }
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
   }
-  if (!options.residuals_path.empty()) {
+  if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-  if (options.json_path != "-") {
+  if (failed) return;
+  if (options.json_path == "-") {
+    for (const std::string& note : report.notes) {
+      console.err << fmt::format("mindahl fit: note: {}\n", note);
+    }
+  } else {
     console.out << report::ToText(
         report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
-  } else {
-    const Messages messages{console.err, "fit"};
-    for (const std::string& note : report.notes) messages.Note(note);
   }
 }
 

@@ -245,18 +245,6 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
             "NAME");
 }
 
-void RequireNoColumns(const io::RecordColumns& columns) {
-  const auto require = [](const std::string& given, std::string_view option) {
-    if (given.empty()) return;
-    throw InputError(
-        fmt::format("{} {}: there is no record to read a column of: give --record", option, given));
-  };
-  require(columns.displacement, "--displacement");
-  require(columns.force, "--force");
-  require(columns.time, "--time");
-  require(columns.normal_load, "--normal-load-column");
-}
-
 void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
   identification::FitOptions& fit = options.fit;
@@ -404,14 +392,6 @@ void AddStrict(const OptionGroup& group, Strictness& strictness, const std::stri
                             " unless the model is adequate and every free\n"
                             "parameter identifiable; --strict=doubtful accepts a doubtful\n"
                             "model and parameters that are effective");
-}
-
-void Messages::Note(std::string_view text) const {
-  stream << fmt::format("mindahl {}: note: {}\n", command, text);
-}
-
-void Messages::Warn(std::string_view text) const {
-  stream << fmt::format("mindahl {}: warning: {}\n", command, text);
 }
 
 }  // namespace mindahl::cli

@@ -96,8 +96,10 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
 /// Returns the name of one of these, without its dashes.
 inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
 
-/// Reads "0.01" or "1%".
-/// @throws InputError naming --tolerance, the text and the rule
-double ParseTolerance(const std::string& text);
+/// Adds --tolerance, "0.01" or "1%", by default 1 %.
+void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
+
+/// Adds --threads.
+void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
 
 }  // namespace mindahl::cli

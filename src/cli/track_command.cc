@@ -589,10 +589,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                    {{"refuse", false}, {"skip", true}},
                    "refuse: a row without a number in a needed column ends the run; skip:\nit is "
                    "skipped and counted");
-  cycles
-      .Add("--threads", options->threads,
-           "number of worker threads (default: one per core); they do not change\nthe table")
-      ->check(WholeNumber(1, 1024));
+  AddThreads(cycles, options->threads, "the table");
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();

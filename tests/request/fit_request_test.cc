@@ -275,36 +275,26 @@ TEST(FitRequest, TakesABoundWithBothItsEnds) {
 
 // --- the contact
 
-TEST(ResolveContact, NamesEachQuantityWithItsValue) {
+TEST(ResolveContact, PredictsEachQuantityWithItsUncertainty) {
   ContactOptions options;
   options.friction_coefficient = {0.25, 0.0625};
   options.known = {.normal_load = contact::UncertainValue{80.0, 0.0},
                    .contact_radius = contact::UncertainValue{2e-3, 0.0},
                    .tangential_compliance = contact::UncertainValue{4e-11, 0.0}};
-  const ContactParameters made = ResolveContact(options);
+  const contact::PredictedContact made = ResolveContact(options);
   // σ = 8a/G*, Tc = μN, δc = 3μNG*/(16a), p₀ = 3N/(2πa²).
-  EXPECT_DOUBLE_EQ(made.law.tangential_stiffness, 8 * 2e-3 / 4e-11);
-  EXPECT_DOUBLE_EQ(made.law.slip_force, 20.0);
-  EXPECT_EQ(made.law.shape_exponent, 1.0 / 3);
-  const auto of = [&](std::string_view section, std::string_view name) {
-    const auto found = std::ranges::find_if(made.quantities, [&](const ContactQuantity& quantity) {
-      return quantity.section == section && quantity.name == name;
-    });
-    return found == made.quantities.end() ? contact::UncertainValue{} : found->value;
-  };
-  const auto value = [&](const char* section, const char* name) { return of(section, name).value; };
-  EXPECT_EQ(value("contact", "friction_coefficient"), 0.25);
-  EXPECT_EQ(of("contact", "friction_coefficient").standard_error, 0.0625);
-  EXPECT_EQ(value("contact", "normal_load"), 80.0);
-  EXPECT_EQ(value("contact", "contact_radius"), 2e-3);
-  EXPECT_EQ(value("contact", "compliance"), 4e-11);
-  EXPECT_DOUBLE_EQ(value("contact", "maximum_pressure"), 240 / (2 * std::numbers::pi * 4e-6));
-  EXPECT_DOUBLE_EQ(value("contact", "gross_slip_displacement"), 3 * 20 * 4e-11 / (16 * 2e-3));
-  EXPECT_DOUBLE_EQ(value("parameters", "sigma"), 4e8);
-  EXPECT_EQ(value("parameters", "alpha"), 1.0 / 3);
-  EXPECT_DOUBLE_EQ(value("parameters", "slip_force"), 20.0);
-  EXPECT_DOUBLE_EQ(of("parameters", "slip_force").standard_error, 5.0);
-  EXPECT_THAT(made.quantities, SizeIs(9));
+  EXPECT_DOUBLE_EQ(made.tangential_stiffness.value, 8 * 2e-3 / 4e-11);
+  EXPECT_DOUBLE_EQ(made.slip_force.value, 20.0);
+  EXPECT_DOUBLE_EQ(made.slip_force.standard_error, 5.0);
+  EXPECT_EQ(made.contact_radius.value, 2e-3);
+  EXPECT_EQ(made.tangential_compliance.value, 4e-11);
+  EXPECT_DOUBLE_EQ(made.maximum_pressure.value, 240 / (2 * std::numbers::pi * 4e-6));
+  EXPECT_DOUBLE_EQ(made.gross_slip_displacement.value, 3 * 20 * 4e-11 / (16 * 2e-3));
+  EXPECT_FALSE(made.effective_modulus || made.equivalent_radius || made.approach);
+  LawRequest request;
+  request.contact = options;
+  EXPECT_EQ(ResolveLaw(request).shape_exponent, 1.0 / 3);
+  EXPECT_DOUBLE_EQ(ResolveLaw(request).tangential_stiffness, 4e8);
 }
 
 TEST(ResolveLaw, TakesAContactOrItsParametersAndNamesWhatIsMissing) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -79,9 +78,6 @@ identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 
 /// Returns the columns that are covariates, as the reader takes them.
 std::vector<std::string> CovariateColumns(const FitRequest& request);
-
-/// Receives notes on what was assumed, one sentence each.
-using Tell = std::function<void(std::string_view)>;
 
 /// Requirements of `--strict` on a fit.
 enum class Strictness {
