@@ -50,7 +50,7 @@ def test_plan_is_the_program_s(keywords, options):
 
 
 def test_plan_warns_of_a_record_and_says_what_is_not_reached():
-    with pytest.warns(mindahl.FitWarning, match="far_from_slip.csv: alpha is not identified"):
+    with pytest.warns(mindahl.FitWarning, match="alpha is not identified"):
         result = mindahl.plan(FAR, want={"slip_force": "0.0001%"})
     assert not result.established
     record = mindahl.read_csv(SPHERE)
