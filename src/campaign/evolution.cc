@@ -142,7 +142,10 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const std::string change = RelativeChange(course.first, course.last);
     const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
-    if (!course.changed()) {
+    constexpr std::size_t kFewRows = 20;  // no test of a change has power over so few
+    if (!course.changed() && evolution.course.bins().size() < kFewRows) {
+      text += FromTo(course.first, course.last, evolution.unit) + ", in too few rows to test";
+    } else if (!course.changed()) {
       // The first and the last cycle differ by scatter only, so one value stands for both.
       text += report::Quantity(course.first, evolution.unit, 3) + " throughout, but for scatter";
     } else {

@@ -39,29 +39,6 @@ struct BatchCommandOptions {
   bool overwrite = false;
 };
 
-/// Names the page of each file: its name without the directory and characters that a path may not
-/// have, and a number where two files would have one page.
-class PageNames {
- public:
-  std::string Next(const std::string& file) {
-    std::string stem = std::filesystem::path(file).stem().string();
-    for (char& character : stem) {
-      const auto byte = static_cast<unsigned char>(character);
-      if (byte < 0x20 || std::string_view("<>:\"|?*\\").find(character) != std::string_view::npos) {
-        character = '_';
-      }
-    }
-    std::string name = stem;
-    for (std::size_t number = 2; !taken_.insert(name).second; ++number) {
-      name = fmt::format("{}-{}", stem, number);
-    }
-    return name + ".html";
-  }
-
- private:
-  std::set<std::string> taken_ = {"index"};
-};
-
 /// A directory that is there, or can be made where it is to be, and no file that is written.
 void RequireReportDirectory(const BatchCommandOptions& options) {
   const std::string& directory = options.report_directory;
@@ -85,10 +62,15 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
 std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command,
                                      const Console& console) {
   const std::vector<std::string>& files = options.request.files;
-  PageNames names;
   std::vector<std::string> pages;
   pages.reserve(files.size());
-  for (const std::string& file : files) pages.push_back(names.Next(file));
+  std::set<std::string> taken = {"index"};
+  for (const std::string& file : files) {
+    const std::string stem = std::filesystem::path(file).stem().string();
+    std::string name = stem;
+    for (std::size_t k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}-{}", stem, k);
+    pages.push_back(name + ".html");
+  }
   const auto page_of = [&](std::size_t k) -> WritePage {
     if (options.report_directory.empty()) return {};
     return [&, k](const report::Report& report) {
@@ -112,11 +94,12 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   MakeFitOptions(request);  // before a directory is made
   RequireReportDirectory(options);
   const std::vector<BatchEntry> fits = FitInThreads(options, command, console);
-  const Messages messages{console.err, "batch"};
   for (const BatchEntry& fit : fits) {
-    for (const std::string& note : fit.notes) messages.Note(note);
+    for (const std::string& note : fit.notes) {
+      console.err << fmt::format("mindahl batch: note: {}\n", note);
+    }
     if (fit.fault.empty()) continue;
-    messages.Warn(fmt::format("{}: {}", fit.file, fit.fault));
+    console.err << fmt::format("mindahl batch: warning: {}: {}\n", fit.file, fit.fault);
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {
@@ -152,10 +135,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       "--report", options->report_directory,
       "directory for a page of HTML per file and index.html with all of\nthem; created if absent",
       "DIR");
-  group
-      .Add("--threads", options->threads,
-           "number of worker threads (default: one per core); they do not change\nthe results")
-      ->check(WholeNumber(1, 1024));
+  AddThreads(group, options->threads, "the results");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,18 +23,43 @@ struct ContactCommandOptions {
   std::string json_path;
 };
 
-struct ContactAnswer : request::ContactParameters {};
+struct ContactAnswer {
+  ContactOptions given;
+  contact::PredictedContact predicted;
+};
 
-/// Returns the quantities of a section: as rows of the text, with what they are.
-Json SectionOf(const ContactAnswer& contact, std::string_view section) {
+/// Adds a quantity that there is, with what it is for the text.
+void Add(Json& rows, const char* name, const std::optional<contact::UncertainValue>& value,
+         const char* unit, const char* meaning) {
+  if (!value) return;
+  rows[name] = {{"value", NumberOrNull(value->value)},
+                {"standard_error", NumberOrNull(value->standard_error)},
+                {"unit", unit},
+                {"meaning", meaning}};
+}
+
+Json ContactRows(const ContactAnswer& contact) {
+  const contact::PredictedContact& made = contact.predicted;
   Json rows = Json::object();
-  for (const request::ContactQuantity& quantity : contact.quantities) {
-    if (quantity.section != section) continue;
-    rows[quantity.name] = {{"value", NumberOrNull(quantity.value.value)},
-                           {"standard_error", NumberOrNull(quantity.value.standard_error)},
-                           {"unit", quantity.unit},
-                           {"meaning", quantity.meaning}};
-  }
+  Add(rows, "friction_coefficient", contact.given.friction_coefficient, "-", "mu");
+  Add(rows, "normal_load", contact.given.known.normal_load, "N", "N");
+  Add(rows, "effective_modulus", made.effective_modulus, "Pa", "E*");
+  Add(rows, "equivalent_radius", made.equivalent_radius, "m", "rho");
+  Add(rows, "approach", made.approach, "m", "normal approach a^2/rho");
+  Add(rows, "compliance", made.tangential_compliance, "1/Pa",
+      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
+  Add(rows, "contact_radius", made.contact_radius, "m", "a");
+  Add(rows, "maximum_pressure", made.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
+  Add(rows, "gross_slip_displacement", made.gross_slip_displacement, "m",
+      "delta_c = 3 mu N G*/(16 a)");
+  return rows;
+}
+
+Json ParameterRows(const ContactAnswer& contact) {
+  Json rows = Json::object();
+  Add(rows, "sigma", contact.predicted.tangential_stiffness, "N/m", "8a/G*");
+  Add(rows, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-", "1/3, Mindlin");
+  Add(rows, "slip_force", contact.predicted.slip_force, "N", "Tc = mu N");
   return rows;
 }
 
@@ -43,13 +69,13 @@ std::string ToJson(const ContactAnswer& contact) {
                        {"version", Version()},
                        {"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
                        {"compliance_unit", "1/Pa"},
-                       {"contact", SectionOf(contact, "contact")},
-                       {"parameters", SectionOf(contact, "parameters")}});
+                       {"contact", ContactRows(contact)},
+                       {"parameters", ParameterRows(contact)}});
 }
 
 std::string ToText(const ContactAnswer& contact) {
-  Json rows = SectionOf(contact, "contact");
-  rows.update(SectionOf(contact, "parameters"));
+  Json rows = ContactRows(contact);
+  rows.update(ParameterRows(contact));
   constexpr int kEveryDigit = 17;
   return report::TableText(rows, kEveryDigit);
 }
@@ -57,7 +83,7 @@ std::string ToText(const ContactAnswer& contact) {
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
-  const ContactAnswer contact{ResolveContact(options.contact)};
+  const ContactAnswer contact{options.contact, ResolveContact(options.contact)};
   WarnOfDoubts(options.contact, "contact", console);
   WriteAnswer(options.json_path, console, contact);
 }

@@ -145,6 +145,13 @@ void AddLawOptions(CLI::App& command, LawOptions& request) {
   AddFrictionOption(command, request.contact);
 }
 
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
+  const double slip = models::GrossSlipDisplacement(law, rig);
+  return std::isfinite(slip)
+             ? slip
+             : 3 * law.slip_force / law.tangential_stiffness + law.slip_force / rig.stiffness;
+}
+
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {
   for (const std::string& doubt : DoubtsAbout(options)) {
     console.err << fmt::format("mindahl {}: warning: {}\n", command, doubt);

@@ -7,6 +7,7 @@
 
 #include "cli/app.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/models/response.h"
 #include "mindahl/request/contact_request.h"
 
 namespace mindahl::cli {
@@ -37,6 +38,10 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options);
 /// Adds --sigma, --alpha, --slip-force and what describes a contact, --friction included.
 /// @param request  must outlive the application
 void AddLawOptions(CLI::App& command, LawOptions& request);
+
+/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
+/// slip is only approached.
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
 /// Says on standard error what is hardly meant; `fit` says it with what it identified.
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console);

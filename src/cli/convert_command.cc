@@ -43,7 +43,6 @@ struct ConvertOptions {
   std::string to;
   convert::ConversionOptions options = {};
   convert::NormalContact normal = {};
-  std::string tolerance = "1%";
   std::string json_path;
   std::string input_lines_path;
 };
@@ -59,54 +58,42 @@ struct ConvertedContact {
   std::vector<Parameter> parameters = {};
 };
 
-/// A fit as `mindahl fit --json` wrote it.
-class WrittenFit {
- public:
-  explicit WrittenFit(const std::string& file) : file_(file) {
-    std::ifstream stream(file);
-    if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
-    json_ = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-    const std::string schema = TextAt("/schema");
-    if (!schema.starts_with("mindahl.fit/")) {
-      throw InputError(fmt::format(
-          "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
-    }
-  }
+/// Returns what a place of a document has, null where there is no such place.
+Json At(const Json& document, const std::string& place) {
+  const Json::json_pointer pointer(place);
+  return document.contains(pointer) ? document[pointer] : Json();
+}
 
-  [[nodiscard]] std::string TextAt(const std::string& path) const {
-    const Json::json_pointer pointer(path);
-    return json_.contains(pointer) && json_[pointer].is_string() ? json_[pointer].get<std::string>()
-                                                                 : "";
-  }
-
-  [[nodiscard]] std::optional<double> NumberAt(const std::string& path) const {
-    const Json::json_pointer pointer(path);
-    if (!json_.contains(pointer) || !json_[pointer].is_number()) return std::nullopt;
-    return json_[pointer].get<double>();
-  }
-
- private:
-  std::string file_;
-  Json json_;
-};
+/// Reads what `mindahl fit --json` wrote.
+Json ReadFit(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
+  Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const Json schema = At(fit, "/schema");
+  if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
+  throw InputError(fmt::format(
+      "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
+}
 
 /// Takes law and amplitude from a fit where they are not given.
-void TakeFit(const WrittenFit& fit, ConvertOptions& request) {
-  const std::string model = fit.TextAt("/model");
-  if (request.from.empty()) request.from = model == "dahl" ? "dahl" : "masing";
-  const auto take = [&](std::optional<double>& value, const std::string& name) {
-    const std::string path = "/parameters/" + name;
-    const std::string known = fit.TextAt(path + "/identifiability");
-    const bool is_held = fit.TextAt(path + "/status") == "fixed";
-    if (value || (!is_held && (known == "not_identifiable" || known == "bounded_below"))) return;
-    value = fit.NumberAt(path + "/value");
+void TakeFit(const Json& fit, ConvertOptions& request) {
+  if (request.from.empty()) request.from = At(fit, "/model") == "dahl" ? "dahl" : "masing";
+  const auto take = [&](std::optional<double>& value, const std::string& place) {
+    const Json found = At(fit, place);
+    if (!value && found.is_number()) value = found.get<double>();
   };
-  take(request.sigma, "sigma");
-  take(request.alpha, "alpha");
-  take(request.slip_force, "slip_force");
+  for (const auto& [value, name] : {std::pair(&request.sigma, "sigma"),
+                                    {&request.alpha, "alpha"},
+                                    {&request.slip_force, "slip_force"}}) {
+    const std::string place = fmt::format("/parameters/{}", name);
+    const Json known = At(fit, place + "/identifiability");
+    const bool is_open = known == "not_identifiable" || known == "bounded_below";
+    if (!is_open || At(fit, place + "/status") == "fixed") take(*value, place + "/value");
+  }
   if (request.amplitude || !request.sigma || !request.slip_force) return;
-  request.amplitude = fit.NumberAt("/measured/amplitude");
-  const std::optional<double> rig = fit.NumberAt("/parameters/rig_stiffness/value");
+  take(request.amplitude, "/measured/amplitude");
+  std::optional<double> rig;
+  take(rig, "/parameters/rig_stiffness/value");
   if (!rig || !request.amplitude) return;
   // The rest of the amplitude is the rig's.
   request.amplitude = models::ContactAmplitude(
@@ -143,7 +130,7 @@ ConvertedContact MakeConversion(const ConvertOptions& asked) {
   ConvertOptions request = asked;
   RequireOneOf("--to", request.to, NamesOf(convert::Targets(), &TargetRow::name));
   if (!request.fit.empty()) {
-    TakeFit(WrittenFit(request.fit), request);
+    TakeFit(ReadFit(request.fit), request);
     Require(request.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
@@ -186,23 +173,23 @@ Json ElementsJson(const ConvertedContact& made) {
 
 std::string ToJson(const ConvertedContact& made) {
   const convert::Conversion& conversion = made.conversion;
-  Json json = {{"schema", "mindahl.convert/1"},
-               {"version", Version()},
-               {"from",
-                {{"law", made.from},
-                 {"sigma", made.law.tangential_stiffness},
-                 {"alpha", made.law.shape_exponent},
-                 {"slip_force", made.law.slip_force}}},
-               {"to", made.target.name},
-               {"amplitude", made.options.amplitude},
-               {"tolerance", made.options.tolerance}};
-  json["parameters"] = ParametersJson(made);
-  json["elements"] = ElementsJson(made);
-  json["error_at_amplitude"] = {{"force", NumberOrNull(conversion.at_amplitude.force)},
-                                {"energy", NumberOrNull(conversion.at_amplitude.energy)}};
-  json["within"] = nullptr;
-  if (conversion.within) json["within"] = {conversion.within->lower, conversion.within->upper};
-  return report::Dump(json);
+  const auto& within = conversion.within;
+  return report::Dump({{"schema", "mindahl.convert/1"},
+                       {"version", Version()},
+                       {"from",
+                        {{"law", made.from},
+                         {"sigma", made.law.tangential_stiffness},
+                         {"alpha", made.law.shape_exponent},
+                         {"slip_force", made.law.slip_force}}},
+                       {"to", made.target.name},
+                       {"amplitude", made.options.amplitude},
+                       {"tolerance", made.options.tolerance},
+                       {"parameters", ParametersJson(made)},
+                       {"elements", ElementsJson(made)},
+                       {"error_at_amplitude",
+                        {{"force", NumberOrNull(conversion.at_amplitude.force)},
+                         {"energy", NumberOrNull(conversion.at_amplitude.energy)}}},
+                       {"within", within ? Json({within->lower, within->upper}) : Json()}});
 }
 
 std::string ToText(const ConvertedContact& made) {
@@ -224,9 +211,7 @@ void RunConvert(const ConvertOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
                      console, {options.fit});
-  ConvertOptions asked = options;
-  asked.options.tolerance = ParseTolerance(options.tolerance);
-  const ConvertedContact converted = MakeConversion(asked);
+  const ConvertedContact converted = MakeConversion(options);
   if (!options.input_lines_path.empty()) {
     std::string lines;
     for (const std::string& line :
@@ -272,9 +257,8 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   result.Add("--to", options->to, "law or program")
       ->required()
       ->check(OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name)));
-  result.AddShown("--tolerance", options->tolerance,
-                  "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%",
-                  "E");
+  AddTolerance(result, options->options.tolerance,
+               "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%");
   result.AddShown("--elements", options->options.elements, "number of elements of --to iwan")
       ->check(WholeNumber(1, kMostElements));
   result.AddShown("--beta", options->options.beta,

@@ -20,7 +20,6 @@
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
-#include "mindahl/request/sweep.h"
 
 namespace mindahl::cli {
 namespace {
@@ -33,68 +32,38 @@ struct FitCommandOptions {
   std::string plot_path;
   std::string report_path;
   bool has_details = false;
-  std::string sweep;  // "" for a record
-  std::string response;
 };
 
 /// @param provenance  asked for where a page is written: it reads the files once more
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
                      const std::function<report::Provenance()>& provenance, Console& console) {
-  if (report.failed()) {  // no curve to draw, no residual to list
+  const bool failed = report.failed();  // then there is no curve to draw, no residual to list
+  if (failed) {
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
-    if (!options.report_path.empty()) {
-      io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
-    }
-    if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-    return;
   }
   // The plot first: it alone may still fail.
-  if (!options.plot_path.empty()) io::WritePlot(report::ToPlot(report), options.plot_path);
+  if (!failed && !options.plot_path.empty()) {
+    io::WritePlot(report::ToPlot(report), options.plot_path);
+  }
   if (!options.report_path.empty()) {
     io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
   }
-  if (!options.residuals_path.empty()) {
+  if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
-  if (options.json_path != "-") {
+  if (failed) return;
+  if (options.json_path == "-") {
+    for (const std::string& note : report.notes) {
+      console.err << fmt::format("mindahl fit: note: {}\n", note);
+    }
+  } else {
     console.out << report::ToText(
         report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
-  } else {
-    const Messages messages{console.err, "fit"};
-    for (const std::string& note : report.notes) messages.Note(note);
   }
-}
-
-void RequireSweepOptions(const CLI::App& command) {
-  constexpr auto kOfSweeps = std::to_array<std::string_view>(
-      {"strict", "help", "sweep", "json", "response", "displacement", "force", "encoding", "fix",
-       "model", "confidence"});
-  for (const CLI::Option* option : OptionsOf(command)) {
-    const bool is_of_sweeps = std::ranges::find(kOfSweeps, NameOf(*option)) != kOfSweeps.end();
-    if (option->count() == 0 || is_of_sweeps) continue;
-    throw InputError(
-        fmt::format("--{}: has no meaning with --sweep: leave it out", NameOf(*option)));
-  }
-}
-
-void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console& console) {
-  RequireSweepOptions(command);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console,
-                     options.request.files);
-  const Messages messages{console.err, "fit"};
-  const request::FittedSweep fitted =
-      request::FitSweepFile(options.request, options.sweep, options.response,
-                            [&](std::string_view note) { messages.Note(note); });
-  console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
-  WriteAnswer(options.json_path, console, fitted);
 }
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
-  if (!options.sweep.empty()) return RunSweep(options, command, console);
-  if (!options.response.empty()) {
-    throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
-  }
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
@@ -129,19 +98,6 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->required();
   AddJoin(command, options->request);
   AddFitOptions(command, options->request, NormalLoads::kOneAFile);
-  const OptionGroup sweeps(command, "Amplitude sweeps");
-  sweeps
-      .Add("--sweep", options->sweep,
-           "the file has stiffness or compliance against the amplitude of force or\ndisplacement, "
-           "as lock-in rigs report: secant, of the loop from end to\nend, or tangent, of a small "
-           "oscillation about a force that was reached")
-      ->check(OneOf({"secant", "tangent"}));
-  sweeps.Add(
-      "--response", options->response,
-      "column of the stiffness or compliance, with its unit if the header has\nnone, "
-      "\"2 [N/um]\"; default a recognised name; --displacement or --force\nnames the column of "
-      "the amplitude",
-      "COL");
   const OptionGroup group(command, "Results");
   group.AddFlag("--details", options->has_details, "print what the answer leaves out");
   group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");

@@ -120,13 +120,13 @@ void ReadSelection(std::string_view what, std::string_view range, const std::str
                    FitRequest& request) {
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
   if (what == "cycles") {
-    request.cycles = ParseCountRange(range, option, counted);
+    request.fit.preparation.cycles = ParseCountRange(range, option, counted);
   } else if (what == "samples") {
-    request.samples = ParseCountRange(range, option, counted);
+    request.fit.preparation.samples = ParseCountRange(range, option, counted);
   } else if (what == "time") {
     request.time_window = ParseInterval(range, option, "LO:HI in seconds", "s");
   } else if (what == "load") {
-    request.load_window = ParseInterval(range, option, "LO:HI in newtons", "N");
+    request.fit.preparation.load_window = ParseInterval(range, option, "LO:HI in newtons", "N");
   } else {
     throw InputError(fmt::format(
         "{}: {} must be one of them", option,
@@ -161,10 +161,8 @@ void AddSelections(CLI::App& command, FitRequest& request) {
             const std::string& text) { ReadSelection(what, text, option, request); },
         "", "LO:HI");
   }
-  group
-      .AddShown("--trim", request.trim,
-                "leave out what at the ends of a record is not the test, and say which\nrows")
-      ->check(OneOf(request::kOnOff));
+  group.AddChoice("--trim", request.trim, {{"on", true}, {"off", false}},
+                  "leave out what at the ends of a record is not the test, and say which\nrows");
 }
 
 /// Breaks a list of words into lines of a help text, the first of which has `used` characters.
@@ -247,40 +245,33 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
             "NAME");
 }
 
-void RequireNoColumns(const io::RecordColumns& columns) {
-  const auto require = [](const std::string& given, std::string_view option) {
-    if (given.empty()) return;
-    throw InputError(
-        fmt::format("{} {}: there is no record to read a column of: give --record", option, given));
-  };
-  require(columns.displacement, "--displacement");
-  require(columns.force, "--force");
-  require(columns.time, "--time");
-  require(columns.normal_load, "--normal-load-column");
-}
-
 void AddModelOptions(CLI::App& command, FitRequest& options) {
   const OptionGroup group(command, "Model");
-  group.AddShown("--model", options.model, DescribeModels())->check(OneOf(request::ModelNames()));
+  identification::FitOptions& fit = options.fit;
+  std::vector<std::pair<std::string, const models::FrictionModel*>> models;
+  for (const std::string_view name : request::ModelNames()) {
+    models.emplace_back(name, models::FindFrictionModel(name));
+  }
+  group.AddChoice("--model", fit.model, std::move(models), DescribeModels());
   group.AddFlag("--compare", options.compare,
                 "list all models, with and without a rig, by AICc and held-out cycles");
-  group
-      .AddShown("--initial-state", options.initial_state,
-                "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
-                "auto fits both and keeps the smaller AICc")
-      ->check(OneOf(request::kInitialStates));
-  group
-      .AddShown("--force-sign", options.force_sign,
-                "sign of the force in the file relative to the displacement; auto\ndecides by the "
-                "sign of the loop's energy")
-      ->check(OneOf(request::kForceSigns));
-  group
-      .AddShown("--noise-in", options.noise_in,
-                "channel that has the noise and is fitted; the other one is taken as\nexact: give "
-                "displacement where the machine imposes the force")
-      ->check(OneOf(request::kNoiseIn));
-  group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
-      ->check(OneOf(request::kOnOff));
+  group.AddChoice("--initial-state", fit.initial_state,
+                  {{"auto", {}},
+                   {"virgin", models::InitialState::kVirgin},
+                   {"steady", models::InitialState::kSteady}},
+                  "virgin: the record starts from an unloaded contact; steady: from a\ncycled one; "
+                  "auto fits both and keeps the smaller AICc");
+  group.AddChoice("--force-sign", fit.preparation.force_sense,
+                  {{"auto", {}}, {"same", 1}, {"opposite", -1}},
+                  "sign of the force in the file relative to the displacement; auto\ndecides by "
+                  "the sign of the loop's energy");
+  group.AddChoice(
+      "--noise-in", fit.preparation.excitation,
+      {{"force", loop::Channel::kDisplacement}, {"displacement", loop::Channel::kForce}},
+      "channel that has the noise and is fitted; the other one is taken as\nexact: give "
+      "displacement where the machine imposes the force");
+  group.AddChoice("--offsets", fit.offsets, {{"on", true}, {"off", false}},
+                  "fit offsets of force and displacement");
   group.AddRead(
       "--rig-stiffness",
       [&options](const std::string& text) { options.rig_stiffness = ParseRig(text); },
@@ -313,39 +304,43 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
         help, type);
   };
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
-  add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
-  add_assignments("--start", options.start, "NAME=VALUE", kValue, &ParseNumber,
+  add_assignments("--fix", fit.fixed, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
+  add_assignments("--start", fit.start, "NAME=VALUE", kValue, &ParseNumber,
                   "start the search from a value instead of the data's");
-  add_assignments("--bound", options.bound, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2",
-                  &ParseInterval, "keep a parameter between two values");
+  add_assignments("--bound", fit.bounds, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2", &ParseInterval,
+                  "keep a parameter between two values");
   add_assignments(
-      "--prior", options.prior, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
+      "--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
       [](std::string_view value, std::string_view option, std::string_view, std::string_view unit) {
         const contact::UncertainValue prior = ParseUncertainValue(value, option, unit);
-        if (prior.standard_error > 0) return prior;
+        if (prior.standard_error > 0) {
+          return identification::Prior{prior.value, prior.standard_error};
+        }
         throw InputError(fmt::format(
             "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
             value));
       },
       "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
-  group.AddShown("--confidence", options.confidence, "confidence of every interval [-]", "C");
+  group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
   group
-      .Add("--force-noise", options.force_noise,
+      .Add("--force-noise", fit.force_noise,
            "known standard deviation of the force [N]; default from the residuals", "N")
       ->transform(InUnit("N"));
   group
-      .Add("--displacement-noise", options.displacement_noise,
+      .Add("--displacement-noise", fit.preparation.displacement_noise,
            "known standard deviation of the displacement [m]; default from the\ndata where they "
            "show any",
            "M")
       ->transform(InUnit("m"));
+  group.AddChoice("--loss", fit.loss,
+                  {{"none", identification::Loss::kNone},
+                   {"huber", identification::Loss::kHuber},
+                   {"cauchy", identification::Loss::kCauchy},
+                   {"tukey", identification::Loss::kTukey}},
+                  "weight of residuals that are large against their scatter: huber and\ncauchy "
+                  "reduce it, tukey reduces it to zero");
   group
-      .AddShown("--loss", options.loss,
-                "weight of residuals that are large against their scatter: huber and\ncauchy "
-                "reduce it, tukey reduces it to zero")
-      ->check(OneOf(request::kLosses));
-  group
-      .Add("--reversal-gate", options.reversal_gate,
+      .Add("--reversal-gate", fit.preparation.reversal_gate,
            "excursions up to this [m] are noise, not reversals; default from the\ndata", "M")
       ->transform(InUnit("m"));
 }
@@ -397,14 +392,6 @@ void AddStrict(const OptionGroup& group, Strictness& strictness, const std::stri
                             " unless the model is adequate and every free\n"
                             "parameter identifiable; --strict=doubtful accepts a doubtful\n"
                             "model and parameters that are effective");
-}
-
-void Messages::Note(std::string_view text) const {
-  stream << fmt::format("mindahl {}: note: {}\n", command, text);
-}
-
-void Messages::Warn(std::string_view text) const {
-  stream << fmt::format("mindahl {}: warning: {}\n", command, text);
 }
 
 }  // namespace mindahl::cli

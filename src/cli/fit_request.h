@@ -1,6 +1,5 @@
 #pragma once
 
-#include <ostream>
 #include <string_view>
 
 #include "cli/contact_options.h"
@@ -25,23 +24,11 @@ void AddJoin(CLI::App& command, FitRequest& options);
 /// Adds the options that say which columns of a record are read, and in what unit.
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
 
-/// @throws InputError where any of these is given, but no record that it would be of
-void RequireNoColumns(const io::RecordColumns& columns);
-
 /// Adds the options of the model that is fitted to them.
 void AddModelOptions(CLI::App& command, FitRequest& request);
 
 /// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
 /// @param otherwise  what happens to a fit that is not: "exit status 3"
 void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise);
-
-/// Receives the notes on assumptions and the warnings of a command.
-struct Messages {
-  std::ostream& stream;
-  std::string_view command;  ///< "fit"
-
-  void Note(std::string_view text) const;
-  void Warn(std::string_view text) const;
-};
 
 }  // namespace mindahl::cli

@@ -144,15 +144,26 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
       [](const CLI::Option* option) { return !option->get_lnames().empty(); });
 }
 
-double ParseTolerance(const std::string& text) {
-  const bool percent = text.ends_with('%');
-  const std::optional<double> number =
-      NumberIn<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
-  if (!number || !(*number > 0) || !std::isfinite(*number)) {
-    throw InputError(
-        fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
-  }
-  return percent ? *number / 100 : *number;
+void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help) {
+  const auto read = [&tolerance](const std::string& text) {
+    const bool percent = text.ends_with('%');
+    const std::optional<double> number =
+        NumberIn<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
+    if (!number || !(*number > 0) || !std::isfinite(*number)) {
+      throw InputError(
+          fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
+    }
+    tolerance = percent ? *number / 100 : *number;
+  };
+  group.AddRead("--tolerance", read, help, "E")->default_str("1%");
+}
+
+void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged) {
+  constexpr std::uint64_t kMost = 1024;
+  group
+      .Add("--threads", threads,
+           "number of worker threads (default: one per core); they do not change\n" + unchanged)
+      ->check(WholeNumber(1, kMost));
 }
 
 }  // namespace mindahl::cli

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "cli/app.h"
+#include "core/text.h"
 
 namespace mindahl::cli {
 
@@ -51,6 +54,19 @@ class OptionGroup {
                         const std::string& type = "") const {
     return Add(option, value, help, type)->capture_default_str();
   }
+  /// Adds an option whose words stand for values, the first for the one that it has.
+  template <typename Value>
+  CLI::Option* AddChoice(const std::string& option, Value& target,
+                         std::vector<std::pair<std::string, Value>> choices,
+                         const std::string& help) const {
+    const auto text = std::make_shared<std::string>(choices.front().first);
+    return AddShown(option, *text, help)
+        ->check(OneOf(NamesOf(choices, &std::pair<std::string, Value>::first)))
+        ->each([text, &target, choices](const std::string& word) {
+          const auto named = [&](const auto& choice) { return choice.first == word; };
+          target = std::ranges::find_if(choices, named)->second;
+        });
+  }
   /// Adds an option whose text, or whose texts, a function reads.
   CLI::Option* AddRead(const std::string& option,
                        const std::function<void(const std::string&)>& read, const std::string& help,
@@ -80,8 +96,10 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
 /// Returns the name of one of these, without its dashes.
 inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
 
-/// Reads "0.01" or "1%".
-/// @throws InputError naming --tolerance, the text and the rule
-double ParseTolerance(const std::string& text);
+/// Adds --tolerance, "0.01" or "1%", by default 1 %.
+void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
+
+/// Adds --threads.
+void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
 
 }  // namespace mindahl::cli

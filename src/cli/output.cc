@@ -55,13 +55,6 @@ void RequireWritable(const OutputPath& output) {
     throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", output.option,
                                  output.path, parent.string()));
   }
-  if (fs::path(output.path).extension() == ".parquet") {
-    throw InputError(
-        fmt::format("{}: cannot write '{}' as Parquet: name a table .csv, of which DuckDB makes "
-                    "one: COPY (FROM "
-                    "'table.csv') TO '{}'",
-                    output.option, output.path, output.path));
-  }
 }
 
 }  // namespace

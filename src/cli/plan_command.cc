@@ -23,6 +23,7 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
+#include "report/names.h"
 #include "report/table.h"
 
 namespace mindahl::cli {
@@ -49,7 +50,7 @@ struct PlanOptions {
   std::optional<double> load_exponent;
   std::vector<double> amplitudes;
   Protocol protocol;
-  std::string initial_state = "both";
+  std::vector<InitialState> initial_states = {InitialState::kVirgin, InitialState::kSteady};
   std::vector<std::string> with;
   std::vector<std::string> want;
   std::string json;
@@ -76,14 +77,6 @@ struct Plan {
   std::vector<PlannedLoops> columns = {};
   std::vector<std::string> notes = {};
 };
-
-/// Returns gross slip behind the rig, or three elastic limits where slip is only approached.
-double SlipReach(const Expectation& expected) {
-  const double slip = models::GrossSlipDisplacement(expected.law, expected.rig);
-  return std::isfinite(slip) ? slip
-                             : 3 * expected.law.slip_force / expected.law.tangential_stiffness +
-                                   expected.law.slip_force / expected.rig.stiffness;
-}
 
 identification::FitOptions PlannedFit(const PlanOptions& options) {
   const std::vector<std::string_view> planned = identification::PlannedTerms();
@@ -142,9 +135,7 @@ void SetExpectation(const PlanOptions& options, Plan& plan) {
           "--record excludes --sigma, --slip-force and other options that describe a contact");
     }
     ExpectFromRecord(options, plan);
-    for (std::string& note : plan.notes) note = fmt::format("{}: {}", options.record, note);
   } else {
-    RequireNoColumns(options.columns);
     if (!options.force_noise) {
       throw InputError("--force-noise missing: give the standard deviation of the force [N]");
     }
@@ -199,18 +190,16 @@ Plan MakePlan(const PlanOptions& options) {
             .protocol = options.protocol,
             .wanted = ParseWanted(options.want)};
   SetExpectation(options, plan);
-  plan.slip = SlipReach(plan.expected);
+  plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
   const identification::FitOptions fit_options = PlannedFit(options);
   std::vector<double> amplitudes = options.amplitudes;
   constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
   if (amplitudes.empty()) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
-  for (const auto& [state, name] :
-       {std::pair(InitialState::kVirgin, "virgin"), {InitialState::kSteady, "steady"}}) {
-    if (options.initial_state != "both" && options.initial_state != name) continue;
+  for (const InitialState state : options.initial_states) {
     PlannedLoops& column = plan.columns.emplace_back();
-    column.initial_state = name;
+    column.initial_state = report::Name(state);
     Protocol protocol = plan.protocol;
     protocol.initial_state = state;
     for (const double amplitude : amplitudes) {
@@ -448,11 +437,15 @@ void AddPlanCommand(CLI::App& app, Console& console) {
        "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
   AddLawOptions(command, options->law);
   const OptionGroup expected(command, "What is expected");
-  expected.Add("--record", options->record,
-               "take contact and noise from a fit of this record; --alpha is used\n"
-               "where the record does not determine it",
-               "FILE");
+  CLI::Option* const record =
+      expected.Add("--record", options->record,
+                   "take contact and noise from a fit of this record; --alpha is used\n"
+                   "where the record does not determine it",
+                   "FILE");
   AddColumnOptions(command, options->columns);
+  for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
+    command.get_option(name)->needs(record);
+  }
   expected
       .Add("--rig-stiffness", options->rig_stiffness,
            "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
@@ -481,9 +474,11 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
       ->check(WholeNumber(4, 1'000'000));
-  loop.AddShown("--initial-state", options->initial_state,
-                "virgin: the loop includes the first loading; steady: it does not")
-      ->check(OneOf({"virgin", "steady", "both"}));
+  loop.AddChoice("--initial-state", options->initial_states,
+                 {{"both", options->initial_states},
+                  {"virgin", {InitialState::kVirgin}},
+                  {"steady", {InitialState::kSteady}}},
+                 "virgin: the loop includes the first loading; steady: it does not");
   const OptionGroup fit(command, "The fit");
   fit.Add("--with", options->with, "further terms that are fitted: rig_stiffness, plateau_slope …",
           "TERM")

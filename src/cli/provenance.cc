@@ -43,16 +43,7 @@ std::string ShellWord(std::string_view word) {
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
     return std::string(word);
   }
-  std::string quoted = "'";
-  for (const char character : word) {
-    if (character == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += character;
-    }
-  }
-  quoted += '\'';
-  return quoted;
+  return fmt::format("'{}'", CLI::detail::find_and_replace(std::string(word), "'", "'\\''"));
 }
 
 std::string CommandLine(int argc, const char* const* argv) {

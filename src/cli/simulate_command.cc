@@ -41,24 +41,17 @@ using tradeoff::Approximation;
 
 namespace {
 
-/// Holds what is asked for the motion of a contact: a waveform, or a file.
-struct DriveOptions {
-  std::string waveform = "sine";
-  std::optional<double> lambda;
-  std::optional<double> amplitude;
-  models::ExcitationOptions excitation{.cycles = 1.0};
-  std::string path;
-  std::string displacement;  // column of that file; "": the first, or by its name
-  std::string load_column;   // likewise, of the normal load; "": the load is constant
-  std::string force_path;    // a file that imposes the force instead
-  std::string force;         // column of that file, likewise
-  std::uint64_t seed = 1;
-};
-
 struct SimulateOptions {
   std::string model = "mindlin";
   LawOptions law;
-  DriveOptions drive;
+  models::ExcitationOptions excitation{.cycles = 1.0};
+  std::optional<double> lambda;
+  std::optional<double> amplitude;
+  std::string path;                 // a file with the motion, instead
+  std::string displacement;         // column of that file; "": the first, or by its name
+  std::string load_column;          // likewise, of the normal load; "": the load is constant
+  std::string force_path;           // a file that imposes the force instead
+  std::string force;                // column of that file, likewise
   double asymmetry = 0.0;           // A of slip forces Tc(1 ± A) [-]
   double force_noise = 0.0;         // standard deviation [N]
   double displacement_noise = 0.0;  // standard deviation [m]
@@ -69,16 +62,12 @@ struct SimulateOptions {
 };
 
 /// One entry a row of output.
-struct ImposedMotion {
+struct Simulation {
   std::vector<double> time = {};          // [s]
   std::vector<double> displacement = {};  // [m]
   std::vector<double> envelope = {};      // [m]; empty unless the amplitude changes along the way
   std::vector<double> normal_load = {};   // [N]; empty unless a file gives it
-};
-
-struct Simulation {
-  ImposedMotion motion = {};
-  std::vector<double> force = {};  // [N]
+  std::vector<double> force = {};         // [N]
 };
 
 /// Time counts rows.
@@ -88,26 +77,25 @@ std::vector<double> CountRows(std::size_t rows) {
   return time;
 }
 
-ImposedMotion MotionFromFile(const DriveOptions& request) {
-  ImposedMotion motion;
-  const io::CsvTable table = io::ReadCsvTable(request.path);
-  motion.displacement = io::ImposedColumn(table, io::Imposed::kDisplacement, request.displacement);
-  if (!request.load_column.empty()) {
-    motion.normal_load = io::ImposedColumn(table, io::Imposed::kNormalLoad, request.load_column);
+Simulation MotionFromFile(const SimulateOptions& options) {
+  Simulation motion;
+  const io::CsvTable table = io::ReadCsvTable(options.path);
+  motion.displacement = io::ImposedColumn(table, io::Imposed::kDisplacement, options.displacement);
+  if (!options.load_column.empty()) {
+    motion.normal_load = io::ImposedColumn(table, io::Imposed::kNormalLoad, options.load_column);
   }
   motion.time = CountRows(motion.displacement.size());
   return motion;
 }
 
-ImposedMotion MotionFromWaveform(const DriveOptions& request, const models::BranchLaw& law) {
-  models::ExcitationOptions excitation = request.excitation;
-  excitation.waveform = *models::FindWaveform(request.waveform);
-  excitation.seed = request.seed;
-  if (request.lambda.has_value() == request.amplitude.has_value()) {
+Simulation MakeMotion(const SimulateOptions& options, const models::BranchLaw& law) {
+  if (!options.path.empty()) return MotionFromFile(options);
+  models::ExcitationOptions excitation = options.excitation;
+  if (options.lambda.has_value() == options.amplitude.has_value()) {
     throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
   }
-  if (request.lambda) {
-    RequirePositive("--lambda [-]", *request.lambda);
+  if (options.lambda) {
+    RequirePositive("--lambda [-]", *options.lambda);
     const double gross_slip = GrossSlipDisplacement(law);
     if (!std::isfinite(gross_slip)) {
       throw InputError(fmt::format(
@@ -115,32 +103,29 @@ ImposedMotion MotionFromWaveform(const DriveOptions& request, const models::Bran
           "1: give --amplitude",
           law.shape_exponent));
     }
-    excitation.amplitude = *request.lambda * gross_slip;
+    excitation.amplitude = *options.lambda * gross_slip;
   } else {
-    RequirePositive("--amplitude [m]", *request.amplitude);
-    excitation.amplitude = *request.amplitude;
+    RequirePositive("--amplitude [m]", *options.amplitude);
+    excitation.amplitude = *options.amplitude;
   }
   models::Excitation made = models::MakeExcitation(excitation);
-  ImposedMotion motion{std::move(made.time), std::move(made.displacement)};
-  if (excitation.waveform == models::Waveform::kGrowingSine)
+  Simulation motion{.time = std::move(made.time), .displacement = std::move(made.displacement)};
+  if (excitation.waveform == models::Waveform::kGrowingSine) {
     motion.envelope = std::move(made.envelope);
+  }
   return motion;
 }
 
-ImposedMotion MakeMotion(const DriveOptions& request, const models::BranchLaw& law) {
-  return request.path.empty() ? MotionFromWaveform(request, law) : MotionFromFile(request);
-}
-
 /// Returns a force within the slip force, which a file imposes.
-std::vector<double> ReadImposedForce(const DriveOptions& request, const models::BranchLaw& law) {
-  const io::CsvTable table = io::ReadCsvTable(request.force_path);
-  std::vector<double> force = io::ImposedColumn(table, io::Imposed::kForce, request.force);
+std::vector<double> ReadImposedForce(const SimulateOptions& options, const models::BranchLaw& law) {
+  const io::CsvTable table = io::ReadCsvTable(options.force_path);
+  std::vector<double> force = io::ImposedColumn(table, io::Imposed::kForce, options.force);
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (std::abs(force[i]) < law.slip_force) continue;
     throw InputError(fmt::format(
         "{}:{}: a force of {} N is not within the slip force, {} N, at which the contact slides "
         "any distance: keep forces below it, or impose the displacement with --path",
-        request.force_path, table.lines[i], force[i], law.slip_force));
+        options.force_path, table.lines[i], force[i], law.slip_force));
   }
   return force;
 }
@@ -193,17 +178,17 @@ Simulation FollowForce(const SimulateOptions& options) {
     throw InputError("--asymmetry cannot be used with --force-path: leave one of the two out");
   }
   const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
-  Simulation made{.force = ReadImposedForce(options.drive, law)};
-  made.motion.time = CountRows(made.force.size());
-  made.motion.displacement.resize(made.force.size());
-  models::EvaluateDisplacement(model, law, made.force, made.motion.displacement);
+  Simulation made{.force = ReadImposedForce(options, law)};
+  made.time = CountRows(made.force.size());
+  made.displacement.resize(made.force.size());
+  models::EvaluateDisplacement(model, law, made.force, made.displacement);
   return made;
 }
 
 /// Computes the force of a contact whose slip force follows a load, or differs between the
 /// directions: Dahl's own law does both.
 Simulation FollowLoad(const SimulateOptions& options) {
-  const bool is_loaded = !options.drive.load_column.empty();
+  const bool is_loaded = !options.load_column.empty();
   const FrictionModel& model =
       RequireClosedForm(options, is_loaded ? "--normal-load-column" : "--asymmetry");
   const std::optional<contact::UncertainValue>& given = options.law.contact.known.normal_load;
@@ -214,14 +199,14 @@ Simulation FollowLoad(const SimulateOptions& options) {
   }
   const models::BranchLaw law = LawOf(options, is_loaded);
   const double load = is_loaded ? given->value : 1.0;
-  Simulation made{.motion = MakeMotion(options.drive, law)};
-  const std::vector<double>& displacement = made.motion.displacement;
+  Simulation made = MakeMotion(options, law);
+  const std::vector<double>& displacement = made.displacement;
   made.force.resize(displacement.size());
   if (model.memory == models::Memory::kNone) {
     const std::vector<double> constant(displacement.size(), load);
     models::EvaluateJointFriction(
         {.law = law, .reference_load = load, .asymmetry = options.asymmetry}, displacement,
-        is_loaded ? made.motion.normal_load : constant, made.force);
+        is_loaded ? made.normal_load : constant, made.force);
   } else if (!is_loaded) {
     models::EvaluateForce(
         model, law,
@@ -236,7 +221,7 @@ Simulation FollowLoad(const SimulateOptions& options) {
                                     .reference_load = load,
                                     .reference_stiffness = law.tangential_stiffness,
                                     .shape_exponent = law.shape_exponent},
-                                   displacement, made.motion.normal_load, made.force);
+                                   displacement, made.normal_load, made.force);
   }
   return made;
 }
@@ -257,27 +242,26 @@ Simulation Simulate(const SimulateOptions& options) {
   }
   const Approximation approximation = ResolveMethod(options);
   Simulation made;
-  if (!options.drive.force_path.empty()) {
+  if (!options.force_path.empty()) {
     made = FollowForce(options);
-  } else if (options.asymmetry != 0 || !options.drive.load_column.empty()) {
+  } else if (options.asymmetry != 0 || !options.load_column.empty()) {
     made = FollowLoad(options);
   } else {
     const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
-    made.motion = MakeMotion(options.drive, law);
-    made.force.resize(made.motion.displacement.size());
-    Prepare(approximation, law)({made.motion.displacement, made.motion.envelope}, made.force);
+    made = MakeMotion(options, law);
+    made.force.resize(made.displacement.size());
+    Prepare(approximation, law)({made.displacement, made.envelope}, made.force);
   }
-  boost::random::mt19937_64 engine(options.drive.seed);
+  boost::random::mt19937_64 engine(options.excitation.seed);
   AddNoise(made.force, options.force_noise, engine);
-  AddNoise(made.motion.displacement, options.displacement_noise, engine);
+  AddNoise(made.displacement, options.displacement_noise, engine);
   return made;
 }
 
-std::string ToCsv(const Simulation& simulation) {
-  const auto& [motion, force] = simulation;
+std::string ToCsv(const Simulation& made) {
   std::vector<io::CsvColumn> columns = {
-      {"time [s]", motion.time}, {"displacement [m]", motion.displacement}, {"force [N]", force}};
-  if (!motion.normal_load.empty()) columns.push_back({"normal load [N]", motion.normal_load});
+      {"time [s]", made.time}, {"displacement [m]", made.displacement}, {"force [N]", made.force}};
+  if (!made.normal_load.empty()) columns.push_back({"normal load [N]", made.normal_load});
   return io::CsvText(columns);
 }
 
@@ -288,10 +272,14 @@ std::vector<std::string> SimulatedModels() {
   return names;
 }
 
-void AddDriveOptions(CLI::App& command, DriveOptions& request) {
+void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   const OptionGroup group(command, "Excitation");
-  group.AddShown("--waveform", request.waveform, "imposed displacement")
-      ->check(OneOf(models::WaveformNames()));
+  std::vector<std::pair<std::string, models::Waveform>> waveforms;
+  for (const auto& name : models::WaveformNames()) {
+    waveforms.emplace_back(name, *models::FindWaveform(name));
+  }
+  group.AddChoice("--waveform", request.excitation.waveform, std::move(waveforms),
+                  "imposed displacement");
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
   group.Add("--amplitude", request.amplitude, "amplitude [m]", "M");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
@@ -342,7 +330,7 @@ std::string MethodHelp() {
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, console,
-                     {options.drive.path, options.drive.force_path});
+                     {options.path, options.force_path});
   const Simulation simulation = Simulate(options);
   WarnOfDoubts(options.law.contact, "simulate", console);
   WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
@@ -368,12 +356,13 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   plain.AddShown(
       "--asymmetry", options->asymmetry,
       "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]", "A");
-  AddDriveOptions(command, options->drive);
+  AddDriveOptions(command, *options);
 
   const OptionGroup noise(command, "Noise");
   noise.Add("--noise-force", options->force_noise, "standard deviation [N]", "N");
   noise.Add("--noise-displacement", options->displacement_noise, "standard deviation [m]", "M");
-  noise.AddShown("--seed", options->drive.seed, "seed of the noise and of the random waveform")
+  noise
+      .AddShown("--seed", options->excitation.seed, "seed of the noise and of the random waveform")
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
   const OptionGroup method(command, "Method");

@@ -55,7 +55,6 @@ struct TrackCommandOptions {
   std::size_t average = 1;  // cycles in a row that are fitted together
   std::size_t every = 1;    // one fit of so many that there could be
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
-  std::string broken_rows = "refuse";
   std::string output;
   std::string json_path;
   std::string plot_path;
@@ -586,15 +585,11 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       ->check(WholeNumber(1, 1'000'000));
   cycles.AddShown("--every", options->every, "fit only one cycle of this many")
       ->check(WholeNumber(1, 1'000'000'000));
-  cycles
-      .AddShown("--broken-rows", options->broken_rows,
-                "refuse: a row without a number in a needed column ends the run; skip:\nit is "
-                "skipped and counted")
-      ->check(OneOf({"refuse", "skip"}));
-  cycles
-      .Add("--threads", options->threads,
-           "number of worker threads (default: one per core); they do not change\nthe table")
-      ->check(WholeNumber(1, 1024));
+  cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
+                   {{"refuse", false}, {"skip", true}},
+                   "refuse: a row without a number in a needed column ends the run; skip:\nit is "
+                   "skipped and counted");
+  AddThreads(cycles, options->threads, "the table");
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();
@@ -606,10 +601,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.AddFlag("--resume", options->resume,
                 "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
-  command.callback([options, &command, &console] {
-    options->fit.columns.skip_broken_rows = options->broken_rows == "skip";
-    RunTrack(*options, command, console);
-  });
+  command.callback([options, &command, &console] { RunTrack(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

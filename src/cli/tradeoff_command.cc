@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -59,7 +58,6 @@ struct TradeoffOptions {
   std::string csv;
   std::string plot;
   std::string json;
-  std::string tolerance_text = "1%";
   double tolerance = 0.01;
 };
 
@@ -81,19 +79,12 @@ constexpr std::array kScenes = {
 
 /// The contact of Peyret et al. (2017) §3.
 BranchLaw PaperContact() {
-  ContactOptions contact;
-  contact.friction_coefficient = 0.3;
-  contact.known.normal_load = 100;
-  contact.known.contact_radius = 0.0027;
-  contact.known.tangential_compliance = 4.42e-11;
-  return ResolveContact(contact).law;
-}
-
-/// Returns the displacement [m] of λ = 1: gross slip, or three elastic limits where slip is only
-/// approached.
-double SlipReachOfLaw(const BranchLaw& law) {
-  const double gross_slip = GrossSlipDisplacement(law);
-  return std::isfinite(gross_slip) ? gross_slip : 3 * law.slip_force / law.tangential_stiffness;
+  LawOptions law;
+  law.contact.friction_coefficient = 0.3;
+  law.contact.known = {.normal_load = contact::UncertainValue(100),
+                       .contact_radius = contact::UncertainValue(0.0027),
+                       .tangential_compliance = contact::UncertainValue(4.42e-11)};
+  return ResolveLaw(law);
 }
 
 MeasuredExcitation Measure(const BranchLaw& law, std::string name, std::string title,
@@ -123,7 +114,7 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
     if (!chosen) continue;
     const models::Excitation excitation =
         models::MakeExcitation({.waveform = scene.waveform,
-                                .amplitude = scene.lambda * SlipReachOfLaw(law),
+                                .amplitude = scene.lambda * SlipReach(law),
                                 .cycles = scene.cycles});
     methods::Drive drive{.displacement = excitation.displacement};
     if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
@@ -218,26 +209,22 @@ io::Plot ToPlot(const Tradeoff& study) {
     panel.log_x = true;
     panel.log_y = true;
     panel.title = scene.title;
-    std::vector<std::string> order;
-    std::map<std::string, io::PlotSeries> curves;
+    // One legend serves all panels: their curves are the same.
+    const bool has_legend = &scene == &scenes.front();
+    std::vector<std::string> labels;
     for (const WorkPrecision& point : scene.points) {
       const tradeoff::Approximation& approximation = point.approximation;
       const bool other_model = approximation.model != scene.points.back().approximation.model;
-      const std::string label = other_model ? approximation.model : approximation.method;
-      if (!curves.contains(label)) {
-        order.push_back(label);
-        curves[label] = {
-            .label = label,
-            .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints};
+      const std::string& label = other_model ? approximation.model : approximation.method;
+      auto place = static_cast<std::size_t>(std::ranges::find(labels, label) - labels.begin());
+      if (place == labels.size()) {
+        labels.push_back(label);
+        panel.series.push_back(
+            {.label = has_legend ? label : "",
+             .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints});
       }
-      curves[label].x.push_back(point.cost);
-      curves[label].y.push_back(std::max(point.precision.max_force, kRounding));
-    }
-    // One legend serves all panels: their curves are the same.
-    const bool has_legend = &scene == &scenes.front();
-    for (const std::string& label : order) {
-      panel.series.push_back(curves[label]);
-      if (!has_legend) panel.series.back().label.clear();
+      panel.series[place].x.push_back(point.cost);
+      panel.series[place].y.push_back(std::max(point.precision.max_force, kRounding));
     }
     plot.panels.push_back(std::move(panel));
   }
@@ -245,23 +232,23 @@ io::Plot ToPlot(const Tradeoff& study) {
 }
 
 std::string ToJson(const Tradeoff& study) {
-  Json json;
-  json["schema"] = "mindahl.tradeoff/1";
-  json["version"] = Version();
-  json["law"] = {{"sigma", study.law.tangential_stiffness},
-                 {"alpha", study.law.shape_exponent},
-                 {"slip_force", study.law.slip_force}};
-  json["tolerance"] = study.tolerance;
-  json["excitations"] = Json::array();
+  Json scenes = Json::array();
   for (const MeasuredExcitation& scene : study.excitations) {
     const Json points = PointRows(scene);
-    json["excitations"].push_back({{"name", scene.name},
-                                   {"samples", scene.samples},
-                                   {"cheapest", points[scene.cheapest]},
-                                   {"cheapest_with_energy", points[scene.cheapest_with_energy]},
-                                   {"points", points}});
+    scenes.push_back({{"name", scene.name},
+                      {"samples", scene.samples},
+                      {"cheapest", points[scene.cheapest]},
+                      {"cheapest_with_energy", points[scene.cheapest_with_energy]},
+                      {"points", points}});
   }
-  return report::Dump(json);
+  return report::Dump({{"schema", "mindahl.tradeoff/1"},
+                       {"version", Version()},
+                       {"law",
+                        {{"sigma", study.law.tangential_stiffness},
+                         {"alpha", study.law.shape_exponent},
+                         {"slip_force", study.law.slip_force}}},
+                       {"tolerance", study.tolerance},
+                       {"excitations", std::move(scenes)}});
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
@@ -274,7 +261,6 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
     asked.displacement = io::ImposedColumn(io::ReadCsvTable(options.path),
                                            io::Imposed::kDisplacement, options.column);
   }
-  asked.tolerance = ParseTolerance(options.tolerance_text);
   const Tradeoff study = MakeTradeoff(asked);
   WarnOfDoubts(options.law.contact, "tradeoff", console);
   // The plot first: it alone may still fail.
@@ -313,9 +299,8 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
            "none; default by its name, else the first",
            "COL")
       ->needs(path);
-  OptionGroup(command, kPlainGroup)
-      .AddShown("--tolerance", options->tolerance_text,
-                "largest error allowed, of the peak force and of the energy: 0.01 or\n1%", "E");
+  AddTolerance(OptionGroup(command, kPlainGroup), options->tolerance,
+               "largest error allowed, of the peak force and of the energy: 0.01 or\n1%");
   const OptionGroup output(command, "Output");
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");

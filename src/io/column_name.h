@@ -11,7 +11,7 @@
 namespace mindahl::io {
 
 /// Names what a column may be.
-enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kResponse, kOther };
+enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther };
 
 enum class Dimension { kNone, kLength, kAngle, kForce, kTorque, kTime, kOther };
 

@@ -198,68 +198,6 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   return RecordOf(table, columns);
 }
 
-SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
-                    const std::string& response) {
-  return SweepOf(ReadCsvTable(path, {}, columns.encoding), columns, response);
-}
-
-SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
-                  const std::string& response) {
-  const ColumnNames names(table);
-  SweepFile sweep;
-  sweep.lines = table.lines;
-  sweep.notes = table.notes;
-  std::vector<bool> taken(names.size());
-  const auto is_chosen = [&](Role role, const std::string& text) {
-    return !names.Read(text, RulesOf(role)).terms.empty();
-  };
-  const auto find = [&](Role role, const std::string& text) {
-    Expression found = FindColumns(names, role, text, taken);
-    if (!found.terms.empty()) taken[found.terms.front().column] = true;
-    return found;
-  };
-  Expression responses = find(Role::kResponse, response);
-  Expression displacement;
-  Expression force;
-  if (!is_chosen(Role::kForce, columns.force)) {
-    displacement = find(Role::kDisplacement, columns.displacement);
-  }
-  if (!is_chosen(Role::kDisplacement, columns.displacement)) {
-    force = find(Role::kForce, columns.force);
-  }
-  if (responses.terms.empty()) {
-    throw InputError(
-        fmt::format("{}: no column of a stiffness or compliance is recognised: name it "
-                    "with --response: {}",
-                    table.file, names.Listing()));
-  }
-  if (displacement.terms.empty() == force.terms.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} of the amplitude is recognised: name the one with --displacement or --force: {}",
-        table.file, force.terms.empty() ? "no column" : "more than one column", names.Listing()));
-  }
-  sweep.over_force = displacement.terms.empty();
-  const std::size_t of_response = responses.terms.front().column;
-  const std::string stated =
-      responses.unit.empty() ? names.UnitOf(of_response, "--response") : responses.unit;
-  sweep.is_compliance =
-      LengthUnit(stated.substr(0, stated.find('/'))).has_value() ||
-      (stated.empty() && names[of_response].name.evidence.word.ends_with("compliance"));
-  const auto read = [&](Role role, Expression of) {
-    const std::size_t column = of.terms.front().column;
-    std::vector<double> values = NumbersOf(names, RulesOf(role), of, sweep.notes);
-    const auto bad = std::ranges::find_if(values, [](double value) { return !(value > 0); });
-    if (bad == values.end()) return values;
-    throw InputError(
-        fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row", table.file,
-                    table.lines[static_cast<std::size_t>(bad - values.begin())], column + 1, *bad));
-  };
-  sweep.amplitude = sweep.over_force ? read(Role::kForce, std::move(force))
-                                     : read(Role::kDisplacement, std::move(displacement));
-  sweep.response = read(Role::kResponse, std::move(responses));
-  return sweep;
-}
-
 std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
                                   const std::string& column) {
   const Role role = quantity == Imposed::kDisplacement ? Role::kDisplacement

@@ -24,27 +24,6 @@ std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
 
 std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
 
-/// Finds the unit of one quantity over another, "N/um" or "um/N".
-std::optional<Unit> ResponseUnit(std::string_view symbol) {
-  const std::size_t slash = symbol.find('/');
-  if (slash == std::string_view::npos) return std::nullopt;
-  const auto find = [](std::string_view part) {
-    const std::optional<Unit> force = ForceUnit(part);
-    return force ? force : LengthUnit(part);
-  };
-  const std::optional<Unit> above = find(symbol.substr(0, slash));
-  const std::optional<Unit> below = find(symbol.substr(slash + 1));
-  const bool both = above && below;
-  if (!both || ForceUnit(above->symbol).has_value() == ForceUnit(below->symbol).has_value()) {
-    return std::nullopt;
-  }
-  return Unit{.symbol = std::string(symbol),
-              .numerator = above->numerator * below->denominator,
-              .denominator = above->denominator * below->numerator};
-}
-
-std::string ResponseUnitSymbols() { return "a force over a length or the inverse, as N/um, um/N"; }
-
 constexpr std::array kRules = {
     RoleRules{Role::kDisplacement, "displacement", "--displacement", "m", LengthUnit,
               LengthUnitSymbols},
@@ -52,7 +31,6 @@ constexpr std::array kRules = {
     RoleRules{Role::kTime, "time", "--time", "s", TimeUnit, TimeUnitSymbols},
     RoleRules{Role::kNormalLoad, "normal load", "--normal-load-column", "N", ForceUnit,
               ForceUnitSymbols},
-    RoleRules{Role::kResponse, "response", "--response", "N/m", ResponseUnit, ResponseUnitSymbols},
     RoleRules{Role::kOther, "covariate", "--covariate", "", nullptr, nullptr},
 };
 // A joint carries a torque, a twisted contact a normal load.
@@ -131,8 +109,7 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
     found = is_named || !has_word ? kUnit - kStep : 0;
   }
   if (is_named) {
-    const bool may_be =
-        column.dimension == Dimension::kNone || is_of_unit || role == Role::kResponse;
+    const bool may_be = column.dimension == Dimension::kNone || is_of_unit;
     const bool is_needed = role == Role::kDisplacement || role == Role::kForce;
     const int others = std::min<int>(static_cast<int>(evidence.other_words), kStep - 1);
     found += may_be ? kWord - kStep * evidence.rank - others : is_needed ? 1 : 0;

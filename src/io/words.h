@@ -71,10 +71,10 @@ inline constexpr std::array kWords = {
             "temperature|temp|*temperatur|température|temperatura|voltage|pressure|*druck|strain|"
             "stress|*dehnung|*spannung|energy|work|power|frequency|humidity|温度|压力"},
     WordRow{Role::kOther, 0, false, "current|strom"},
-    WordRow{Role::kResponse, 0, false,
+    WordRow{Role::kOther, 0, false,
             "stiffness|tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
             "compliance|contact compliance"},
-    WordRow{Role::kResponse, 1, false, "kt|k|K"},
+    WordRow{Role::kOther, 1, false, "kt|k|K"},
 };
 
 // Commanded, raw and statistical quantities are weaker evidence than measured ones.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/terms.h"
 #include "report/fields.h"
@@ -41,6 +42,12 @@ std::string QuantityText(const Report& report, std::string_view name) {
 
 bool IsInadequate(const Report& report) {
   return IsJudged(report) && report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
+}
+
+/// True of a parameter of an inadequate model that is not known, or whose loads or units are mixed
+/// up.
+bool IsMoot(const Report& report, const ParameterEstimate& estimate) {
+  return IsInadequate(report) && (!estimate.is_known() || !report.check.empty());
 }
 
 /// True if what the law misses is the same at one place of every stroke.
@@ -105,12 +112,11 @@ class Writer {
     return "";
   }
 
-  /// Says a parameter with what follows from it, or why it has no value. Of an inadequate model
-  /// a parameter that is not known is not mentioned.
+  /// Says a parameter with what follows from it, or why it has no value.
   void AddParameter(std::string label, std::string_view symbol, const ParameterEstimate& estimate,
                     std::vector<std::string> before, std::vector<std::string> after) {
     const Shown shown = WhatIsShown(estimate);
-    if (IsInadequate(report_) && !estimate.is_known()) return;
+    if (IsMoot(report_, estimate)) return;
     std::string text = ParameterText(symbol, estimate);
     if (shown != Shown::kValue && shown != Shown::kHeld) {
       if (const std::string why = WhyNot(estimate.name); !why.empty()) text += ": " + why;
@@ -221,7 +227,7 @@ class Writer {
   void AddTerms() {
     std::vector<std::string> terms;
     for (const ParameterEstimate* term : AddedTerms(report_)) {
-      if (IsInadequate(report_) && !term->is_known()) continue;
+      if (IsMoot(report_, *term)) continue;
       std::string text = ParameterText(term->name, *term);
       if (WhatIsShown(*term) == Shown::kNothing) {
         if (const std::string why = WhyNot(term->name); !why.empty()) text += ": " + why;
@@ -393,8 +399,9 @@ std::string MisfitStatement(const Report& report) {
     return text + ": the law is not the whole story" +
            (is_included ? "; the intervals include it" : "");
   }
-  const bool is_any_known = std::ranges::any_of(fit.parameters, [](const auto& estimate) {
-    return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue;
+  const bool is_any_known = std::ranges::any_of(fit.parameters, [&](const auto& estimate) {
+    return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue &&
+           !IsMoot(report, estimate);
   });
   return text + ": the law does not describe the record" +
          (is_any_known ? "; what stands above is known" : "; use what is measured");
@@ -451,6 +458,67 @@ std::vector<Line> DetailLines(const Report& report) {
     lines.push_back({"note", Sentence(finding, fit, report.units)});
   }
   return lines;
+}
+
+namespace {
+
+constexpr std::size_t kColumns = 100;
+constexpr std::size_t kLabel = 14;  // where texts begin
+
+/// True for a number, or what stands before one: what comes after it belongs to it.
+bool IsNumber(std::string_view word) {
+  if (word == "±" || word == "…" || word == ">" || word == "<" || word == "=") return true;
+  if (word.starts_with('(')) word.remove_prefix(1);
+  return !word.empty() && word.find_first_not_of("0123456789.+-e") == std::string_view::npos &&
+         word.find_first_of("0123456789") != std::string_view::npos;
+}
+
+/// Breaks a text between words; a number stays with what belongs to it.
+std::string Wrapped(std::string_view text) {
+  std::string wrapped;
+  std::size_t column = kLabel;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t last = begin;
+    std::size_t end = std::min(text.find(' ', begin), text.size());
+    while (end < text.size() &&
+           (IsNumber(text.substr(last, end - last)) || text.substr(end + 1).starts_with("…") ||
+            text.substr(end + 1).starts_with("("))) {
+      last = end + 1;
+      end = std::min(text.find(' ', last), text.size());
+    }
+    const std::string_view word = text.substr(begin, end - begin);
+    const std::size_t width = CharactersIn(word);
+    if (column > kLabel && column + 1 + width > kColumns) {
+      wrapped += '\n' + std::string(kLabel, ' ');
+      column = kLabel;
+    } else if (column > kLabel) {
+      wrapped += ' ';
+      ++column;
+    }
+    wrapped += word;
+    column += width;
+    begin = std::min(end + 1, text.size());
+  }
+  return wrapped;
+}
+
+std::string LinesText(const std::vector<Line>& lines) {
+  std::string text;
+  for (const Line& line : lines) {
+    const std::size_t width = CharactersIn(line.label);
+    text += line.label + std::string(width < kLabel ? kLabel - width : 1, ' ') +
+            Wrapped(line.text) + '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ToText(const Report& report, Detail detail) {
+  RequireFitted(report, "a text");
+  std::string text = LinesText(AnswerLines(report));
+  if (detail == Detail::kAll) text += '\n' + LinesText(DetailLines(report));
+  return text;
 }
 
 }  // namespace mindahl::report

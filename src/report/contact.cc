@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <tuple>
 #include <utility>
 
 #include "core/probability.h"
@@ -35,111 +36,89 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
   return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
 }
 
-using End = std::optional<double> ParameterEstimate::*;
-constexpr std::array<End, 2> kEnds = {&ParameterEstimate::lower95, &ParameterEstimate::upper95};
-
-/// Returns an end of the interval, the value of what is held; empty where it is open.
-std::optional<double> EndOf(const ParameterEstimate& estimate, End end) {
-  if (estimate.status == ParameterStatus::kFixed) return estimate.value;
-  return estimate.*end && *(estimate.*end) > 0 ? estimate.*end : std::nullopt;
-}
-
-/// Distances of the logarithm of a quantity from its value to where the ends of a parameter take
-/// it, of either sign; empty towards an end that is open.
-struct LogWays {
-  std::optional<double> lower = 0.0;
-  std::optional<double> upper = 0.0;
+/// A parameter from which a quantity follows.
+struct Influence {
+  const ParameterEstimate& parameter;
+  bool raises;  ///< the quantity grows with it
+  /// Change of the quantity's logarithm where the parameter has another value; empty where that is
+  /// none of a contact.
+  std::function<std::optional<double>(double)> way;
 };
+
+/// Returns how far the end of the parameter's interval that raises, or lowers, the quantity takes
+/// its logarithm; empty where that end is open.
+std::optional<double> WayTo(const Influence& of, bool up) {
+  const ParameterEstimate& parameter = of.parameter;
+  std::optional<double> end = up == of.raises ? parameter.upper95 : parameter.lower95;
+  if (parameter.status == ParameterStatus::kFixed) end = parameter.value;
+  const std::optional<double> way = end ? of.way(*end) : std::nullopt;
+  return way && std::isfinite(*way) ? std::optional(std::abs(*way)) : std::nullopt;
+}
 
 /// Adds in quadrature, with a correlation that is of ways in the same direction.
 std::optional<double> Together(const std::optional<double>& one, const std::optional<double>& other,
-                               double correlation = 0.0) {
+                               double correlation) {
   if (!one || !other) return std::nullopt;
   if (*one == 0 || *other == 0) return std::abs(*one) + std::abs(*other);
   const double squares = *one * *one + *other * *other + 2 * correlation * *one * *other;
   return std::sqrt(std::max(squares, 0.0));
 }
 
-/// Maps the ends of the parameters' intervals to quantities of the contact.
-class Mapping {
- public:
-  Mapping(const FitResult& fit, const KnownContact& known)
-      : fit_(fit),
-        known_(known),
-        sigma_(*fit.Find("sigma")),
-        slip_force_(*fit.Find("slip_force")) {}
-
-  [[nodiscard]] std::optional<UncertainValue> AtEstimate(Kind kind) const {
-    return contact::IdentifyContact(kind, sigma_.value, slip_force_.value, known_);
+/// Sets value and ends of a quantity that follows from one parameter or two, with the uncertainty
+/// of its inputs.
+void Fill(const FitResult& fit, const UncertainValue& found, const std::vector<Influence>& of,
+          ContactQuantity& quantity) {
+  quantity.value = found.value;
+  quantity.why = "the interval of what it follows from is open";
+  const double of_inputs =
+      NormalQuantile(fit.confidence) * found.standard_error / std::abs(found.value);
+  double correlation = 0.0;
+  if (of.size() == 2 && of[0].parameter.status == ParameterStatus::kFree &&
+      of[1].parameter.status == ParameterStatus::kFree) {
+    correlation = Correlation(fit, of[0].parameter.name, of[1].parameter.name);
+    if (of[0].raises != of[1].raises) correlation = -correlation;
   }
-
-  /// Sets value and ends of a quantity that follows.
-  void Fill(ContactQuantity& quantity, Kind kind) const {
-    const UncertainValue found = *AtEstimate(kind);
-    const bool is_of_sigma = quantity.parameter == "sigma";
-    const ParameterEstimate& parameter = is_of_sigma ? sigma_ : slip_force_;
-    const auto way_to = [&](double value) -> std::optional<double> {
-      const auto moved = contact::IdentifyContact(kind, is_of_sigma ? value : sigma_.value,
-                                                  is_of_sigma ? slip_force_.value : value, known_);
-      return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
-    };
-    // Of a given contact radius, p₀ does not follow from the fit; a little further E would not end.
-    constexpr double kFurther = 1 + 1e-6;
-    const double trend = way_to(kFurther * parameter.value).value_or(0.0);
-    LogWays ways;
-    if (trend != 0) {
-      const auto way = [&](End end) {
-        const std::optional<double> value = EndOf(parameter, end);
-        return value ? way_to(*value) : std::nullopt;
-      };
-      ways = {.lower = way(kEnds[trend > 0 ? 0 : 1]), .upper = way(kEnds[trend > 0 ? 1 : 0])};
-    }
-    Set(quantity, found, ways);
+  for (const bool up : {false, true}) {
+    std::optional<double> way = 0.0;
+    for (const Influence& each : of) way = Together(way, WayTo(each, up), correlation);
+    if (!way) continue;
+    const double whole = std::hypot(*way, of_inputs);
+    (up ? quantity.upper : quantity.lower) = found.value * std::exp(up ? whole : -whole);
   }
+}
 
-  /// Sets those of δc = 3Tc/(2σ), which follows from both.
-  void FillGrossSlip(ContactQuantity& quantity) const {
-    const auto way = [](const ParameterEstimate& estimate, End end) {
-      const std::optional<double> at = EndOf(estimate, end);
-      return at ? std::optional(std::abs(std::log(*at / estimate.value))) : std::nullopt;
-    };
-    const bool are_free =
-        sigma_.status == ParameterStatus::kFree && slip_force_.status == ParameterStatus::kFree;
-    // Tc and 1/σ: their ways in one direction are correlated the other way round.
-    const double correlation = are_free ? -Correlation(fit_, "sigma", "slip_force") : 0.0;
-    LogWays ways;
-    ways.lower = Together(way(slip_force_, kEnds[0]), way(sigma_, kEnds[1]), correlation);
-    ways.upper = Together(way(slip_force_, kEnds[1]), way(sigma_, kEnds[0]), correlation);
-    Set(quantity, 1.5 * slip_force_.value / sigma_.value, ways);
-  }
+/// Returns what a parameter that is a factor of a quantity, or of its inverse, does to it.
+Influence FactorOf(const ParameterEstimate& parameter, bool raises = true) {
+  return {parameter, raises,
+          [&parameter](double value) { return std::log(value / parameter.value); }};
+}
 
- private:
-  /// Adds the inputs' uncertainty to the ways.
-  void Set(ContactQuantity& quantity, const UncertainValue& found, const LogWays& ways) const {
-    quantity.value = found.value;
-    const double of_inputs =
-        NormalQuantile(fit_.confidence) * found.standard_error / std::abs(found.value);
-    if (ways.lower) quantity.lower = found.value * std::exp(-std::hypot(*ways.lower, of_inputs));
-    if (ways.upper) quantity.upper = found.value * std::exp(std::hypot(*ways.upper, of_inputs));
-    quantity.why = "the interval of what it follows from is open";
-  }
+std::optional<UncertainValue> Identified(Kind kind, const FitResult& fit,
+                                         const KnownContact& known) {
+  return contact::IdentifyContact(kind, fit.Find("sigma")->value, fit.Find("slip_force")->value,
+                                  known);
+}
 
-  const FitResult& fit_;
-  const KnownContact& known_;
-  const ParameterEstimate& sigma_;
-  const ParameterEstimate& slip_force_;
-};
-
-ContactQuantity Made(std::string_view name, std::string_view symbol, std::string_view unit,
-                     std::string_view parameter) {
-  return {.name = name,
-          .symbol = symbol,
-          .unit = unit,
-          .parameter = parameter,
-          .value = {},
-          .lower = {},
-          .upper = {},
-          .why = {}};
+/// Sets a quantity that follows from one parameter and what is known of the contact.
+void FillIdentified(const FitResult& fit, const KnownContact& known, Kind kind,
+                    ContactQuantity& quantity) {
+  const UncertainValue found = *Identified(kind, fit, known);
+  const double sigma = fit.Find("sigma")->value;
+  const double slip_force = fit.Find("slip_force")->value;
+  const bool is_of_sigma = quantity.parameter == "sigma";
+  const auto way = [&](double value) -> std::optional<double> {
+    if (!(value > 0)) return std::nullopt;
+    const auto moved = contact::IdentifyContact(kind, is_of_sigma ? value : sigma,
+                                                is_of_sigma ? slip_force : value, known);
+    return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
+  };
+  const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
+  // Of a given contact radius, p₀ does not follow from the fit; a little further E would not end.
+  constexpr double kFurther = 1 + 1e-6;
+  const double trend = way(kFurther * parameter.value).value_or(0.0);
+  std::vector<Influence> of;
+  if (trend != 0) of.push_back({parameter, trend > 0, way});
+  Fill(fit, found, of, quantity);
 }
 
 struct QuantityRow {
@@ -199,30 +178,13 @@ void FillSlipForce(const FitResult& fit, double sense, ContactQuantity& quantity
     quantity.why = "the measured strokes do not show it: it stands for an offset of the force";
     return;
   }
-  quantity.value = slip_force.value * share;
-  quantity.why = "the interval of slip_force or asymmetry is open";
-  const bool are_free =
-      slip_force.status == ParameterStatus::kFree && asymmetry.status == ParameterStatus::kFree;
-  const double correlation = are_free ? sense * Correlation(fit, "slip_force", "asymmetry") : 0.0;
-  const auto way = [&](End of_force, End of_asymmetry) {
-    const std::optional<double> force = EndOf(slip_force, of_force);
-    std::optional<double> other = asymmetry.*of_asymmetry;
-    if (asymmetry.status == ParameterStatus::kFixed) other = asymmetry.value;
-    if (!force || !other) return std::optional<double>();
-    return Together(std::abs(std::log(*force / slip_force.value)),
-                    std::abs(*other - asymmetry.value) / share, correlation);
-  };
-  const bool is_up = sense > 0;
-  if (const auto found = way(kEnds[0], kEnds[is_up ? 0 : 1])) {
-    quantity.lower = *quantity.value * std::exp(-*found);
-  }
-  if (const auto found = way(kEnds[1], kEnds[is_up ? 1 : 0])) {
-    quantity.upper = *quantity.value * std::exp(*found);
-  }
+  const Influence of_asymmetry = {asymmetry, sense > 0,
+                                  [&](double value) { return (value - asymmetry.value) / share; }};
+  Fill(fit, slip_force.value * share, {FactorOf(slip_force), of_asymmetry}, quantity);
 }
 
 ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
-  ContactQuantity load = Made("normal_load", "N", "N", "");
+  ContactQuantity load{.name = "normal_load", .symbol = "N", .unit = "N"};
   load.why = known.normal_load ? "exact" : "not given, and no column has it";
   if (!known.normal_load) return load;
   load.value = known.normal_load->value;
@@ -237,13 +199,13 @@ ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
 }  // namespace
 
 std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownContact& known) {
-  const Mapping mapping(fit, known);
   const bool denies_hertz = DeniesHertz(fit);
   const auto describe = [&](const QuantityRow& row) {
-    ContactQuantity quantity = Made(row.name, row.symbol, row.unit, row.parameter);
+    ContactQuantity quantity{
+        .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter};
     const ParameterEstimate& parameter = *fit.Find(row.parameter);
     const bool needs_fit = !(row.name == "maximum_pressure" && known.contact_radius);
-    const std::optional<UncertainValue> at_estimate = mapping.AtEstimate(row.kind);
+    const std::optional<UncertainValue> at_estimate = Identified(row.kind, fit, known);
     if (row.is_of_sphere && denies_hertz) {
       quantity.why = kWhyNoSphere;
     } else if (!at_estimate) {
@@ -258,7 +220,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
         quantity.lower = at_estimate->value * *parameter.lower95 / parameter.value;
       }
     } else {
-      mapping.Fill(quantity, row.kind);
+      FillIdentified(fit, known, row.kind, quantity);
     }
     return quantity;
   };
@@ -266,13 +228,15 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   for (const QuantityRow& row : kQuantities) {
     quantities.push_back(describe(row));
     if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
-    quantities.push_back(Made("slip_force_positive", "Tc up", "N", "slip_force"));
-    FillSlipForce(fit, 1.0, quantities.back());
-    quantities.push_back(Made("slip_force_negative", "down", "N", "slip_force"));
-    FillSlipForce(fit, -1.0, quantities.back());
+    for (const auto& [name, symbol, sense] :
+         {std::tuple("slip_force_positive", "Tc up", 1.0), {"slip_force_negative", "down", -1.0}}) {
+      ContactQuantity& force = quantities.emplace_back(
+          ContactQuantity{.name = name, .symbol = symbol, .unit = "N", .parameter = "slip_force"});
+      FillSlipForce(fit, sense, force);
+    }
   }
   for (const QuantityRow& row : kOfSeries) {
-    if (!fit.is_load_series() || !known.normal_load || !mapping.AtEstimate(row.kind)) continue;
+    if (!fit.is_load_series() || !known.normal_load || !Identified(row.kind, fit, known)) continue;
     const auto old = std::ranges::find(quantities, row.name, &ContactQuantity::name);
     if (old == quantities.end()) {
       quantities.push_back(describe(row));
@@ -280,14 +244,18 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
       *old = describe(row);
     }
   }
-  ContactQuantity gross_slip = Made("gross_slip_displacement", "δc", "m", "alpha");
+  ContactQuantity gross_slip{
+      .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
+  const ParameterEstimate& sigma = *fit.Find("sigma");
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const std::optional<bool> is_rejected = TestAlpha(fit).is_rejected;
-  if (!fit.Find("sigma")->is_known() || !fit.Find("slip_force")->is_known()) {
+  if (!sigma.is_known() || !slip_force.is_known()) {
     gross_slip.why = "needs an identifiable sigma and slip_force";
   } else if (is_rejected && *is_rejected) {
     gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
   } else {
-    mapping.FillGrossSlip(gross_slip);
+    Fill(fit, 1.5 * slip_force.value / sigma.value,
+         {FactorOf(slip_force), FactorOf(sigma, /*raises=*/false)}, gross_slip);
   }
   quantities.push_back(std::move(gross_slip));
   quantities.push_back(NormalLoad(fit, known));

@@ -440,14 +440,9 @@ const std::vector<Field>& Fields() {
 Json JsonDocument(const Report& report) {
   Json document;
   for (const Field& field : Fields()) {
-    Json* place = &document;
-    std::string_view path = field.path;
-    for (std::size_t dot = 0; dot != std::string_view::npos;) {
-      dot = path.find('.');
-      place = &(*place)[std::string(path.substr(0, dot))];
-      if (dot != std::string_view::npos) path.remove_prefix(dot + 1);
-    }
-    *place = field.get(report);
+    std::string path(field.path);
+    std::ranges::replace(path, '.', '/');
+    document[Json::json_pointer("/" + path)] = field.get(report);
   }
   Json nulls = Json::array();
   FindNulls(document, "", ReasonsOf(report), nulls);

@@ -54,13 +54,8 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
   }
   data["verdict"] = VerdictData(CssClass(JudgementOf(word)), word, MisfitStatement(report));
   const LoopPanels panels = DrawLoop(report);
-  const std::string intervals = DrawIntervals(report);
-  Json bars;
-  if (!intervals.empty()) {
-    bars = {{"elements", intervals}, {"height", HeightOfIntervals(report)}};
-  }
   data["fitted"] = {{"answer", LinesData("", AnswerLines(report))},
-                    {"intervals", std::move(bars)},
+                    {"intervals", DrawIntervals(report)},
                     {"confidence", fmt::format("{:.4g} %", 100 * report.fit.confidence)},
                     {"next", NextData(report, provenance)},
                     {"loop", FigureData(panels.loop, "loop")},

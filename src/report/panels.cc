@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -144,60 +145,43 @@ LoopPanels DrawLoop(const Report& report) {
 namespace {
 
 struct Bar {
-  std::string symbol;
-  double value = 0.0;
+  std::string_view symbol;
+  double value;
   std::optional<double> lower;
   std::optional<double> upper;
-  std::string text;
-  Judgement judgement = Judgement::kNone;
-  std::optional<double> mark;  ///< a value that theory gives
+  std::string_view unit;
+  Judgement judgement;
+  std::optional<double> mark = {};  ///< a value that theory gives
 };
 
 std::vector<Bar> BarsOf(const Report& report) {
   std::vector<Bar> bars;
-  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark) {
+  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
     const ParameterEstimate& estimate = *report.fit.Find(name);
     if (WhatIsShown(estimate) != Shown::kValue) return;
-    bars.push_back({.symbol = symbol,
-                    .value = estimate.value,
-                    .lower = estimate.lower95,
-                    .upper = estimate.upper95,
-                    .text = QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
-                                                 estimate.unit),
-                    .judgement = JudgementOf(estimate),
-                    .mark = mark});
+    bars.push_back({symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
+                    JudgementOf(estimate), mark});
   };
   const ContactQuantity* friction = report.Find("friction_coefficient");
   if (friction != nullptr && friction->value) {
-    bars.push_back(
-        {.symbol = "μ",
-         .value = *friction->value,
-         .lower = friction->lower,
-         .upper = friction->upper,
-         .text = QuantityWithInterval(*friction->value, friction->lower, friction->upper, "-"),
-         .judgement = JudgementOf(*report.fit.Find("slip_force")),
-         .mark = {}});
+    bars.push_back({"μ", *friction->value, friction->lower, friction->upper, "-",
+                    JudgementOf(*report.fit.Find("slip_force"))});
   } else {
-    add("Tc", "slip_force", {});
+    add("Tc", "slip_force");
   }
-  add("σ", "sigma", {});
+  add("σ", "sigma");
   add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
   return bars;
 }
 
-constexpr int kRow = 50;  // [px] of one bar
-
 }  // namespace
 
-int HeightOfIntervals(const Report& report) {
-  return kRow * static_cast<int>(BarsOf(report).size());
-}
-
-std::string DrawIntervals(const Report& report) {
+Json DrawIntervals(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
+  constexpr int kRow = 50;  // [px] of one bar
   std::string svg;
-  double top = 0.0;
+  int top = 0;
   for (const Bar& bar : BarsOf(report)) {
     const double from = bar.lower.value_or(bar.value);
     const double to = bar.upper.value_or(bar.value);
@@ -211,25 +195,26 @@ std::string DrawIntervals(const Report& report) {
     };
     const double left = bar.lower ? x(*bar.lower) : kLeft;
     const double right = bar.upper ? x(*bar.upper) : kRight;
-    const double middle = top + 31;
-    svg += fmt::format("<text x=\"8\" y=\"{:.0f}\">{}</text>", middle + 5, bar.symbol);
-    svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\">{}</text>", kLeft, top + 14,
-                       io::HtmlText(bar.text));
-    svg += fmt::format("<path class=\"grid\" d=\"M{:.0f} {:.0f}H{:.0f}\"/>", kLeft, middle, kRight);
-    svg += fmt::format("<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>",
-                       CssClass(bar.judgement), left, middle - 6, std::max(right, left + 2),
-                       middle + 6, left);
-    svg += fmt::format("<path class=\"axis\" d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/>", x(bar.value),
-                       middle - 9, middle + 9);
+    const int middle = top + 31;
+    svg += fmt::format(
+        "<text x=\"8\" y=\"{}\">{}</text><text x=\"{:.0f}\" y=\"{}\">{}</text>"
+        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>",
+        middle + 5, bar.symbol, kLeft, top + 14,
+        io::HtmlText(QuantityWithInterval(bar.value, bar.lower, bar.upper, bar.unit)), kLeft,
+        middle, kRight);
+    svg += fmt::format(
+        "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
+        "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
+        CssClass(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
+        x(bar.value), middle - 9, middle + 9);
     if (bar.mark) {
       svg += fmt::format(
-          "<path class=\"mark\" d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/>"
-          "<text x=\"{3:.1f}\" y=\"{4:.0f}\">1/3</text>",
+          "<path class=\"mark\" d=\"M{:.1f} {}V{}\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
           x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
     }
     top += kRow;
   }
-  return svg;
+  return svg.empty() ? Json() : Json{{"elements", svg}, {"height", top}};
 }
 
 io::Plot ToPlot(const Report& report) {
@@ -244,34 +229,32 @@ std::string ResidualsCsv(const Report& report) {
   const bool is_of_force = report.fit.response == loop::Channel::kForce;
   const bool is_timed = std::ranges::none_of(
       report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
-  std::vector<double> file;
-  std::vector<double> time;
-  std::vector<double> displacement;
-  std::vector<double> force;
-  std::vector<double> fitted;
-  std::vector<double> residual;
-  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
+  constexpr std::size_t kColumns = 6;
+  const std::array<std::string, kColumns> names = {
+      "file",
+      "time [s]",
+      WithUnit("displacement", report.units.displacement),
+      WithUnit("force", report.units.force),
+      WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response),
+      WithUnit("residual", report.units.response)};
+  std::array<std::vector<double>, kColumns> cells;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const loop::Record& record = report.records[r].record;
     const identification::RecordFit& fit = report.fit.records[r];
-    file.insert(file.end(), record.size(), static_cast<double>(r + 1));
-    append(time, record.time);
-    append(displacement, record.displacement);
-    append(force, record.force);
-    append(fitted, is_of_force ? fit.fitted_force : fit.fitted_displacement);
-    append(residual, fit.residual);
+    cells[0].insert(cells[0].end(), record.size(), static_cast<double>(r + 1));
+    std::size_t column = 1;
+    for (const std::vector<double>* values :
+         {&record.time, &record.displacement, &record.force,
+          is_of_force ? &fit.fitted_force : &fit.fitted_displacement, &fit.residual}) {
+      cells.at(column).insert(cells.at(column).end(), values->begin(), values->end());
+      ++column;
+    }
   }
   std::vector<io::CsvColumn> columns;
-  if (report.records.size() > 1) columns.push_back({"file", file});
-  if (is_timed) columns.push_back({"time [s]", time});
-  columns.push_back({WithUnit("displacement", report.units.displacement), displacement});
-  columns.push_back({WithUnit("force", report.units.force), force});
-  columns.push_back(
-      {WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response),
-       fitted});
-  columns.push_back({WithUnit("residual", report.units.response), residual});
+  for (std::size_t k = 0; k < kColumns; ++k) {
+    const bool is_needed = k == 0 ? report.records.size() > 1 : k != 1 || is_timed;
+    if (is_needed) columns.push_back({names.at(k), cells.at(k)});
+  }
   return io::CsvText(columns);
 }
 

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "mindahl/io/plot.h"
 #include "mindahl/report/report.h"
+#include "report/fields.h"
 
 // The figures of a report. None is of a fit that failed.
 namespace mindahl::report {
@@ -18,11 +16,9 @@ struct LoopPanels {
 
 LoopPanels DrawLoop(const Report& report);
 
-/// Returns friction (the slip force without a load), σ and α with their intervals as bars, as
-/// elements of an inline SVG of 560 px; α's with 1/3 marked. A bar is green only of what may be
-/// quoted. "" where none has a value.
-std::string DrawIntervals(const Report& report);
-/// Height of that drawing [px].
-int HeightOfIntervals(const Report& report);
+/// Returns friction (the slip force without a load), σ and α with their intervals as bars:
+/// `elements` of an inline SVG 560 px wide, and its `height`; α's with 1/3 marked. A bar is green
+/// only of what may be quoted. Null where none has a value.
+Json DrawIntervals(const Report& report);
 
 }  // namespace mindahl::report

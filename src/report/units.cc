@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <regex>
 #include <span>
+#include <utility>
 
 namespace mindahl::report {
 
@@ -154,29 +156,16 @@ std::string QuantityWithInterval(double value, std::optional<double> lower,
 
 std::string UnitIn(const Units& units, std::string_view unit) {
   if (units.force == kUnitsOfForce.force) return std::string(unit);
-  std::string translated;
-  bool is_below = false;  // beyond the stroke, where a product needs brackets
-  bool has_product = false;
-  while (!unit.empty()) {
-    const std::size_t end = std::min(unit.find_first_of(" /()"), unit.size());
-    std::string_view symbol = unit.substr(0, end);
-    const std::string_view power = symbol.ends_with("²") ? "²" : "";
-    symbol.remove_suffix(power.size());
-    const std::string_view other = symbol == "N"    ? "N m"
-                                   : symbol == "m"  ? "rad"
-                                   : symbol == "kg" ? "kg m²"
-                                                    : symbol;
-    has_product = has_product || (is_below && other.find(' ') != std::string_view::npos);
-    translated += other;
-    translated += power;
-    if (end == unit.size()) break;
-    is_below = is_below || unit[end] == '/';
-    translated += unit[end];
-    unit.remove_prefix(end + 1);
+  std::string translated(unit);
+  for (const auto& [symbol, other] :
+       {std::pair("\\bm\\b", "rad"), {"\\bN\\b", "N m"}, {"\\bkg\\b", "kg m²"}}) {
+    translated = std::regex_replace(translated, std::regex(symbol), other);
   }
-  if (has_product && translated.find('(') == std::string::npos) {
-    translated.insert(translated.find('/') + 1, "(");
-    translated += ')';
+  // A product below the stroke needs brackets.
+  const std::size_t below = std::min(translated.find('/'), translated.size());
+  if (translated.find(' ', below) != std::string::npos &&
+      translated.find('(') == std::string::npos) {
+    translated.insert(below + 1, "(").append(")");
   }
   return translated;
 }

@@ -23,11 +23,13 @@
 #include "report/statements.h"
 #include "report/table.h"
 #include "report/template.h"
-#include "request/json.h"
 
 namespace mindahl::request {
 
 using identification::ParameterEstimate;
+using report::Dump;
+using report::Json;
+using report::NumberOrNull;
 
 struct FitDocument {
   Json json;
@@ -80,13 +82,13 @@ constexpr std::array kBatchColumns = {
 /// A quantity that repeats of a test have in common, by the names of its columns.
 struct Repeated {
   std::string_view name;
-  std::string_view verdict;
+  std::string_view parameter;  // whose errors it has; "" of what is measured, which states none
   std::string_view unit;
 };
-constexpr std::array kRepeated = {Repeated{"sigma", "sigma_verdict", "N/m"},
-                                  Repeated{"alpha", "alpha_verdict", "-"},
-                                  Repeated{"slip_force", "slip_force_verdict", "N"},
-                                  Repeated{"friction_coefficient", "", "-"},
+constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
+                                  Repeated{"alpha", "alpha", "-"},
+                                  Repeated{"slip_force", "slip_force", "N"},
+                                  Repeated{"friction_coefficient", "slip_force", "-"},
                                   Repeated{"half_gap", "", "N"},
                                   Repeated{"energy_per_cycle", "", "J"}};
 
@@ -107,57 +109,37 @@ std::string WarningsOf(const BatchEntry& entry) {
   return fmt::format("{}", fmt::join(codes, " "));
 }
 
-/// True of what is measured without a model, which states no error.
-bool IsMeasured(const Repeated& quantity) {
-  return quantity.name == "half_gap" || quantity.name == "energy_per_cycle";
-}
-
-/// Errors of one file: what repeats scatter by, and what they have in common.
-struct StatedErrors {
-  double own = 0.0;
-  double common = 0.0;  // of an interval that is wider than by its own error
-};
-
-std::optional<StatedErrors> ErrorsOf(const BatchEntry& fit, const Repeated& quantity) {
-  if (IsMeasured(quantity)) return std::nullopt;
-  const std::string name(quantity.name);
-  // μ = Tc/N scatters as Tc does.
-  const bool is_friction = name == "friction_coefficient";
-  const std::string parameter = is_friction ? "slip_force" : name;
-  const Json value = ValueOf(fit, name);
-  const Json of_parameter = ValueOf(fit, parameter);
-  if (!value.is_number() || !of_parameter.is_number()) return std::nullopt;
-  const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
-  Json own = ValueOf(fit, fmt::format("{}_error", parameter));
-  if (estimate != fit.parameters.end() && estimate->repeat_error) own = *estimate->repeat_error;
-  if (!own.is_number() || !(own.get<double>() > 0)) return std::nullopt;
-  const double scale = value.get<double>() / of_parameter.get<double>();
-  StatedErrors errors{.own = own.get<double>() * scale};
-  const Json lower = ValueOf(fit, fmt::format("{}_lower95", name));
-  const Json upper = ValueOf(fit, fmt::format("{}_upper95", name));
-  if (!lower.is_number() || !upper.is_number()) return errors;
-  constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
-  const double whole = (upper.get<double>() - lower.get<double>()) / kWidth;
-  errors.common = std::sqrt(std::max(0.0, whole * whole - errors.own * errors.own));
-  return errors;
-}
-
 std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
                                            const Repeated& quantity) {
   std::vector<double> values;
-  std::vector<double> errors;
-  std::vector<double> common;
+  std::vector<double> errors;  // by which repeats scatter
+  std::vector<double> common;  // of an interval that is wider than by its own error
   for (const BatchEntry& fit : fits) {
-    const Json value = ValueOf(fit, quantity.name);
-    const std::optional<StatedErrors> stated = ErrorsOf(fit, quantity);
-    const Json verdict = ValueOf(fit, quantity.verdict);
+    const auto number = [&](std::string_view name, const char* suffix) {
+      const Json value = ValueOf(fit, fmt::format("{}{}", name, suffix));
+      return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+    };
+    const std::optional<double> value = number(quantity.name, "");
+    if (!fit.done || !value) continue;
+    const std::string_view parameter = quantity.parameter;
+    if (parameter.empty()) {
+      values.push_back(*value);
+      continue;
+    }
+    const Json verdict = ValueOf(fit, fmt::format("{}_verdict", parameter));
     const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
-    if (!fit.done || !value.is_number() || !is_known) continue;
-    if (!IsMeasured(quantity) && !stated) continue;
-    values.push_back(value);
-    if (!stated) continue;
-    errors.push_back(stated->own);
-    common.push_back(stated->common);
+    const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
+    std::optional<double> own = number(parameter, "_error");
+    if (estimate != fit.parameters.end() && estimate->repeat_error) own = estimate->repeat_error;
+    const std::optional<double> of_parameter = number(parameter, "");
+    if (!is_known || !of_parameter || !own || !(*own > 0)) continue;
+    values.push_back(*value);
+    errors.push_back(*own * (*value / *of_parameter));  // μ = Tc/N scatters as Tc does
+    const std::optional<double> lower = number(quantity.name, "_lower95");
+    const std::optional<double> upper = number(quantity.name, "_upper95");
+    constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
+    const double whole = lower && upper ? (*upper - *lower) / kWidth : 0.0;
+    common.push_back(std::sqrt(std::max(0.0, whole * whole - errors.back() * errors.back())));
   }
   return campaign::DescribeRepeats(values, errors, common);
 }

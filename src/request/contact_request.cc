@@ -91,7 +91,7 @@ void Validate(const ContactOptions& options) {
   RequireBody(options.known.body_2, 2);
 }
 
-ContactParameters ResolveContact(const ContactOptions& options) {
+contact::PredictedContact ResolveContact(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
   std::vector<std::string> missing;
   if (!options.friction_coefficient) missing.emplace_back("--friction");
@@ -114,32 +114,7 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   }
   if (!options.friction_coefficient || !missing.empty()) ThrowMissing(missing);
 
-  const contact::PredictedContact predicted =
-      contact::PredictContact(known, *options.friction_coefficient);
-  ContactParameters result{.law = {.tangential_stiffness = predicted.tangential_stiffness.value,
-                                   .shape_exponent = contact::kMindlinShapeExponent,
-                                   .slip_force = predicted.slip_force.value}};
-  const auto add = [&](const char* section, const char* name,
-                       const std::optional<contact::UncertainValue>& value, const char* unit,
-                       const char* meaning) {
-    if (value) result.quantities.push_back({section, name, *value, unit, meaning});
-  };
-  add("contact", "friction_coefficient", options.friction_coefficient, "-", "mu");
-  add("contact", "normal_load", known.normal_load, "N", "N");
-  add("contact", "effective_modulus", predicted.effective_modulus, "Pa", "E*");
-  add("contact", "equivalent_radius", predicted.equivalent_radius, "m", "rho");
-  add("contact", "approach", predicted.approach, "m", "normal approach a^2/rho");
-  add("contact", "compliance", predicted.tangential_compliance, "1/Pa",
-      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
-  add("contact", "contact_radius", predicted.contact_radius, "m", "a");
-  add("contact", "maximum_pressure", predicted.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
-  add("contact", "gross_slip_displacement", predicted.gross_slip_displacement, "m",
-      "delta_c = 3 mu N G*/(16 a)");
-  add("parameters", "sigma", predicted.tangential_stiffness, "N/m", "8a/G*");
-  add("parameters", "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
-      "1/3, Mindlin");
-  add("parameters", "slip_force", predicted.slip_force, "N", "Tc = mu N");
-  return result;
+  return contact::PredictContact(known, *options.friction_coefficient);
 }
 
 bool IsAnythingGiven(const LawRequest& request) {
@@ -157,7 +132,10 @@ BranchLaw ResolveLaw(const LawRequest& request) {
   }
   BranchLaw law;
   if (by_contact) {
-    law = ResolveContact(request.contact).law;
+    const contact::PredictedContact predicted = ResolveContact(request.contact);
+    law = {.tangential_stiffness = predicted.tangential_stiffness.value,
+           .shape_exponent = contact::kMindlinShapeExponent,
+           .slip_force = predicted.slip_force.value};
   } else if (request.sigma && request.slip_force) {
     law = {.tangential_stiffness = *request.sigma, .slip_force = *request.slip_force};
   } else {

@@ -96,7 +96,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
         first.is_torsional ? "N m" : "N"));
   }
   constexpr std::size_t kLeast = 3;  // as many as the law has parameters
-  if (samples < kLeast && request.fix.empty()) {
+  if (samples < kLeast && request.fit.fixed.empty()) {
     throw InputError(fmt::format(
         "{}: {} samples are too few: a fit needs more samples than free parameters; record more",
         PlaceOf(request.files.back(), inputs.back(), inputs.back().force,
@@ -108,21 +108,22 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
 /// A gate is in SI units, as every option: one that is wider than the motion, or the force where
 /// that is imposed, leaves no turning point.
 void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  if (!request.reversal_gate) return;
-  const bool is_forced = request.noise_in == "displacement";
+  const std::optional<double>& gate = request.fit.preparation.reversal_gate;
+  if (!gate) return;
+  const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
   double widest = 0.0;
   for (const RecordFile& input : inputs) {
     const auto [least, greatest] =
         std::ranges::minmax(is_forced ? input.record.force : input.record.displacement);
     widest = std::max(widest, greatest - least);
   }
-  if (*request.reversal_gate < widest) return;
+  if (*gate < widest) return;
   const bool is_torsional = inputs.front().is_torsional;
   const char* unit = is_forced ? (is_torsional ? "N m" : "N") : (is_torsional ? "rad" : "m");
   throw InputError(fmt::format(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
       "give a smaller gate, in {}",
-      *request.reversal_gate, is_forced ? "force" : "motion", widest, unit, unit));
+      *gate, is_forced ? "force" : "motion", widest, unit, unit));
 }
 
 /// A joint fit is of one kind.
@@ -140,8 +141,9 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
 /// @param names  written: those of the records
 std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
                                    std::vector<std::string>& names) {
+  const loop::PreparationOptions& chosen = request.fit.preparation;
   const bool splits =
-      request.contact.normal_loads.empty() && !request.load_window && !request.samples;
+      request.contact.normal_loads.empty() && !chosen.load_window && !chosen.samples;
   names = request.files;
   if (!splits) return inputs;
   names.clear();
@@ -163,10 +165,9 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
                                        std::span<const std::string> names,
                                        std::vector<RecordFile>& records, FitOptions& options) {
   std::vector<report::LeftOut> left_out;
-  const bool is_chosen = request.load_window || request.samples || request.cycles;
-  if (request.trim != kOnOff.front() || is_chosen || options.response() != loop::Channel::kForce) {
-    return left_out;
-  }
+  const loop::PreparationOptions& given = options.preparation;
+  const bool is_chosen = given.load_window || given.samples || given.cycles;
+  if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return left_out;
   bool all_cycled = true;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const loop::TestPart test = loop::FindTestPart(records[r].record);
@@ -188,8 +189,8 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
 
 /// Refuses a load window without a load column, or without samples, before the fit refuses it with
 /// a message of its own.
-void RequireLoads(const FitRequest& request, const std::optional<Interval>& window,
-                  const std::vector<RecordFile>& inputs) {
+void RequireLoads(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  const std::optional<Interval>& window = request.fit.preparation.load_window;
   if (!window) return;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const std::vector<double>& load = inputs[r].record.normal_load;
@@ -275,7 +276,7 @@ bool WithdrawPreference(FitResult& fit) {
 AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
                   std::span<const Record> records) {
   const bool chooses_terms = ChoosesTerms(request);
-  if (request.model != kAutomatic) return FitLaw(request, options, records, chooses_terms);
+  if (request.fit.model != nullptr) return FitLaw(request, options, records, chooses_terms);
   AskedFit asked = FitLaw(request, options, records, /*chooses_terms=*/false);
   const auto& choice = asked.fit.law_choice;
   if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
@@ -358,9 +359,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
                           .misfit_after = *before};
     if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
     // With the term another law may be the better one, and miss otherwise.
-    if (request.model == kAutomatic) {
-      const bool is_dahl = options.model != nullptr && options.model->name == "dahl";
-      step.options += is_dahl ? " --model dahl" : " --model mindlin-dahl";
+    if (request.fit.model == nullptr) {
+      step.options += fmt::format(" --model {}", options.model->name);
     }
     try {
       FitOptions tried = MakeFitOptions(with);
@@ -466,7 +466,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);
-  RequireLoads(request, options.preparation.load_window, inputs);
+  RequireLoads(request, inputs);
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <utility>
 
@@ -17,7 +16,6 @@
 namespace mindahl::request {
 
 using identification::FitOptions;
-using identification::Loss;
 using identification::Term;
 
 namespace {
@@ -68,6 +66,9 @@ void ApplyRig(const RigRequest& asked, FitOptions& fit) {
   if (fit.fixed.contains(kName)) {
     throw InputError("--rig-stiffness and --fix rig_stiffness say the same: give one of the two");
   }
+  if (asked.value && fit.priors.contains(kName)) {
+    throw InputError("--prior rig_stiffness and --rig-stiffness say the same: give one of the two");
+  }
   if (asked.value) RequirePositive("--rig-stiffness [N/m]", *asked.value);
   if (asked.value && !asked.standard_uncertainty) {
     fit.fixed[kName] = *asked.value;
@@ -80,7 +81,7 @@ void ApplyRig(const RigRequest& asked, FitOptions& fit) {
 /// Returns the columns of --covariate, and of --terms the names that are no terms.
 std::vector<CovariateRequest> CovariatesOf(const FitRequest& request) {
   std::vector<CovariateRequest> covariates = request.covariates;
-  if (request.noise_in == "displacement") return covariates;
+  if (request.fit.response() == loop::Channel::kDisplacement) return covariates;
   for (std::string& name : NamedTerms(request)) {
     if (identification::FindTermGroup(name) != nullptr) continue;
     std::vector<std::string> names;
@@ -153,11 +154,11 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
   if (ChoosesTerms(request)) refuse("--terms auto", kBeside);
   if (request.compare) refuse("--compare", "models are compared by fits of the force");
-  if (request.force_noise) {
+  if (request.fit.force_noise) {
     refuse("--force-noise", "the force is taken as exact; give --displacement-noise");
   }
-  if (request.displacement_noise) {
-    RequirePositive("--displacement-noise [m]", *request.displacement_noise);
+  if (const auto& noise = request.fit.preparation.displacement_noise) {
+    RequirePositive("--displacement-noise [m]", *noise);
   }
 }
 
@@ -201,23 +202,6 @@ void RequireWithinBounds(const FitOptions& fit) {
   }
 }
 
-Loss FindLoss(std::string_view name) {
-  if (name == "huber") return Loss::kHuber;
-  if (name == "cauchy") return Loss::kCauchy;
-  if (name == "tukey") return Loss::kTukey;
-  return Loss::kNone;
-}
-
-void RequireKnownChoices(const FitRequest& request) {
-  RequireOneOf("--model", request.model, ModelNames());
-  RequireOneOf("--initial-state", request.initial_state, kInitialStates);
-  RequireOneOf("--force-sign", request.force_sign, kForceSigns);
-  RequireOneOf("--noise-in", request.noise_in, kNoiseIn);
-  RequireOneOf("--offsets", request.offsets, kOnOff);
-  RequireOneOf("--loss", request.loss, kLosses);
-  RequireOneOf("--trim", request.trim, kOnOff);
-}
-
 }  // namespace
 
 std::vector<std::string_view> ModelNames() {
@@ -237,64 +221,38 @@ std::vector<std::string> NamedTerms(const FitRequest& request) {
   return is_none || ChoosesTerms(request) ? std::vector<std::string>() : request.terms;
 }
 
-FitOptions MakeFitOptions(const FitRequest& options) {
-  FitOptions fit;
-  RequireKnownChoices(options);
-  if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
-  if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
-  if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;
-  loop::PreparationOptions& preparation = fit.preparation;
-  if (options.force_sign == "same") preparation.force_sense = 1;
-  if (options.force_sign == "opposite") preparation.force_sense = -1;
-  if (options.noise_in == "displacement") {
-    RequireOptionsOfDisplacement(options);
-    preparation.excitation = loop::Channel::kForce;
-  }
-  fit.offsets = options.offsets == "on";
-  for (const contact::UncertainValue& load : options.contact.normal_loads) {
+FitOptions MakeFitOptions(const FitRequest& request) {
+  FitOptions fit = request.fit;
+  if (fit.model == nullptr) fit.model = FitOptions().model;
+  if (fit.response() == loop::Channel::kDisplacement) RequireOptionsOfDisplacement(request);
+  for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
-  for (const auto& [option, window] :
-       {std::pair("--select load", options.load_window), {"--select time", options.time_window}}) {
+  const loop::PreparationOptions& preparation = fit.preparation;
+  for (const auto& [option, window] : {std::pair("--select load", preparation.load_window),
+                                       {"--select time", request.time_window}}) {
     if (window) RequireOrdered(option, window->lower, window->upper);
   }
-  preparation.load_window = options.load_window;
-  fit.loss = FindLoss(options.loss);
-  if (options.displacement_noise) {
-    RequireNonNegative("--displacement-noise [m]", *options.displacement_noise);
+  RequireCounts("--select cycles", preparation.cycles);
+  RequireCounts("--select samples", preparation.samples);
+  for (const auto& [option, size] :
+       {std::pair("--displacement-noise [m]", preparation.displacement_noise),
+        {"--reversal-gate [m]", preparation.reversal_gate}}) {
+    if (size) RequireNonNegative(option, *size);
   }
-  preparation.displacement_noise = options.displacement_noise;
-  if (options.force_noise) RequirePositive("--force-noise [N]", *options.force_noise);
-  fit.force_noise = options.force_noise;
-  if (!(options.confidence > 0 && options.confidence < 1)) {
-    ThrowInvalid("--confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
+  if (fit.force_noise) RequirePositive("--force-noise [N]", *fit.force_noise);
+  if (!(fit.confidence > 0 && fit.confidence < 1)) {
+    ThrowInvalid("--confidence [-]", fit.confidence, "must be between 0 and 1, as 0.95");
   }
-  fit.confidence = options.confidence;
-  if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
-  preparation.reversal_gate = options.reversal_gate;
-  fit.fixed = options.fix;
-  if (options.rig_stiffness) ApplyRig(*options.rig_stiffness, fit);
-  ApplyTerms(options, fit);
+  if (request.rig_stiffness) ApplyRig(*request.rig_stiffness, fit);
+  ApplyTerms(request, fit);
   AddCompanionsOfFixed(fit);
-  ApplyCovariates(CovariatesOf(options), fit);
-  RequireCounts("--select cycles", options.cycles);
-  RequireCounts("--select samples", options.samples);
-  preparation.cycles = options.cycles;
-  preparation.samples = options.samples;
-  fit.start = options.start;
-  fit.bounds = options.bound;
+  ApplyCovariates(CovariatesOf(request), fit);
   for (const auto& [name, interval] : fit.bounds) {
     RequireOrdered("--bound", interval.lower, interval.upper);
   }
-  for (const auto& [name, value] : options.prior) {
-    if (!fit.priors.emplace(name, identification::Prior{value.value, value.standard_error})
-             .second) {
-      throw InputError(
-          fmt::format("--prior {} and --rig-stiffness say the same: give one of the two", name));
-    }
-  }
   RequireWithinBounds(fit);
-  for (const auto& [name, value] : fit.priors) RequireFitted("--prior", name, fit);
+  for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
   for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);
   return fit;
@@ -307,7 +265,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
   if (!CovariatesOf(request).empty()) {
     throw InputError("--covariate is not available in track: fit a part of the record with fit");
   }
-  if (request.noise_in == "displacement") {
+  if (request.fit.response() == loop::Channel::kDisplacement) {
     throw InputError(
         "--noise-in displacement is not available in track: fit a part of the record with fit");
   }

@@ -39,6 +39,10 @@ TEST(Headline, SaysTheTestInOneLine) {
                                   Of("sigma", "N/m", {.first = 4.8e7, .last = 4.81e7})};
   EXPECT_EQ(Headline(still),
             "Tc 15 N throughout, but for scatter; σ 48 N/µm throughout, but for scatter");
+  still.resize(1);
+  still.front().course = {};
+  still.front().course.Add(1, 15.0);
+  EXPECT_EQ(Headline(still), "Tc 15.0 → 15.1 N, in too few rows to test");
   EXPECT_EQ(Headline({}), "");
 }
 

@@ -106,8 +106,6 @@ COMMANDS = [
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
     ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1", 0),
-    ("fit sweep.csv --sweep tangent", 0),
-    ("fit sweep.csv --sweep tangent --model mindlin", 0),
     ("track long.csv --output cycles.csv --normal-load 50", 0),
     ("track long.csv --output again.csv --average 3", 0),
     ("batch loop.csv twin.csv data/partial_slip.csv --output table.csv --normal-load 50", 0),
@@ -130,8 +128,6 @@ def make_files(directory, run):
           [f"{x},{(k * 7919 % 101) / 50 - 1}" for k, (_, x, _) in enumerate(cells)])
     write("loaded.csv", "time [s],displacement [m],force [N],normal load [N]",
           [f"{row},{50 + k % 3}" for k, row in enumerate(rows)])
-    write("sweep.csv", "force amplitude [N],stiffness [N/um]",
-          [f"{q},{40 * (1 - q / 60) ** 0.333 + (q * 7919 % 11) / 50}" for q in range(4, 55, 4)])
     write("broken.csv", "displacement [m],force [N]", ["0,0", "1e-6,much"])
     # Excursions of all sizes: no gate of the reversals is surer than another.
     steps_to_and_fro = random.Random(2)
@@ -260,7 +256,7 @@ def check_outputs(program):
             document = json.loads(done.stdout, parse_constant=lambda text: problems.append(
                 f"{line}: {text} is no JSON"))
             seen[document["schema"]] += 1
-            name = "sweep" if "--sweep" in line else line.split()[0]
+            name = line.split()[0]
             if document["schema"] != schema_of(name):
                 problems.append(f"{line}: schema {document['schema']}")
             problems += [f"{line}: {fault}" for fault in faults(document)]
@@ -319,9 +315,8 @@ def undocumented_keys():
     """Of the other commands, whose keys docs/contract.md names in its text."""
     pages = re.split(r"\n## mindahl (\w+)\n", (ROOT / "docs/contract.md").read_text())
     sections = dict(zip(pages[1::2], pages[2::2]))
-    command = {"sweep": "fit"}
     for name, schema in SCHEMAS.items():
-        text = sections[command.get(name, name)]
+        text = sections[name]
         for key in sorted(set(keys_in(schema)) - set(re.findall(r"`([a-z_0-9]+)`", text)) if name != "fit" else []):
             yield f"{name}.json: {key} is not in docs/contract.md"
 

@@ -57,11 +57,8 @@ TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
     ExpectRefused(all, "which it would replace");
   }
   const std::string config = directory_.Write("fit.toml", "model = \"mindlin\"\n").string();
-  for (const Words& sweep : std::vector<Words>{{}, {"--sweep", "secant"}}) {
-    Words words = {"fit", SampleRecord(), "--config", config, "--json", config};
-    words.insert(words.end(), sweep.begin(), sweep.end());
-    ExpectRefused(words, "which it would replace");
-  }
+  ExpectRefused({"fit", SampleRecord(), "--config", config, "--json", config},
+                "which it would replace");
   EXPECT_EQ(FileContent(config), "model = \"mindlin\"\n");
 }
 

@@ -58,7 +58,6 @@ COMMANDS = [
     Command("track", ["track", "long.csv", "a.csv", "--join", "--output", "table.csv", "--json", "out.json",
                       "--report", "out.html", "--threads", "2"], ["out.json", "out.html"],
             table="table.csv"),
-    Command("sweep", ["fit", "sweep.csv", "--sweep", "secant", "--json", "out.json"], ["out.json"]),
 ]
 KINDS = {"write": "1+~", "open": "1+", "rename": "1", "fsync": "1+", "truncate": "1", "close": "1",
          "mkdir": "1", "spawn": "1", "thread": "1+", "malloc": "1+"}
@@ -82,9 +81,6 @@ class Harness:
             subprocess.run([program, "simulate", *CONTACT, "--cycles", str(cycles), "--seed", str(seed),
                             "--samples-per-cycle", "24", "-o", path], check=True)
             self.inputs[name] = path.read_bytes()
-        # The secant stiffness of Jenkins' element of that contact.
-        self.inputs["sweep.csv"] = ("displacement amplitude [m],stiffness [N/m]\n" + "".join(
-            f"{k}e-7,{min(5e7, 60 / (k * 1e-7)):.8g}\n" for k in range(2, 40))).encode()
 
     def folder(self, command, old):
         """A directory with the inputs and, where `old`, with outputs that were there before."""

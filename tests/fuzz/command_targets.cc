@@ -67,17 +67,6 @@ const std::vector<Words> kOptionsOfTrack = {
     {"--average", "2"},        {"--every", "3"},           {"--compliance", "4e-11"},
     {"--broken-rows", "skip"}, {"--fix", "backlash=2e-7"}, {"--rig-stiffness", "1e8+-3%"},
     {"--terms", "slip_trend"}, {"--encoding", "latin1"}};
-const std::vector<Words> kOptionsOfSweep = {{},
-                                            {"--model", "mindlin"},
-                                            {"--model", "jenkins"},
-                                            {"--fix", "sigma=1e7"},
-                                            {"--fix", "alpha=0.5"},
-                                            {"--fix", "slip_force=50"},
-                                            {"--confidence", "0.5"},
-                                            {"--displacement", "1"},
-                                            {"--force", "1"},
-                                            {"--response", "2"},
-                                            {"--response", "[um/N]"}};
 
 /// Appends the options that a byte stands for.
 void AddOptions(Words& words, const std::vector<Words>& more, Bytes& bytes) {
@@ -231,19 +220,6 @@ void JoinRecords(Input input) {
   Append(words, options);
   const Outcome outcome = Run(words);
   RequireFiniteCells(output.Content());
-  if (outcome.status == cli::kBadInput) return;
-  RequireNumbers(outcome.out);
-}
-
-void FitSweeps(Input input) {
-  Bytes bytes(input);
-  Words words = {"fit", "", "--json", "-", "--sweep", bytes.Byte() % 2 == 0 ? "secant" : "tangent"};
-  for (int k = 0; k < 2; ++k) {
-    Append(words, kOptionsOfSweep[bytes.Byte() % kOptionsOfSweep.size()]);
-  }
-  const MemoryFile sweep(bytes.Text());
-  words[1] = sweep.name();
-  const Outcome outcome = Run(words);
   if (outcome.status == cli::kBadInput) return;
   RequireNumbers(outcome.out);
 }

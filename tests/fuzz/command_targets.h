@@ -13,7 +13,5 @@ void ResumeTables(Input input);
 
 /// Runs `fit --join` or `track --join` on pieces of a record.
 void JoinRecords(Input input);
-/// Runs `fit --sweep` on any table.
-void FitSweeps(Input input);
 
 }  // namespace mindahl::fuzz

@@ -9,13 +9,17 @@
 namespace mindahl::fuzz {
 namespace {
 
-constexpr std::array kTargets = {
-    Target{"csv", &ReadRecords, 4096},         Target{"units", &LookUpUnits, 64},
-    Target{"toml", &ReadConfigurations, 4096}, Target{"reversals", &FindTurns, 1024},
-    Target{"models", &EvaluateModels, 1024},   Target{"contact_state", &MoveContacts, 1024},
-    Target{"fit", &FitRecords, 4096},          Target{"track", &TrackRecords, 4096},
-    Target{"resume", &ResumeTables, 256},      Target{"join", &JoinRecords, 4096},
-    Target{"sweep", &FitSweeps, 1024},         Target{"encodings", &ReadEncodedRecords, 4096}};
+constexpr std::array kTargets = {Target{"csv", &ReadRecords, 4096},
+                                 Target{"units", &LookUpUnits, 64},
+                                 Target{"toml", &ReadConfigurations, 4096},
+                                 Target{"reversals", &FindTurns, 1024},
+                                 Target{"models", &EvaluateModels, 1024},
+                                 Target{"contact_state", &MoveContacts, 1024},
+                                 Target{"fit", &FitRecords, 4096},
+                                 Target{"track", &TrackRecords, 4096},
+                                 Target{"resume", &ResumeTables, 256},
+                                 Target{"join", &JoinRecords, 4096},
+                                 Target{"encodings", &ReadEncodedRecords, 4096}};
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include "mindahl/identification/mapping_validation.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/plan.h"
-#include "mindahl/identification/sweep.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/plot.h"
@@ -25,7 +24,6 @@ const contact::KnownBody kBody{.poisson_ratio = 0.3};
 const contact::KnownContact kContact{.contact_radius = 1e-3};
 const identification::FitOptions kFit{.force_noise = 0.1};
 const identification::FitOptions kFitWithBounds{.fixed = {{"alpha", 0.0}}};
-const identification::SweepOptions kSweep{.confidence = 0.9};
 const identification::TermSelectionOptions kTerms{.folds = 3};
 const identification::ValidationOptions kValidation{.cases = 3};
 const io::Plot kPlot{.title = "loop"};

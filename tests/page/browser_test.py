@@ -141,7 +141,8 @@ def probe(browser, page, width, dark, scratch, printed=False):
     text = page.read_text(encoding="utf-8")
     if printed:
         require("@media print{" in text, f"{page.name}: says nothing of print")
-        text = text.replace("@media print{", "@media all{")
+        # Of paper no rule of a screen holds.
+        text = text.replace("@media print{", "@media all{").replace("@media screen and", "@media not all and")
     policy = re.search(r'content="(default-src[^"]*)"', text)
     require(policy and "default-src 'none'" in policy.group(1), f"{page.name}: no policy")
     probed = scratch / f"probe-{page.stem.replace('<', '_').replace('>', '_')}.html"

@@ -50,7 +50,7 @@ def test_plan_is_the_program_s(keywords, options):
 
 
 def test_plan_warns_of_a_record_and_says_what_is_not_reached():
-    with pytest.warns(mindahl.FitWarning, match="far_from_slip.csv: alpha is not identified"):
+    with pytest.warns(mindahl.FitWarning, match="alpha is not identified"):
         result = mindahl.plan(FAR, want={"slip_force": "0.0001%"})
     assert not result.established
     record = mindahl.read_csv(SPHERE)
@@ -65,33 +65,6 @@ def test_tradeoff_is_the_program_s():
     points = result.to_pandas()
     assert len(points) == len(result.excitations[0].points)
     assert set(points["excitation"]) == {"micro"}
-
-
-def sweep_file(directory, header):
-    forces = np.arange(4.0, 55.0, 4.0)
-    stiffness = 40 * (1 - forces / 60) ** 0.333 + (forces * 7919 % 11) / 50
-    path = directory / "sweep.csv"
-    path.write_text("\n".join([header, *(f"{q},{k}" for q, k in zip(forces, stiffness))]) + "\n")
-    return path, forces, stiffness
-
-
-@pytest.mark.parametrize("keywords, options", [
-    ({"sweep": "tangent"}, ["tangent"]),
-    ({"sweep": "secant", "fix": {"slip_force": 60.0}, "confidence": 0.9},
-     ["secant", "--fix", "slip_force=60", "--confidence", "0.9"]),
-    ({"sweep": "tangent", "model": "mindlin", "response": "stiffness", "force": "1 [N]"},
-     ["tangent", "--model", "mindlin", "--response", "stiffness", "--force", "1 [N]"]),
-])
-def test_a_sweep_is_the_program_s(tmp_path, keywords, options):
-    path, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
-    result = mindahl.command("fit", path, **keywords)
-    same_document(result, "fit", path, "--sweep", *options)
-    assert result.established
-    columns = {"force amplitude [N]": forces, "stiffness [N/um]": stiffness}
-    for source in (columns, pandas.DataFrame(columns)):
-        assert mindahl.command("fit", source, **keywords).parameters == result.parameters
-    with pytest.raises(mindahl.InputError, match="must be > 0 in a sweep"):
-        mindahl.command("fit", {**columns, "stiffness [N/um]": -stiffness}, **keywords)
 
 
 def test_an_option_that_takes_a_file_takes_arrays(tmp_path):

@@ -388,9 +388,8 @@ def test_every_option_of_the_program_s_fit_is_a_keyword():
     keywords = set(inspect.signature(mindahl.fit).parameters)
     outputs = {"json", "residuals", "plot", "strict", "report", "details"}
     general = {"help", "help-all", "config", "version", "select"}  # select: cycles, samples, …
-    sweeps = {"sweep", "response", "response-unit"}  # of no record: no part of fit()
     missing = {option.replace("-", "_")
-               for option in options - outputs - general - sweeps} - keywords - {"with"}
+               for option in options - outputs - general} - keywords - {"with"}
     assert len(options) > 30
     assert not missing
 

@@ -66,7 +66,7 @@ TEST(FitRecords, RefusesUnitsBeyondAnyAtTheWidestValue) {
 
 TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   FitRequest request;
-  request.reversal_gate = 4.1e-6;
+  request.fit.preparation.reversal_gate = 4.1e-6;
   EXPECT_THAT(RefusalOf({LoopFile()}, request),
               HasSubstr("--reversal-gate 4.1e-06: the motion ranges over 4e-06 m only"));
   io::RecordFile wider = LoopFile();
@@ -76,8 +76,8 @@ TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   io::RecordFile turning = LoopFile();
   turning.is_torsional = true;
   EXPECT_THAT(RefusalOf({turning}, request), HasSubstr("ranges over 4e-06 rad only"));
-  request.noise_in = "displacement";
-  request.reversal_gate = 1000.0;
+  request.fit.preparation.excitation = loop::Channel::kForce;
+  request.fit.preparation.reversal_gate = 1000.0;
   EXPECT_THAT(RefusalOf({LoopFile()}, request),
               HasSubstr("--reversal-gate 1000: the force ranges over"));
   EXPECT_THAT(RefusalOf({turning}, request), EndsWith("give a smaller gate, in N m"));
@@ -96,14 +96,14 @@ TEST(FitRecords, RefusesALoadWindowThatHoldsNoSample) {
   io::RecordFile file = LoopFile();
   for (std::size_t i = 0; i <= 100; ++i) file.record.normal_load.push_back(i < 50 ? 80 : 120);
   FitRequest request;
-  request.load_window = {90, 110};
+  request.fit.preparation.load_window = {90, 110};
   EXPECT_EQ(RefusalOf({file}, request),
             "a.csv: --select load=90:110 holds no sample: the normal load runs from 80 to 120 N");
-  request.load_window = {121, 130};
+  request.fit.preparation.load_window = {121, 130};
   EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
-  request.load_window = {60, 79};
+  request.fit.preparation.load_window = {60, 79};
   EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
-  request.load_window = {60, 80};
+  request.fit.preparation.load_window = {60, 80};
   EXPECT_THAT(RefusalOf({file}, request), Not(HasSubstr("holds no sample")));
   EXPECT_THAT(RefusalOf({LoopFile()}, request),
               HasSubstr("--select load=LO:HI needs a normal load"));
@@ -124,7 +124,7 @@ TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {
   }
   FitRequest request;
   request.files = {"a.csv"};
-  request.load_window = {70, 90};
+  request.fit.preparation.load_window = {70, 90};
   const report::Report report = FitRecords(request, {file});
   // 50 even samples of 79.9 and 49 odd ones of 80.3 are within it.
   const double mean = (50 * 79.9 + 49 * 80.3) / 99;

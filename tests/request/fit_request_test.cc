@@ -10,50 +10,31 @@
 namespace mindahl::request::fit_request_test {
 namespace {
 
-TEST(FitRequest, RefusesAChoiceThatIsNone) {
-  for (std::string FitRequest::*member :
-       {&FitRequest::model, &FitRequest::initial_state, &FitRequest::force_sign,
-        &FitRequest::offsets, &FitRequest::loss, &FitRequest::trim}) {
-    FitRequest request;
-    request.*member = "oak";
-    EXPECT_THROW(MakeFitOptions(request), InputError);
-    EXPECT_THROW(Validate(request), InputError);
-  }
-}
-
-TEST(FitRequest, TakesWhatItsTablesName) {
-  for (const std::string_view model : ModelNames()) {
-    FitRequest request;
-    request.model = model;
-    EXPECT_NO_THROW(MakeFitOptions(request)) << model;
-  }
-}
-
 TEST(FitRequest, RefusesAValueThatIsHeldOutsideItsBound) {
   FitRequest request;
-  request.bound["slip_force"] = {1.0, 5.0};
+  request.fit.bounds["slip_force"] = {1.0, 5.0};
   for (const double held : {0.9, 5.1}) {
-    request.fix["slip_force"] = held;
+    request.fit.fixed["slip_force"] = held;
     EXPECT_THAT(MessageOf<InputError>([&] { MakeFitOptions(request); }),
                 HasSubstr("outside its --bound 1:5"));
   }
 }
 
 TEST(FitRequest, RefusesAWindowThatEndsBeforeItBegins) {
-  for (auto [option, window] : {std::pair("--select load", &FitRequest::load_window),
-                                {"--select time", &FitRequest::time_window}}) {
-    FitRequest request;
-    request.*window = {1.0, 2.0};
-    EXPECT_NO_THROW(MakeFitOptions(request));
-    request.*window = {2.0, 1.0};
-    EXPECT_THAT(MessageOf<std::exception>([&] { MakeFitOptions(request); }), HasSubstr(option));
-  }
+  FitRequest load;
+  load.fit.preparation.load_window = {1.0, 2.0};
+  EXPECT_NO_THROW(MakeFitOptions(load));
+  load.fit.preparation.load_window = {2.0, 1.0};
+  EXPECT_THAT(MessageOf<InputError>([&] { MakeFitOptions(load); }), HasSubstr("--select load"));
+  FitRequest time;
+  time.time_window = {2.0, 1.0};
+  EXPECT_THAT(MessageOf<InputError>([&] { MakeFitOptions(time); }), HasSubstr("--select time"));
 }
 
 TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
   for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     FitRequest request;
-    request.confidence = confidence;
+    request.fit.confidence = confidence;
     EXPECT_THAT(MessageOf([&] { MakeFitOptions(request); }), HasSubstr("--confidence [-]"));
   }
 }
@@ -75,28 +56,28 @@ TEST(FitRecords, NeedsARecordAndANameForEach) {
 
 TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   FitRequest request;
-  request.model = "dahl";
-  request.initial_state = "virgin";
-  request.force_sign = "opposite";
-  request.offsets = "off";
-  request.loss = "cauchy";
-  request.load_window = {10.0, 20.0};
-  request.cycles = loop::CountRange{2, 5};
-  request.samples = loop::CountRange{7, 90};
-  request.fix["alpha"] = 0.25;
-  request.start["sigma"] = 3e7;
-  request.bound["slip_force"] = {1.0, 5.0};
-  request.prior["sigma"] = {2e7, 1e6};
-  request.confidence = 0.5;
-  request.force_noise = 0.125;
-  request.displacement_noise = 1e-9;
-  request.reversal_gate = 2e-9;
+  request.fit.model = models::FindFrictionModel("dahl");
+  request.fit.initial_state = models::InitialState::kVirgin;
+  request.fit.preparation.force_sense = -1;
+  request.fit.offsets = false;
+  request.fit.loss = identification::Loss::kCauchy;
+  request.fit.preparation.load_window = {10.0, 20.0};
+  request.fit.preparation.cycles = loop::CountRange{2, 5};
+  request.fit.preparation.samples = loop::CountRange{7, 90};
+  request.fit.fixed["alpha"] = 0.25;
+  request.fit.start["sigma"] = 3e7;
+  request.fit.bounds["slip_force"] = {1.0, 5.0};
+  request.fit.priors["sigma"] = {2e7, 1e6};
+  request.fit.confidence = 0.5;
+  request.fit.force_noise = 0.125;
+  request.fit.preparation.displacement_noise = 1e-9;
+  request.fit.preparation.reversal_gate = 2e-9;
   request.contact.normal_loads = {{30.0, 1.0}, {40.0, 2.0}};
   request.covariates = {{.column = "pressure", .coefficient = {}},
                         {.column = "2", .coefficient = 0.75}};
   request.terms = {"viscous"};
   request.rig_stiffness = {.value = 8e7, .standard_uncertainty = 1e6};
-  request.fix["asymmetry"] = 0.0625;
+  request.fit.fixed["asymmetry"] = 0.0625;
   const identification::FitOptions fit = MakeFitOptions(request);
   EXPECT_EQ(fit.model->name, "dahl");
   EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
@@ -110,7 +91,7 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   EXPECT_EQ(fit.preparation.cycles->last, 5U);
   EXPECT_EQ(fit.preparation.samples->first, 7U);
   EXPECT_EQ(fit.preparation.samples->last, 90U);
-  EXPECT_EQ(fit.start, request.start);
+  EXPECT_EQ(fit.start, request.fit.start);
   EXPECT_EQ(fit.bounds.at("slip_force").lower, 1.0);
   EXPECT_EQ(fit.bounds.at("slip_force").upper, 5.0);
   EXPECT_EQ(fit.confidence, 0.5);
@@ -139,33 +120,38 @@ std::string RefusalOf(const FitRequest& request) {
 TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
   const auto start = [](const char* name, const auto& change) {
     FitRequest request;
-    request.start[name] = 0.25;
+    request.fit.start[name] = 0.25;
     change(request);
     return RefusalOf(request);
   };
   const auto as_it_is = [](FitRequest&) {};
   EXPECT_EQ(start("alpha", as_it_is), "");
-  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.fix["alpha"] = 0.25; }),
+  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.fit.fixed["alpha"] = 0.25; }),
               HasSubstr("it is held at a value that is given"));
-  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.model = "mindlin"; }),
-              HasSubstr("--model mindlin prescribes it"));
+  EXPECT_THAT(
+      start("alpha", [](FitRequest& r) { r.fit.model = models::FindFrictionModel("mindlin"); }),
+      HasSubstr("--model mindlin prescribes it"));
   EXPECT_EQ(start("force_offset", as_it_is), "");
-  EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.offsets = "off"; }),
+  EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.fit.offsets = false; }),
               HasSubstr("--offsets off holds it at 0"));
   EXPECT_EQ(start("displacement_offset", as_it_is), "");
-  EXPECT_THAT(start("displacement_offset", [](FitRequest& r) { r.initial_state = "steady"; }),
+  EXPECT_THAT(start("displacement_offset",
+                    [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
               HasSubstr("that of a steady loop is its centre"));
-  EXPECT_EQ(start("force_offset", [](FitRequest& r) { r.initial_state = "steady"; }), "");
+  EXPECT_EQ(start("force_offset",
+                  [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
+            "");
   EXPECT_THAT(start("force_offset",
                     [](FitRequest& r) {
-                      r.initial_state = "steady";
-                      r.noise_in = "displacement";
+                      r.fit.initial_state = models::InitialState::kSteady;
+                      r.fit.preparation.excitation = loop::Channel::kForce;
                     }),
               HasSubstr("that of a steady loop is its centre"));
   EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --terms viscous"));
   EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms = {"viscous"}; }), "");
   EXPECT_THAT(start("rig_stiffness", as_it_is), HasSubstr("add --rig-stiffness fit"));
-  EXPECT_THAT(start("displacement_drift", [](FitRequest& r) { r.noise_in = "displacement"; }),
+  EXPECT_THAT(start("displacement_drift",
+                    [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }),
               EndsWith("add --terms displacement_drift"));
 }
 
@@ -174,17 +160,17 @@ TEST(FitRequest, RefusesTwoAnswersToOneQuestion) {
   request.covariates = {{.column = "p", .coefficient = {}}, {.column = "p", .coefficient = {}}};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate: 'p' is given twice"));
   request.covariates = {{.column = "p", .coefficient = 2.0}};
-  request.fix[identification::NameOfCovariate("p")] = 2.0;
+  request.fit.fixed[identification::NameOfCovariate("p")] = 2.0;
   EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate p=2 and --fix"));
   request = {};
   request.rig_stiffness = RigRequest{};
   request.terms = {"rig_stiffness"};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--terms rig_stiffness and --rig-stiffness"));
   request.terms.clear();
-  request.fix["rig_stiffness"] = 8e7;
+  request.fit.fixed["rig_stiffness"] = 8e7;
   EXPECT_THAT(RefusalOf(request), HasSubstr("--rig-stiffness and --fix rig_stiffness"));
-  request.fix.clear();
-  request.prior["rig_stiffness"] = {8e7, 1e6};
+  request.fit.fixed.clear();
+  request.fit.priors["rig_stiffness"] = {8e7, 1e6};
   request.rig_stiffness = {.value = 8e7, .standard_uncertainty = 1e6};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--prior rig_stiffness and --rig-stiffness"));
 }
@@ -215,7 +201,7 @@ TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
 TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
   const auto terms = [](const char* name, double value) {
     FitRequest request;
-    request.fix[name] = value;
+    request.fit.fixed[name] = value;
     const identification::FitOptions made = MakeFitOptions(request);
     EXPECT_EQ(made.fixed.at(name), value);
     return made.terms;
@@ -234,24 +220,26 @@ TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
       {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
       {"displacement_drift alone is a term", [](FitRequest& r) { r.terms = {"lag"}; }},
       {"--compare cannot", [](FitRequest& r) { r.compare = true; }},
-      {"--force-noise cannot", [](FitRequest& r) { r.force_noise = 0.5; }},
-      {"--displacement-noise [m]", [](FitRequest& r) { r.displacement_noise = 0.0; }}};
+      {"--force-noise cannot", [](FitRequest& r) { r.fit.force_noise = 0.5; }},
+      {"--displacement-noise [m]",
+       [](FitRequest& r) { r.fit.preparation.displacement_noise = 0.0; }}};
   for (const auto& [words, change] : refused) {
     FitRequest request;
     change(request);
     EXPECT_EQ(RefusalOf(request), "") << words;
-    request.noise_in = "displacement";
+    request.fit.preparation.excitation = loop::Channel::kForce;
     EXPECT_THAT(RefusalOf(request), HasSubstr(words));
   }
   FitRequest drift;
-  drift.noise_in = "displacement";
+  drift.fit.preparation.excitation = loop::Channel::kForce;
   drift.terms = {"displacement_drift"};
   EXPECT_THAT(MakeFitOptions(drift).terms, ElementsAre("displacement_drift"));
 }
 
 TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
   const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
-      {"--noise-in displacement", [](FitRequest& r) { r.noise_in = "displacement"; }},
+      {"--noise-in displacement",
+       [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }},
       {"--terms asymmetry", [](FitRequest& r) { r.terms = {"asymmetry"}; }},
       {"--covariate", [](FitRequest& r) { r.terms = {"pressure"}; }},
       {"--compare", [](FitRequest& r) { r.compare = true; }}};
@@ -265,21 +253,21 @@ TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
 
 TEST(FitRequest, TakesABoundWithBothItsEnds) {
   FitRequest request;
-  request.bound["slip_force"] = {1.0, 5.0};
+  request.fit.bounds["slip_force"] = {1.0, 5.0};
   for (const double held : {1.0, 5.0, 3.0}) {
-    request.fix["slip_force"] = held;
+    request.fit.fixed["slip_force"] = held;
     // A held parameter may have a bound, as long as its value lies within.
     EXPECT_THAT(RefusalOf(request), Not(HasSubstr("outside"))) << held;
   }
-  request.fix.clear();
-  request.bound["slip_force"] = {5.0, 5.0};
+  request.fit.fixed.clear();
+  request.fit.bounds["slip_force"] = {5.0, 5.0};
   EXPECT_THAT(RefusalOf(request), HasSubstr("--bound: '5:5' is empty"));
   for (const auto& [first, last, is_fine] :
        {std::tuple(1U, 1U, true), {2U, 5U, true}, {0U, 3U, false}, {4U, 3U, false}}) {
-    for (std::optional<loop::CountRange> FitRequest::*range :
-         {&FitRequest::cycles, &FitRequest::samples}) {
+    for (std::optional<loop::CountRange> loop::PreparationOptions::*range :
+         {&loop::PreparationOptions::cycles, &loop::PreparationOptions::samples}) {
       FitRequest counted;
-      counted.*range = loop::CountRange{first, last};
+      counted.fit.preparation.*range = loop::CountRange{first, last};
       EXPECT_EQ(RefusalOf(counted).empty(), is_fine) << first << " " << last;
     }
   }
@@ -287,36 +275,26 @@ TEST(FitRequest, TakesABoundWithBothItsEnds) {
 
 // --- the contact
 
-TEST(ResolveContact, NamesEachQuantityWithItsValue) {
+TEST(ResolveContact, PredictsEachQuantityWithItsUncertainty) {
   ContactOptions options;
   options.friction_coefficient = {0.25, 0.0625};
   options.known = {.normal_load = contact::UncertainValue{80.0, 0.0},
                    .contact_radius = contact::UncertainValue{2e-3, 0.0},
                    .tangential_compliance = contact::UncertainValue{4e-11, 0.0}};
-  const ContactParameters made = ResolveContact(options);
+  const contact::PredictedContact made = ResolveContact(options);
   // σ = 8a/G*, Tc = μN, δc = 3μNG*/(16a), p₀ = 3N/(2πa²).
-  EXPECT_DOUBLE_EQ(made.law.tangential_stiffness, 8 * 2e-3 / 4e-11);
-  EXPECT_DOUBLE_EQ(made.law.slip_force, 20.0);
-  EXPECT_EQ(made.law.shape_exponent, 1.0 / 3);
-  const auto of = [&](std::string_view section, std::string_view name) {
-    const auto found = std::ranges::find_if(made.quantities, [&](const ContactQuantity& quantity) {
-      return quantity.section == section && quantity.name == name;
-    });
-    return found == made.quantities.end() ? contact::UncertainValue{} : found->value;
-  };
-  const auto value = [&](const char* section, const char* name) { return of(section, name).value; };
-  EXPECT_EQ(value("contact", "friction_coefficient"), 0.25);
-  EXPECT_EQ(of("contact", "friction_coefficient").standard_error, 0.0625);
-  EXPECT_EQ(value("contact", "normal_load"), 80.0);
-  EXPECT_EQ(value("contact", "contact_radius"), 2e-3);
-  EXPECT_EQ(value("contact", "compliance"), 4e-11);
-  EXPECT_DOUBLE_EQ(value("contact", "maximum_pressure"), 240 / (2 * std::numbers::pi * 4e-6));
-  EXPECT_DOUBLE_EQ(value("contact", "gross_slip_displacement"), 3 * 20 * 4e-11 / (16 * 2e-3));
-  EXPECT_DOUBLE_EQ(value("parameters", "sigma"), 4e8);
-  EXPECT_EQ(value("parameters", "alpha"), 1.0 / 3);
-  EXPECT_DOUBLE_EQ(value("parameters", "slip_force"), 20.0);
-  EXPECT_DOUBLE_EQ(of("parameters", "slip_force").standard_error, 5.0);
-  EXPECT_THAT(made.quantities, SizeIs(9));
+  EXPECT_DOUBLE_EQ(made.tangential_stiffness.value, 8 * 2e-3 / 4e-11);
+  EXPECT_DOUBLE_EQ(made.slip_force.value, 20.0);
+  EXPECT_DOUBLE_EQ(made.slip_force.standard_error, 5.0);
+  EXPECT_EQ(made.contact_radius.value, 2e-3);
+  EXPECT_EQ(made.tangential_compliance.value, 4e-11);
+  EXPECT_DOUBLE_EQ(made.maximum_pressure.value, 240 / (2 * std::numbers::pi * 4e-6));
+  EXPECT_DOUBLE_EQ(made.gross_slip_displacement.value, 3 * 20 * 4e-11 / (16 * 2e-3));
+  EXPECT_FALSE(made.effective_modulus || made.equivalent_radius || made.approach);
+  LawRequest request;
+  request.contact = options;
+  EXPECT_EQ(ResolveLaw(request).shape_exponent, 1.0 / 3);
+  EXPECT_DOUBLE_EQ(ResolveLaw(request).tangential_stiffness, 4e8);
 }
 
 TEST(ResolveLaw, TakesAContactOrItsParametersAndNamesWhatIsMissing) {

@@ -59,7 +59,7 @@ report::Report ReportOf(const Record& record, FitRequest request = {}) {
   file.displacement.unit = "m";
   file.force.unit = "N";
   request.files = {"a.csv"};
-  request.trim = "on";
+  request.trim = true;
   return FitRecords(request, {file});
 }
 

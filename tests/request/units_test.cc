@@ -142,11 +142,11 @@ std::vector<Question> Questions() {
     return [request](const UnitScale&) { return request; };
   };
   FitRequest dahl;
-  dahl.model = "dahl";
+  dahl.fit.model = models::FindFrictionModel("dahl");
   FitRequest forced;
-  forced.noise_in = "displacement";
+  forced.fit.preparation.excitation = loop::Channel::kForce;
   FitRequest robust;
-  robust.loss = "huber";
+  robust.fit.loss = identification::Loss::kHuber;
   FitRequest compared;
   compared.compare = true;
   return {
@@ -158,18 +158,18 @@ std::vector<Question> Questions() {
       {"noise_given",
        [](const UnitScale& scale) {
          FitRequest request;
-         request.force_noise = 0.2 * scale.force;
-         request.displacement_noise = 5e-9 * scale.length;
-         request.fix["sigma"] = 4.1e7 * scale.force / scale.length;
-         request.start["slip_force"] = 35 * scale.force;
-         request.reversal_gate = 1e-8 * scale.length;
+         request.fit.force_noise = 0.2 * scale.force;
+         request.fit.preparation.displacement_noise = 5e-9 * scale.length;
+         request.fit.fixed["sigma"] = 4.1e7 * scale.force / scale.length;
+         request.fit.start["slip_force"] = 35 * scale.force;
+         request.fit.preparation.reversal_gate = 1e-8 * scale.length;
          return request;
        },
        one},
       {"prior",
        [](const UnitScale& scale) {
          FitRequest request;
-         request.prior["slip_force"] = {41 * scale.force, 0.5 * scale.force};
+         request.fit.priors["slip_force"] = {41 * scale.force, 0.5 * scale.force};
          return request;
        },
        one},

@@ -127,27 +127,6 @@ void RequireJoinable(const RecordFile& first, const std::string& first_name, con
 /// @throws InputError where one has a time, a load or a torque and another has not
 RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names);
 
-/// A stiffness or compliance over the amplitude, as lock-in rigs report.
-struct SweepFile {
-  std::vector<double> amplitude;  ///< [m] or [N]
-  std::vector<double> response;   ///< [N/m] or [m/N]
-  bool over_force = false;        ///< amplitudes are forces
-  bool is_compliance = false;     ///< responses are displacements over forces
-  std::vector<std::size_t> lines;
-  std::vector<std::string> notes;
-};
-
-/// Reads a sweep.
-/// @param columns   of displacement or force, of which one has the amplitudes: the one that is
-///   chosen, or else that is recognised by its name, with or without "amplitude"
-/// @param response  column by name or number, else recognised: stiffness, k, kt, compliance; its
-///   unit is one of force over one of length ("N/um") or the other way round
-/// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
-SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
-                    const std::string& response);
-/// The same of a table.
-SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns, const std::string& response);
-
 /// Names what a path to impose has a column of.
 enum class Imposed { kDisplacement, kForce, kNormalLoad };
 

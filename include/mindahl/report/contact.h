@@ -19,13 +19,13 @@ struct ContactQuantity {
   std::string_view symbol;  ///< "μ"
   std::string_view unit;    ///< "-" if it is a ratio
   /// The parameter beside which it is printed; empty of what was given.
-  std::string_view parameter;
-  std::optional<double> value;  ///< empty where it does not follow
+  std::string_view parameter{};
+  std::optional<double> value{};  ///< empty where it does not follow
   /// Ends of the interval: those of the parameters' intervals, mapped; the uncertainties of known
   /// inputs are added in quadrature to the half width of the logarithm. Empty where one is open.
-  std::optional<double> lower;
-  std::optional<double> upper;
-  std::string why;  ///< why value or an end is empty
+  std::optional<double> lower{};
+  std::optional<double> upper{};
+  std::string why{};  ///< why value or an end is empty
 };
 
 /// Returns every quantity of the contact of a fit, in the order of the reports: friction

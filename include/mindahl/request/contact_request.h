@@ -31,25 +31,11 @@ bool IsAnythingGiven(const ContactOptions& options);
 /// an uncertain radius
 void Validate(const ContactOptions& options);
 
-/// A line of the report on a contact.
-struct ContactQuantity {
-  std::string section;  // of the JSON
-  std::string name;
-  contact::UncertainValue value;
-  std::string unit;
-  std::string meaning;
-};
-
-struct ContactParameters {
-  models::BranchLaw law;
-  std::vector<ContactQuantity> quantities = {};
-};
-
-/// Returns Dahl's parameters of a contact described by friction and normal load with either contact
-/// radius and compliance or the materials and radii of both bodies; uncertain inputs make uncertain
+/// Predicts a contact that is described by friction and normal load with either contact radius and
+/// compliance or the materials and radii of both bodies; uncertain inputs make uncertain
 /// quantities.
 /// @throws InputError naming the options that are missing
-ContactParameters ResolveContact(const ContactOptions& options);
+contact::PredictedContact ResolveContact(const ContactOptions& options);
 
 /// A branch law: by its parameters, or by a contact.
 struct LawRequest {

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,13 +27,6 @@ inline constexpr std::string_view kNoTerms = "none";
 /// --rig-stiffness fit
 inline constexpr std::string_view kFitIt = "fit";
 
-// Lists the values that these options accept, the default first.
-inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virgin", "steady"};
-inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
-inline constexpr std::array<std::string_view, 2> kNoiseIn = {"force", "displacement"};
-inline constexpr std::array<std::string_view, 2> kOnOff = {"on", "off"};
-inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "cauchy", "tukey"};
-
 /// Models that can be fitted, kAutomatic first.
 std::vector<std::string_view> ModelNames();
 
@@ -61,29 +51,14 @@ struct FitRequest {
   bool join = false;                                      // the files are pieces of one record
   std::optional<std::uint64_t> max_memory{};              // [bytes]; else what the process may have
   std::optional<identification::Interval> time_window{};  // [s]
-  std::string model = "auto";
-  std::string initial_state = "auto";
-  std::string force_sign = "auto";
-  std::string noise_in = "force";
-  std::string offsets = "on";
+  /// As given, without what the members below add; no model: --model auto.
+  identification::FitOptions fit{.model = nullptr};
   bool compare = false;                       // all models, with and without a rig
   std::optional<RigRequest> rig_stiffness{};  // empty: rigid
   /// kNoTerms or kAutomatic alone, or names of groups of terms and of columns; empty: none.
   std::vector<std::string> terms{};
   std::vector<CovariateRequest> covariates{};
-  std::optional<identification::Interval> load_window{};  // [N]
-  std::optional<loop::CountRange> cycles{};
-  std::optional<loop::CountRange> samples{};
-  std::string trim = "on";
-  std::string loss = "none";
-  std::map<std::string, double> fix{};
-  std::map<std::string, double> start{};
-  std::map<std::string, identification::Interval> bound{};
-  std::map<std::string, contact::UncertainValue> prior{};
-  double confidence = 0.95;
-  std::optional<double> force_noise{};
-  std::optional<double> displacement_noise{};
-  std::optional<double> reversal_gate{};
+  bool trim = true;
   ContactOptions contact{};
 };
 
@@ -103,9 +78,6 @@ identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 
 /// Returns the columns that are covariates, as the reader takes them.
 std::vector<std::string> CovariateColumns(const FitRequest& request);
-
-/// Receives notes on what was assumed, one sentence each.
-using Tell = std::function<void(std::string_view)>;
 
 /// Requirements of `--strict` on a fit.
 enum class Strictness {

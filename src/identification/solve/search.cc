@@ -169,7 +169,7 @@ void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buf
   best.sum_of_squares = std::numeric_limits<double>::infinity();
   best.converged = false;
   best.report = {};
-  best.report.message = "no starting point has the force's sign";
+  best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
   Rivals rivals(options, buffers, best);
