@@ -9,6 +9,7 @@
 
 #include "core/extremes.h"
 #include "loop/mended.h"
+#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
@@ -66,15 +67,19 @@ void Smooth(PreparedRecord& prepared) {
 }
 
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
-void LeaveOutGlitches(PreparedRecord& prepared, const PreparationOptions& options,
-                      std::pmr::memory_resource* memory) {
+void LeaveOutGlitches(PreparedRecord& prepared, std::pmr::memory_resource* memory) {
   prepared.counts.assign(prepared.size(), 1);
-  if (!options.leave_out_glitches) return;
   Mended mended = FindAndMend(prepared.record, {}, memory);
   if (mended.glitches.empty()) return;
-  prepared.glitches = CountGlitches(mended.glitches);
+  GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    if (mended.glitches[i] != Glitch::kNone) prepared.counts[i] = 0;
+    const Glitch glitch = mended.glitches[i];
+    if (glitch == Glitch::kNone) continue;
+    prepared.counts[i] = 0;
+    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
+    ++(glitch == Glitch::kSpike     ? count.spikes
+       : glitch == Glitch::kDropout ? count.dropouts
+                                    : count.held);
   }
   prepared.mended_displacement = std::move(mended.displacement);
   prepared.mended_force = std::move(mended.force);
@@ -189,14 +194,17 @@ std::size_t PreparedRecords::counted() const {
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
                         std::pmr::memory_resource* memory) {
   RequireOptions(records.size(), options);
-  for (const RecordView& record : records) Validate(record);
+  for (const RecordView& record : records) {
+    Validate(record);
+    if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
+  }
   PreparedRecords result(memory);
   result.excitation = options.excitation;
   result.records.reserve(records.size());
   int votes = 0;
   for (const RecordView& record : records) {
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
-    LeaveOutGlitches(prepared, options, memory);
+    LeaveOutGlitches(prepared, memory);
     FindTurns(prepared, options, memory);
     if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals, memory);
   }

@@ -215,16 +215,10 @@ TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
   EXPECT_NEAR(one.measures.peak_force, whole.records[0].measures.peak_force, kBridged);
 }
 
-TEST(Preparation, LeavesGlitchesInWhereItIsAskedTo) {
-  Record spiked = Made();
-  spiked.displacement[120] += 3;
-  PreparationOptions options;
-  options.leave_out_glitches = false;
-  const std::vector<Record> records = {spiked};
-  const PreparedRecords prepared = PrepareAll(records, options);
-  EXPECT_EQ(prepared.records[0].glitches.total(), 0U);
-  EXPECT_EQ(prepared.records[0].left_out, 0U);
-  EXPECT_EQ(prepared.records[0].displacement()[120], spiked.displacement[120]);
+TEST(Preparation, RefusesARecordThatIsEmptyOrNotFinite) {
+  EXPECT_THROW(PrepareAll({Record{}}, {}), InvalidArgument);
+  EXPECT_THROW(PrepareAll({Record{{1, 2}, {1}, {}, {}}}, {}), InvalidArgument);
+  EXPECT_THROW(PrepareAll({Record{{1, 2}, {1, std::nan("")}, {}, {}}}, {}), InvalidArgument);
 }
 
 TEST(Preparation, SaysHowSureTheGateIs) {

@@ -36,9 +36,6 @@ struct PreparationOptions {
   /// deviations.
   std::optional<double> reversal_gate{};
 
-  /// Spikes, dropouts and held values (FindGlitches) do not count, and make no history.
-  bool leave_out_glitches = true;
-
   /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).
   /// Empty: decided by the sign of the loop's energy.
   std::optional<int> force_sense{};
@@ -123,7 +120,8 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Finds glitches, reversals, sign of force, smoothing and the mask of samples that count: what
+/// Finds glitches - spikes, dropouts and held values, which do not count and make no history -,
+/// reversals, sign of force, smoothing and the mask of samples that count: what
 /// depends on no model.
 /// @param records  not empty; their memory must outlive the result
 /// @param memory   of the result and of scratch; must outlive it
