@@ -138,7 +138,7 @@ Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
   const Reading reading{.gate = record.gate_choice,
                         .gate_is_given = fit.preparation.reversal_gate.has_value(),
                         .samples = head.size()};
-  fit.preparation.reversal_gate = record.reversal_gate;
+  fit.preparation.reversal_gate = record.gate_choice.gate;
   fit.preparation.force_sense = prepared.force_sense;
   return reading;
 }

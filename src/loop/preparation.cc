@@ -52,8 +52,9 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
   const bool is_coarse = prepared.encoder_step > CycleRules().coarse * (highest / 2 - lowest / 2);
-  return prepared.reversal_gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement, memory)
-                                                 : 0.0;
+  return prepared.gate_choice.gate > 0 || is_coarse
+             ? EstimateDisplacementNoise(displacement, memory)
+             : 0.0;
 }
 
 void Smooth(PreparedRecord& prepared) {
@@ -92,10 +93,9 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
   if (!options.reversal_gate) choice = ChooseReversalGate(excitation, memory);
-  prepared.reversal_gate = options.reversal_gate.value_or(
+  choice.gate = options.reversal_gate.value_or(
       std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
-  FindReversals(excitation, prepared.reversal_gate, prepared.reversals);
-  choice.gate = prepared.reversal_gate;
+  FindReversals(excitation, choice.gate, prepared.reversals);
   choice.count = prepared.reversals.size();
   if (!choice.certain) return;
   choice.other_gate = choice.gate;

@@ -128,18 +128,18 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
 
 TEST(Preparation, GateIsGivenFoundOrFromAKnownNoise) {
   PreparationOptions options;
-  EXPECT_EQ(PrepareAll({Made()}, options).records[0].reversal_gate, 0.0);
+  EXPECT_EQ(PrepareAll({Made()}, options).records[0].gate_choice.gate, 0.0);
   options.displacement_noise = 1e-3;
   const std::vector<Record> records = {Made()};
   const double reach = 2e-3 * std::sqrt(2 * std::log(static_cast<double>(records[0].size())));
-  EXPECT_NEAR(PrepareAll(records, options).records[0].reversal_gate, reach, 1e-12);
+  EXPECT_NEAR(PrepareAll(records, options).records[0].gate_choice.gate, reach, 1e-12);
   options.reversal_gate = 0.25;
-  EXPECT_EQ(PrepareAll(records, options).records[0].reversal_gate, 0.25);
+  EXPECT_EQ(PrepareAll(records, options).records[0].gate_choice.gate, 0.25);
   Generator generator(2);
   Record noisy = Made();
   for (double& x : noisy.displacement) x += 0.02 * Normal(generator);
   const PreparedRecords found = PrepareAll({noisy}, {});
-  EXPECT_GT(found.records[0].reversal_gate, 0.02);
+  EXPECT_GT(found.records[0].gate_choice.gate, 0.02);
   EXPECT_EQ(found.records[0].reversals.size(), 6U);
 }
 
@@ -229,7 +229,6 @@ TEST(Preparation, SaysHowSureTheGateIs) {
   const PreparedRecords found = PrepareAll(records, {});
   EXPECT_TRUE(found.records[0].gate_choice.certain);
   EXPECT_EQ(found.records[0].gate_choice.count, 6U);
-  EXPECT_EQ(found.records[0].gate_choice.gate, found.records[0].reversal_gate);
   PreparationOptions options;
   options.reversal_gate = 0.0;
   const PreparedRecords given = PrepareAll(records, options);

@@ -80,8 +80,7 @@ struct PreparedRecord {
   GlitchCount glitches;                          ///< glitches left out, by kind
   std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
   std::pmr::vector<double> mended_force;         ///< [N]; likewise
-  double reversal_gate = 0.0;                    ///< [unit of the excitation]
-  ReversalGate gate_choice;                 ///< how sure the gate is; `certain` where it was given
+  ReversalGate gate_choice;  ///< [unit of the excitation]; `certain` where it was given
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;                    ///< with the force's sign that of the displacement
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
