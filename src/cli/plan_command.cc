@@ -79,10 +79,10 @@ struct Plan {
 
 /// Returns gross slip behind the rig, or three elastic limits where slip is only approached.
 double SlipReach(const Expectation& expected) {
-  const double slip = models::GrossSlipDisplacement(expected.law, expected.rig);
-  return std::isfinite(slip) ? slip
-                             : 3 * expected.law.slip_force / expected.law.tangential_stiffness +
-                                   expected.law.slip_force / expected.rig.stiffness;
+  const models::BranchLaw& law = expected.law;
+  const double slip = models::GrossSlipDisplacement(law);
+  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+         law.slip_force / expected.rig.stiffness;
 }
 
 identification::FitOptions PlannedFit(const PlanOptions& options) {
