@@ -10,7 +10,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 namespace {
 

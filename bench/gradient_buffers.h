@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 /// Holds T/Tc and its derivatives with respect to ln κ, α, δ₀ and ln c: what one evaluation of a
 /// model with its gradient writes, which is the floor of any fit.

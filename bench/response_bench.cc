@@ -11,8 +11,8 @@
 #include "gradient_buffers.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/normalized_response.h"
 #include "mindahl/models/response.h"
+#include "models/normalized_response.h"
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/variable_load.h"
+#include "models/load_zones.h"
 
 namespace {
 
@@ -40,7 +41,7 @@ std::vector<double> Displacements(const BranchLaw& law) {
 
 /// With the path and its reversals found beforehand, as in a fit.
 void Constant(benchmark::State& state, double shape_exponent) {
-  const BranchLaw law = BranchLawAtLoad(Law(shape_exponent), kMeanLoad);
+  const BranchLaw law = ReferenceLaw(Law(shape_exponent));
   const std::vector<double> x = Displacements(law);
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
   const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
@@ -55,7 +56,7 @@ void Constant(benchmark::State& state, double shape_exponent) {
 /// N = N_mean·(1 + swing·sin 2ωt)
 void Varying(benchmark::State& state, double shape_exponent, double swing) {
   const LoadDependentLaw law = Law(shape_exponent);
-  const std::vector<double> x = Displacements(BranchLawAtLoad(law, kMeanLoad));
+  const std::vector<double> x = Displacements(ReferenceLaw(law));
   std::vector<double> load;
   for (std::size_t i = 0; i < x.size(); ++i) {
     load.push_back(kMeanLoad * (1 + swing * std::sin(4 * 3.141592653589793 *

@@ -13,7 +13,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/reversals.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "processor_time.h"
 
 namespace {

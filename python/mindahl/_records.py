@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copyreg
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -133,22 +132,6 @@ def si_columns(record: Record) -> dict[str, tuple[str, Any]]:
              "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
              "normal_load_column": (f"normal load [{force}]", record.normal_load)}
     return {role: column for role, column in found.items() if column[1] is not None}
-
-
-def _record_again(name: str, names: list[str], arrays: list[Any], roles: dict[str, int],
-                  covariates: list[str]) -> Record:
-    return _mindahl.record_of_columns(name, names, arrays, reading(roles, covariates))
-
-
-def _reduced(record: Record) -> Any:
-    """A record for pickle and copy; its notes are said already."""
-    columns, others = si_columns(record), record.covariates
-    names, arrays = zip(*columns.values(), *others.items())
-    return _record_again, (record.name, list(names), [np.array(values) for values in arrays],
-                           {role: k + 1 for k, role in enumerate(columns)}, list(others))
-
-
-copyreg.pickle(Record, _reduced)
 
 
 def columns_by_name(source: Any) -> Optional[Columns]:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <memory_resource>
 #include <optional>
@@ -17,13 +18,6 @@ namespace {
 template <typename Column, typename Value>
 void AppendColumn(const Column& from, std::vector<Value>& to) {
   to.insert(to.end(), from.begin(), from.end());
-}
-
-/// Returns the values from `begin` to before `end`; nothing where not recorded.
-std::vector<double> PartOf(const std::vector<double>& values, std::size_t begin, std::size_t end) {
-  if (values.empty()) return {};
-  return {values.begin() + static_cast<std::ptrdiff_t>(begin),
-          values.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
 /// Stirs a word into a checksum: the finaliser of SplitMix64 (Steele, Lea & Flood 2014), which
@@ -51,27 +45,25 @@ CycleSplitter::CycleSplitter(double gate, std::size_t together, std::uint64_t se
 
 void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::size_t> lines,
                         std::vector<Cycle>& cycles) {
-  AppendColumn(samples.displacement, kept_.displacement);
-  AppendColumn(samples.force, kept_.force);
-  AppendColumn(samples.time, kept_.time);
-  AppendColumn(samples.normal_load, kept_.normal_load);
-  AppendColumn(lines, lines_);
+  const std::array columns = {samples.displacement, samples.force, samples.time,
+                              samples.normal_load};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    AppendColumn(columns[k], kept_.*loop::kRecordColumns[k]);
+  }
+  AppendColumn(lines, kept_.lines);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::optional<std::size_t> turn = finder_.Add(samples.displacement[i]);
     if (turn) Complete(*turn, cycles);
   }
-  EraseFirst(kept_.displacement, begin_);
-  EraseFirst(kept_.force, begin_);
-  EraseFirst(kept_.time, begin_);
-  EraseFirst(kept_.normal_load, begin_);
-  EraseFirst(lines_, begin_);
+  for (const auto column : loop::kRecordColumns) EraseFirst(kept_.*column, begin_);
+  EraseFirst(kept_.lines, begin_);
   summed_ -= begin_;
   dropped_ += std::exchange(begin_, 0);
   if (kept_.size() > kMostSamples) {
     throw InvalidArgument(
         fmt::format("more than {} samples without a whole cycle, from line {} on: the displacement "
                     "does not turn by more than {} m",
-                    kMostSamples, lines_.front(), gate_));
+                    kMostSamples, kept_.lines.front(), gate_));
   }
 }
 
@@ -83,16 +75,17 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
     ++turns_;
     return;
   }
-  const auto part = [&](const std::vector<double>& values) {
-    return PartOf(values, begin_, turn + 1);
-  };
-  cycles.push_back({.number = cycles_ + 1,
-                    .first_line = lines_[begin_],
-                    .record = {.displacement = part(kept_.displacement),
-                               .force = part(kept_.force),
-                               .time = part(kept_.time),
-                               .normal_load = part(kept_.normal_load)},
-                    .checksum = checksum_});
+  Cycle& cycle = cycles.emplace_back(Cycle{.number = cycles_ + 1,
+                                           .first_line = kept_.lines[begin_],
+                                           .record = {},
+                                           .checksum = checksum_});
+  for (const auto column : loop::kRecordColumns) {
+    const std::vector<double>& values = kept_.*column;
+    if (values.empty()) continue;
+    (cycle.record.*column)
+        .assign(values.begin() + static_cast<std::ptrdiff_t>(begin_),
+                values.begin() + static_cast<std::ptrdiff_t>(turn + 1));
+  }
   cycles_ += together_;
   begin_ = turn;
   turns_ = 1;
@@ -100,11 +93,10 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
 
 void CycleSplitter::SumUpTo(std::size_t end) {
   for (; summed_ < end; ++summed_) {
-    checksum_ = Stir(checksum_, lines_[summed_]);
-    for (const std::vector<double>* channel :
-         {&kept_.displacement, &kept_.force, &kept_.time, &kept_.normal_load}) {
-      if (channel->empty()) continue;
-      checksum_ = Stir(checksum_, std::bit_cast<std::uint64_t>((*channel)[summed_]));
+    checksum_ = Stir(checksum_, kept_.lines[summed_]);
+    for (const auto column : loop::kRecordColumns) {
+      if ((kept_.*column).empty()) continue;
+      checksum_ = Stir(checksum_, std::bit_cast<std::uint64_t>((kept_.*column)[summed_]));
     }
   }
 }
@@ -114,7 +106,6 @@ std::size_t CycleSplitter::Restart() {
   SumUpTo(left);
   summed_ = 0;
   kept_ = {};
-  lines_.clear();
   finder_ = loop::ReversalFinder(gate_);
   dropped_ = 0;
   begin_ = 0;
@@ -124,22 +115,6 @@ std::size_t CycleSplitter::Restart() {
 
 using identification::FitOptions;
 
-namespace {
-
-void AppendSamples(const io::Samples& from, io::Samples& to) {
-  AppendColumn(from.displacement, to.displacement);
-  AppendColumn(from.force, to.force);
-  AppendColumn(from.time, to.time);
-  AppendColumn(from.normal_load, to.normal_load);
-  AppendColumn(from.lines, to.lines);
-}
-
-}  // namespace
-
-loop::RecordView ViewOf(const io::Samples& samples) {
-  return {samples.displacement, samples.force, samples.time, samples.normal_load};
-}
-
 io::Samples ReadHead(io::RecordStream& stream) {
   constexpr std::size_t kReversals = 8;
   constexpr std::size_t kMostSamples = 1'000'000;
@@ -147,7 +122,8 @@ io::Samples ReadHead(io::RecordStream& stream) {
   io::Samples piece;
   std::size_t next_look = 1;  // at twice as much each time: a look is at all of it
   while (head.size() < kMostSamples && stream.Next(piece)) {
-    AppendSamples(piece, head);
+    for (const auto column : loop::kRecordColumns) AppendColumn(piece.*column, head.*column);
+    AppendColumn(piece.lines, head.lines);
     if (head.size() < next_look) continue;
     if (loop::ChooseReversalGate(head.displacement).count >= kReversals) break;
     next_look = 2 * head.size();
@@ -162,7 +138,7 @@ Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
   const Reading reading{.gate = record.gate_choice,
                         .gate_is_given = fit.preparation.reversal_gate.has_value(),
                         .samples = head.size()};
-  fit.preparation.reversal_gate = record.reversal_gate;
+  fit.preparation.reversal_gate = record.gate_choice.gate;
   fit.preparation.force_sense = prepared.force_sense;
   return reading;
 }

@@ -13,29 +13,20 @@ namespace mindahl::campaign {
 
 namespace {
 
-std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
-std::optional<double> SlipForceError(const CycleFit& fit) { return fit.slip_force.standard_error; }
-std::optional<double> SigmaError(const CycleFit& fit) { return fit.sigma.standard_error; }
-
 constexpr std::array kQuantities = {
-    TrackedQuantity{"friction_coefficient", "-", "μ", "",
-                    [](const CycleFit& fit) { return fit.friction_coefficient; }, SlipForceError},
-    TrackedQuantity{"slip_force", "N", "Tc", "slip_force_open",
-                    [](const CycleFit& fit) { return fit.slip_force.value; }, SlipForceError},
-    TrackedQuantity{"half_gap", "N", "half gap", "",
-                    [](const CycleFit& fit) { return fit.half_gap; }, Rms},
-    TrackedQuantity{"sigma", "N/m", "σ", "sigma_open",
-                    [](const CycleFit& fit) { return fit.sigma.value; }, SigmaError},
-    TrackedQuantity{"contact_radius", "m", "a", "sigma_open",
-                    [](const CycleFit& fit) { return fit.contact_radius; }, SigmaError},
-    TrackedQuantity{"alpha", "-", "", "alpha_open",
-                    [](const CycleFit& fit) { return fit.alpha.value; },
-                    [](const CycleFit& fit) { return fit.alpha.standard_error; }},
-    TrackedQuantity{"energy", "J", "", "", [](const CycleFit& fit) { return fit.energy; }, Rms,
-                    /*is_drawn=*/false},
-    TrackedQuantity{"energy_ratio", "-", "", "",
-                    [](const CycleFit& fit) { return fit.energy_ratio; }, Rms},
+    TrackedQuantity{"friction_coefficient", "μ", "", "slip_force_error"},
+    TrackedQuantity{"slip_force", "Tc", "slip_force_open", "slip_force_error"},
+    TrackedQuantity{"half_gap", "half gap", "", "rms"},
+    TrackedQuantity{"sigma", "σ", "sigma_open", "sigma_error"},
+    TrackedQuantity{"contact_radius", "a", "sigma_open", "sigma_error"},
+    TrackedQuantity{"alpha", "", "alpha_open", "alpha_error"},
+    TrackedQuantity{"energy", "", "", "rms", /*is_drawn=*/false},
+    TrackedQuantity{"energy_ratio", "", "", "rms"},
 };
+
+const CycleNumber& ColumnOf(std::string_view name) {
+  return *std::ranges::find(CycleNumbers(), name, &CycleNumber::name);
+}
 
 /// Returns one over the square of an error, within what sums of a million million neither overflow
 /// nor lose.
@@ -105,13 +96,13 @@ std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
 TrackedCourses::TrackedCourses() : courses_(kQuantities.size()) {}
 
-void TrackedCourses::Add(const CycleFit& fit) {
+void TrackedCourses::Add(CycleFit fit) {
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
     const TrackedQuantity& quantity = kQuantities[k];
-    const std::optional<double> value = quantity.of(fit);
+    const std::optional<double> value = ColumnOf(quantity.name).of(fit);
     if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
     // A value without an error is exact, held or without noise: then all have one weight.
-    const std::optional<double> error = quantity.error(fit);
+    const std::optional<double> error = ColumnOf(quantity.error).of(fit);
     courses_[k].Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
   }
 }
@@ -121,9 +112,10 @@ std::vector<Evolution> TrackedCourses::Describe(bool is_torsional) const {
   std::vector<Evolution> evolutions;
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
     if (const std::optional<CourseDescription> found = campaign::Describe(courses_[k])) {
+      const std::string_view unit = ColumnOf(kQuantities[k].name).unit;
       evolutions.push_back({&kQuantities[k],
-                            std::string(report::UnitIn(units, kQuantities[k].unit)), courses_[k],
-                            *found});
+                            std::string(report::UnitIn(units, unit.empty() ? "-" : unit)),
+                            courses_[k], *found});
     }
   }
   return evolutions;

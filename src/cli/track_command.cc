@@ -423,12 +423,12 @@ void TrackRun::ReadFile(const std::string& file) {
     stream.Next(piece);
   } else {
     piece = campaign::ReadHead(stream);
-    BeginFits(campaign::ViewOf(piece), file);
+    BeginFits(piece, file);
   }
   while (piece.size() > 0) {
     test_.samples += piece.size();
     times_.Shift(piece.time);
-    tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    tracker_->Add(piece, piece.lines);
     AskWhetherToGoOn();
     RequireNoSignal();
     if (!stream.Next(piece)) break;

@@ -16,7 +16,12 @@
 #include <malloc.h>
 #endif
 
-extern char** environ;  // macOS has it in no header
+#ifdef __APPLE__
+#include <crt_externs.h>
+#define environ (*_NSGetEnviron())  // which a shared library has not itself
+#else
+extern char** environ;
+#endif
 
 namespace mindahl {
 namespace {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/from_chars.h"
 #include "core/text.h"
@@ -16,26 +17,40 @@ struct Entry {
   std::string_view symbol;
   double numerator;
   double denominator;
+  /// Other ways to write it, between blanks; in lower case they count in any.
+  std::string_view words = {};
 };
 
 constexpr std::array kLengths = {
-    Entry{"m", 1, 1},       Entry{"mm", 1, 1e3},    Entry{"um", 1, 1e6},
-    Entry{"nm", 1, 1e9},    Entry{"cm", 1, 1e2},    Entry{"in", 254, 1e4},
-    Entry{"ft", 3048, 1e4}, Entry{"mil", 254, 1e7}, Entry{"pm", 1, 1e12},
+    Entry{"m", 1, 1, "meter meters metre metres"},
+    Entry{"mm", 1, 1e3, "MM millimeter millimeters millimetre millimetres 毫米"},
+    Entry{"um", 1, 1e6, "micron microns micrometer micrometers micrometre 微米"},
+    Entry{"nm", 1, 1e9},
+    Entry{"cm", 1, 1e2},
+    Entry{"in", 254, 1e4, "inch inches \""},
+    Entry{"ft", 3048, 1e4, "feet"},
+    Entry{"mil", 254, 1e7, "thou"},
+    Entry{"pm", 1, 1e12},
 };
+// A mass that stands for a force is its weight.
 constexpr std::array kForces = {
-    Entry{"N", 1, 1},          Entry{"mN", 1, 1e3},
-    Entry{"uN", 1, 1e6},       Entry{"kN", 1e3, 1},
-    Entry{"MN", 1e6, 1},       Entry{"lbf", 4.4482216152605, 1},
-    Entry{"kgf", 9.80665, 1},  Entry{"kip", 4448.2216152605, 1},
-    Entry{"gf", 9.80665, 1e3}, Entry{"daN", 10, 1},
-    Entry{"dyn", 1, 1e5},
+    Entry{"N", 1, 1, "newton newtons 牛"},
+    Entry{"mN", 1, 1e3},
+    Entry{"uN", 1, 1e6},
+    Entry{"kN", 1e3, 1, "KN kilonewton kilonewtons 千牛"},
+    Entry{"MN", 1e6, 1},
+    Entry{"lbf", 4.4482216152605, 1, "lb lbs pounds"},
+    Entry{"kgf", 9.80665, 1, "kg kp"},
+    Entry{"kip", 4448.2216152605, 1, "kips"},
+    Entry{"gf", 9.80665, 1e3, "g gram grams gramm"},
+    Entry{"daN", 10, 1},
+    Entry{"dyn", 1, 1e5, "dyne dynes"},
 };
 constexpr std::array kAngles = {
-    Entry{"rad", 1, 1},
+    Entry{"rad", 1, 1, "radian radians"},
     Entry{"mrad", 1, 1e3},
-    Entry{"deg", std::numbers::pi, 180},
-    Entry{"rev", 2 * std::numbers::pi, 1},
+    Entry{"deg", std::numbers::pi, 180, "° degree degrees 度"},
+    Entry{"rev", 2 * std::numbers::pi, 1, "revolutions"},
 };
 constexpr std::array kTorques = {
     Entry{"N m", 1, 1},
@@ -47,10 +62,13 @@ constexpr std::array kTorques = {
     Entry{"lbf ft", 4.4482216152605 * 0.3048, 1},
 };
 constexpr std::array kTimes = {
-    Entry{"s", 1, 1},    Entry{"ms", 1, 1e3}, Entry{"us", 1, 1e6},
-    Entry{"ns", 1, 1e9}, Entry{"min", 60, 1}, Entry{"h", 3600, 1},
+    Entry{"s", 1, 1, "sec secs second seconds sek 秒"},
+    Entry{"ms", 1, 1e3, "msec 毫秒 milliseconds millis"},
+    Entry{"us", 1, 1e6, "usec"},
+    Entry{"ns", 1, 1e9, "nsec"},
+    Entry{"min", 60, 1, "minute minutes"},
+    Entry{"h", 3600, 1, "hour hours hr"},
 };
-
 constexpr std::array kPressures = {
     Entry{"Pa", 1, 1},
     Entry{"hPa", 1e2, 1},
@@ -60,90 +78,11 @@ constexpr std::array kPressures = {
     Entry{"mbar", 1e2, 1},
     Entry{"bar", 1e5, 1},
     Entry{"psi", 6894.757293168, 1},
-    Entry{"kgf/cm2", 98066.5, 1},
-    Entry{"kgf/cm²", 98066.5, 1},
+    Entry{"kgf/cm2", 98066.5, 1, "kgf/cm²"},
 };
-
-struct Synonym {
-  std::string_view written;
-  std::string_view symbol;
-};
-// A mass that stands for a force is its weight. Words in lower case count in any case.
-constexpr auto kSynonyms = std::to_array<Synonym>({
-    {"micron", "um"},
-    {"microns", "um"},
-    {"micrometer", "um"},
-    {"micrometers", "um"},
-    {"micrometre", "um"},
-    {"inch", "in"},
-    {"inches", "in"},
-    {"\"", "in"},
-    {"feet", "ft"},
-    {"thou", "mil"},
-    {"meter", "m"},
-    {"meters", "m"},
-    {"metre", "m"},
-    {"metres", "m"},
-    {"millimeter", "mm"},
-    {"millimeters", "mm"},
-    {"millimetre", "mm"},
-    {"millimetres", "mm"},
-    {"毫米", "mm"},
-    {"微米", "um"},
-    {"newton", "N"},
-    {"newtons", "N"},
-    {"kilonewton", "kN"},
-    {"kilonewtons", "kN"},
-    {"牛", "N"},
-    {"千牛", "kN"},
-    {"g", "gf"},
-    {"gram", "gf"},
-    {"grams", "gf"},
-    {"gramm", "gf"},
-    {"kg", "kgf"},
-    {"kp", "kgf"},
-    {"lb", "lbf"},
-    {"lbs", "lbf"},
-    {"pounds", "lbf"},
-    {"kips", "kip"},
-    {"dyne", "dyn"},
-    {"dynes", "dyn"},
-    {"KN", "kN"},
-    {"MM", "mm"},
-    {"sec", "s"},
-    {"secs", "s"},
-    {"second", "s"},
-    {"seconds", "s"},
-    {"sek", "s"},
-    {"秒", "s"},
-    {"msec", "ms"},
-    {"毫秒", "ms"},
-    {"milliseconds", "ms"},
-    {"millis", "ms"},
-    {"usec", "us"},
-    {"nsec", "ns"},
-    {"minute", "min"},
-    {"minutes", "min"},
-    {"hour", "h"},
-    {"hours", "h"},
-    {"hr", "h"},
-    {"radian", "rad"},
-    {"radians", "rad"},
-    {"degree", "deg"},
-    {"degrees", "deg"},
-    {"度", "deg"},
-    {"revolutions", "rev"},
-});
 
 /// "µ" has two code points, U+00B5 and U+03BC; both become "u".
 std::string WithAsciiMicro(std::string_view symbol) {
-  const std::string lower = LowerCase(symbol);
-  for (const std::string_view written : {symbol, std::string_view(lower)}) {
-    // A single letter, or two, differ by their case: g and G, mN and MN.
-    if (written != symbol && symbol.size() < 3) break;
-    const auto synonym = std::ranges::find(kSynonyms, written, &Synonym::written);
-    if (synonym != kSynonyms.end()) return std::string(synonym->symbol);
-  }
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
     if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
   }
@@ -151,10 +90,18 @@ std::string WithAsciiMicro(std::string_view symbol) {
 }
 
 std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) {
-  const std::string wanted = WithAsciiMicro(symbol);
-  const auto entry = std::ranges::find(table, wanted, &Entry::symbol);
+  const std::string ascii = WithAsciiMicro(symbol);
+  const std::string lower = LowerCase(symbol);
+  const auto is_it = [&](const Entry& entry) {
+    if (entry.symbol == ascii) return true;
+    const std::vector<std::string_view> words = PartsOf(entry.words, ' ');
+    // A single letter, or two, differ by their case: g and G, mN and MN.
+    return std::ranges::find(words, symbol) != words.end() ||
+           (symbol.size() >= 3 && std::ranges::find(words, lower) != words.end());
+  };
+  const auto entry = symbol.empty() ? table.end() : std::ranges::find_if(table, is_it);
   if (entry == table.end()) return std::nullopt;
-  return Unit{wanted, entry->numerator, entry->denominator};
+  return Unit{std::string(entry->symbol), entry->numerator, entry->denominator};
 }
 
 /// Returns "Nm", "N·m", "N*m" and "N-m" as the table has it, "N m".
@@ -185,9 +132,7 @@ std::string Symbols(std::span<const Entry> table) {
 }  // namespace
 
 std::optional<Unit> LengthUnit(std::string_view symbol) { return Find(kLengths, symbol); }
-std::optional<Unit> AngleUnit(std::string_view symbol) {
-  return Find(kAngles, symbol == "°" ? "deg" : symbol);
-}
+std::optional<Unit> AngleUnit(std::string_view symbol) { return Find(kAngles, symbol); }
 std::optional<Unit> TorqueUnit(std::string_view symbol) {
   return Find(kTorques, WithBlank(symbol));
 }

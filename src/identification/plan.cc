@@ -23,6 +23,7 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
+#include "models/scaled_branches.h"
 
 namespace mindahl::identification {
 namespace {
@@ -59,8 +60,6 @@ void RequirePlan(const Expectation& expected, const Protocol& protocol, const Fi
   }
   RequireTerms(options);
 }
-
-bool IsRigid(const models::SeriesSpring& rig) { return std::isinf(rig.stiffness); }
 
 std::vector<double> LoadsOf(const Protocol& protocol) {
   return protocol.loads.empty() ? std::vector{1.0} : protocol.loads;

@@ -178,7 +178,7 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
   // A gate means noise in the displacement: its outermost samples are the noisiest, and say
   // nothing of where the motion turned.
   const bool gated = std::ranges::any_of(
-      attempt.prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
+      attempt.prepared.records, [](const auto& record) { return record.gate_choice.gate > 0; });
   // Turning points are not fitted together with a term that moves the samples off them.
   const bool is_moved = best.problem.parameters.moves_contact();
   // Nor under a load that varies: the path between the samples is not the displacement's alone.

@@ -15,9 +15,8 @@ namespace {
 template <typename Reduce>
 void ReduceColumns(RecordFile& file, const Reduce& reduce) {
   loop::Record& record = file.record;
-  for (std::vector<double>* const column :
-       {&record.displacement, &record.force, &record.time, &record.normal_load}) {
-    if (!column->empty()) reduce(*column);
+  for (const auto column : loop::kRecordColumns) {
+    if (!(record.*column).empty()) reduce(record.*column);
   }
   for (loop::Covariate& covariate : record.covariates) reduce(covariate.values);
   if (!file.lines.empty()) reduce(file.lines);
@@ -130,10 +129,7 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
       to.insert(to.end(), from.begin(), from.end());
     };
     loop::Record& record = joined.record;
-    append(next.record.displacement, record.displacement);
-    append(next.record.force, record.force);
-    append(next.record.time, record.time);
-    append(next.record.normal_load, record.normal_load);
+    for (const auto column : loop::kRecordColumns) append(next.record.*column, record.*column);
     for (std::size_t c = record.covariates.size(); c-- > 0;) {
       const auto same = std::ranges::find(next.record.covariates, record.covariates[c].name,
                                           &loop::Covariate::name);

@@ -180,11 +180,8 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
         "line {}",
         table.file, file.left_out.count, table.rows(), file.left_out.first_line));
   }
-  file.record = {.displacement = std::move(samples.displacement),
-                 .force = std::move(samples.force),
-                 .time = std::move(samples.time),
-                 .normal_load = std::move(samples.normal_load)};
   file.lines = std::move(samples.lines);
+  file.record = std::move(samples);
   AddCovariates(ColumnNames(table), columns.covariates, file);
   return std::move(file);
 }

@@ -62,10 +62,7 @@ const RecordFile& RecordStream::layout() const { return state_->builder.file(); 
 
 bool RecordStream::Next(Samples& samples) {
   auto& [pieces, name, rows, layout, builder, reader, refusal] = *state_;
-  for (auto* const column :
-       {&samples.displacement, &samples.force, &samples.time, &samples.normal_load}) {
-    column->clear();
-  }
+  for (const auto column : loop::kRecordColumns) (samples.*column).clear();
   samples.lines.clear();
   while (samples.lines.empty()) {
     if (!refusal.empty()) throw InputError(refusal);

@@ -1,5 +1,3 @@
-#include "mindahl/loop/cycles.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -169,6 +167,8 @@ double NoiseOfMeanEnergy(const RecordView& record, std::size_t cycles,
   return std::hypot(of_force, of_displacement) / static_cast<double>(cycles);
 }
 
+}  // namespace
+
 std::pmr::vector<double> CycleEnergies(const RecordView& record,
                                        std::span<const std::size_t> reversals,
                                        std::pmr::memory_resource* scratch) {
@@ -182,22 +182,10 @@ std::pmr::vector<double> CycleEnergies(const RecordView& record,
   return energies;
 }
 
-}  // namespace
-
-std::vector<double> CycleEnergies(const RecordView& record,
-                                  std::span<const std::size_t> reversals) {
-  const std::pmr::vector<double> energies =
-      CycleEnergies(record, reversals, std::pmr::get_default_resource());
-  return {energies.begin(), energies.end()};
-}
-
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
                          std::pmr::memory_resource* scratch) {
-  Validate(record);
-  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   const std::span<const double> x = record.displacement;
   LoopMeasures measures;
-
   const std::pmr::vector<std::size_t> points = TurningPoints(x, reversals, scratch);
   const std::pmr::vector<Swing> swings = MainSwings(record, points, scratch);
   const double highest = MeanOf(swings, &Swing::highest);
@@ -223,8 +211,6 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
-  Validate(record);
-  if (record.size() == 0) return 0;
   const CycleRules rules;
   const Extremes displacement = ExtremesOf(record.displacement);
   const Extremes force = ExtremesOf(record.force);

@@ -499,22 +499,4 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
   return mended;
 }
 
-std::vector<Glitch> FindGlitches(const RecordView& record) {
-  Validate(record);
-  const Mended mended = FindAndMend(record, {}, std::pmr::get_default_resource());
-  return {mended.glitches.begin(), mended.glitches.end()};
-}
-
-GlitchCount CountGlitches(std::span<const Glitch> glitches) {
-  GlitchCount count;
-  for (std::size_t i = 0; i < glitches.size(); ++i) {
-    if (glitches[i] == Glitch::kNone) continue;
-    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
-    if (glitches[i] == Glitch::kSpike) ++count.spikes;
-    if (glitches[i] == Glitch::kDropout) ++count.dropouts;
-    if (glitches[i] == Glitch::kHeld) ++count.held;
-  }
-  return count;
-}
-
 }  // namespace mindahl::loop

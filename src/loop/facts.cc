@@ -247,20 +247,15 @@ std::optional<Passage> PassageOf(const Stroke& stroke, double centre, double hal
   return passage;
 }
 
-/// Locates the segment where the force of a direction stands still.
-struct Flat {
-  std::size_t level = 0;  // at which it begins
-  double width = 0.0;     // [m]
-};
-
 /// Returns the width [m] of a gap between the levels k and k + 2: the travel from a level before to
 /// one after, less what the slopes beyond these take.
 double GapAt(const Passage& passage, std::size_t k, double before, double after) {
   return passage[k + 3] - passage[k - 1] - 4 * (before + after) / 2;
 }
 
+/// Returns the width [m] of the segment where the force of a direction stands still.
 /// @param passages  of strokes of one direction
-std::optional<Flat> FlatOf(std::span<const Passage> passages) {
+std::optional<double> FlatOf(std::span<const Passage> passages) {
   constexpr double kSofter = 2.0;    // than what is before and after
   constexpr double kScatter = 0.25;  // of the width, between strokes
   constexpr std::size_t kFewest = 2;
@@ -271,7 +266,8 @@ std::optional<Flat> FlatOf(std::span<const Passage> passages) {
     for (const Passage& passage : passages) travels.push_back(passage[k]);
     typical[k] = Median(travels);
   }
-  std::optional<Flat> flat;
+  std::size_t level = 0;  // at which it begins; 0 where there is none
+  double flat = 0.0;
   double before = 0.0;
   double after = 0.0;
   // Slopes over three levels before and after it, a level apart.
@@ -281,21 +277,23 @@ std::optional<Flat> FlatOf(std::span<const Passage> passages) {
     const double here = (typical[k + 2] - typical[k]) / 2;
     const double width = GapAt(typical, k, one, other);
     if (!(here > kSofter * std::max(one, other)) || !(one > 0) || !(other > 0)) continue;
-    if (flat && flat->width >= width) continue;
-    flat = {k, width};
+    if (level > 0 && flat >= width) continue;
+    level = k;
+    flat = width;
     before = one;
     after = other;
   }
-  if (!flat) return std::nullopt;
+  if (level == 0) return std::nullopt;
   for (const Passage& passage : passages) {
-    const double width = GapAt(passage, flat->level, before, after);
-    if (std::abs(width - flat->width) > kScatter * flat->width) return std::nullopt;
+    if (std::abs(GapAt(passage, level, before, after) - flat) > kScatter * flat) {
+      return std::nullopt;
+    }
   }
   return flat;
 }
 
-std::optional<Backlash> FindBacklash(std::span<const Stroke> strokes, double centre,
-                                     double half_gap, double amplitude) {
+std::optional<double> FindBacklash(std::span<const Stroke> strokes, double centre, double half_gap,
+                                   double amplitude) {
   // Narrower ones are within what a few samples, or the digits of the force, make of a steep
   // branch.
   constexpr double kLeastGap = 0.03;
@@ -305,16 +303,12 @@ std::optional<Backlash> FindBacklash(std::span<const Stroke> strokes, double cen
     if (!passage) return std::nullopt;
     passages[stroke.rises() ? 0 : 1].push_back(*passage);
   }
-  Backlash backlash;
-  for (std::size_t direction = 0; direction < 2; ++direction) {
-    const auto flat = FlatOf(passages[direction]);
-    if (!flat) return std::nullopt;
-    const double level = kLowestLevel + kLevelStep * static_cast<double>(flat->level + 1);
-    backlash.width += flat->width / 2;
-    backlash.force += (centre + (direction == 0 ? 1 : -1) * level * half_gap) / 2;
-  }
-  if (backlash.width < kLeastGap * amplitude) return std::nullopt;
-  return backlash;
+  const std::optional<double> rising = FlatOf(passages[0]);
+  const std::optional<double> falling = FlatOf(passages[1]);
+  if (!rising || !falling) return std::nullopt;
+  const double width = *rising / 2 + *falling / 2;
+  if (width < kLeastGap * amplitude) return std::nullopt;
+  return width;
 }
 
 double StandardDeviation(Column values) {
@@ -451,10 +445,12 @@ std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double n
   return facts.energy_per_cycle / (4 * normal_load * *facts.sliding_amplitude);
 }
 
-namespace {
-
-LoopFacts MeasureValid(const RecordView& record, Points reversals, int force_sense) {
+LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
+                       int force_sense) {
+  Validate(record);
+  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   if (force_sense == 1) return MeasureInSense(record, reversals);
+  if (force_sense != -1) ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
   std::vector<double> turned(record.force.begin(), record.force.end());
   for (double& force : turned) force = -force;
   RecordView in_sense = record;
@@ -462,26 +458,10 @@ LoopFacts MeasureValid(const RecordView& record, Points reversals, int force_sen
   return MeasureInSense(in_sense, reversals);
 }
 
-void RequireSense(int force_sense) {
-  if (force_sense == 1 || force_sense == -1) return;
-  ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
-}
-
-}  // namespace
-
-LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
-                       int force_sense) {
-  Validate(record);
-  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
-  RequireSense(force_sense);
-  return MeasureValid(record, reversals, force_sense);
-}
-
 LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense) {
-  RequireSense(force_sense);
   RecordView record = prepared.readings();
   record.displacement = prepared.displacement();
-  return MeasureValid(record, prepared.reversals, force_sense);
+  return MeasureFacts(record, prepared.reversals, force_sense);
 }
 
 }  // namespace mindahl::loop

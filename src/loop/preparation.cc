@@ -9,6 +9,7 @@
 
 #include "core/extremes.h"
 #include "loop/mended.h"
+#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
@@ -51,8 +52,9 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
   const bool is_coarse = prepared.encoder_step > CycleRules().coarse * (highest / 2 - lowest / 2);
-  return prepared.reversal_gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement, memory)
-                                                 : 0.0;
+  return prepared.gate_choice.gate > 0 || is_coarse
+             ? EstimateDisplacementNoise(displacement, memory)
+             : 0.0;
 }
 
 void Smooth(PreparedRecord& prepared) {
@@ -66,15 +68,19 @@ void Smooth(PreparedRecord& prepared) {
 }
 
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
-void LeaveOutGlitches(PreparedRecord& prepared, const PreparationOptions& options,
-                      std::pmr::memory_resource* memory) {
+void LeaveOutGlitches(PreparedRecord& prepared, std::pmr::memory_resource* memory) {
   prepared.counts.assign(prepared.size(), 1);
-  if (!options.leave_out_glitches) return;
   Mended mended = FindAndMend(prepared.record, {}, memory);
   if (mended.glitches.empty()) return;
-  prepared.glitches = CountGlitches(mended.glitches);
+  GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    if (mended.glitches[i] != Glitch::kNone) prepared.counts[i] = 0;
+    const Glitch glitch = mended.glitches[i];
+    if (glitch == Glitch::kNone) continue;
+    prepared.counts[i] = 0;
+    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
+    ++(glitch == Glitch::kSpike     ? count.spikes
+       : glitch == Glitch::kDropout ? count.dropouts
+                                    : count.held);
   }
   prepared.mended_displacement = std::move(mended.displacement);
   prepared.mended_force = std::move(mended.force);
@@ -87,10 +93,9 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
   if (!options.reversal_gate) choice = ChooseReversalGate(excitation, memory);
-  prepared.reversal_gate = options.reversal_gate.value_or(
+  choice.gate = options.reversal_gate.value_or(
       std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
-  FindReversals(excitation, prepared.reversal_gate, prepared.reversals);
-  choice.gate = prepared.reversal_gate;
+  FindReversals(excitation, choice.gate, prepared.reversals);
   choice.count = prepared.reversals.size();
   if (!choice.certain) return;
   choice.other_gate = choice.gate;
@@ -189,14 +194,17 @@ std::size_t PreparedRecords::counted() const {
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
                         std::pmr::memory_resource* memory) {
   RequireOptions(records.size(), options);
-  for (const RecordView& record : records) Validate(record);
+  for (const RecordView& record : records) {
+    Validate(record);
+    if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
+  }
   PreparedRecords result(memory);
   result.excitation = options.excitation;
   result.records.reserve(records.size());
   int votes = 0;
   for (const RecordView& record : records) {
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
-    LeaveOutGlitches(prepared, options, memory);
+    LeaveOutGlitches(prepared, memory);
     FindTurns(prepared, options, memory);
     if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals, memory);
   }

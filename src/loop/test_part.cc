@@ -1,6 +1,7 @@
 #include "mindahl/loop/test_part.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <memory_resource>
@@ -74,20 +75,6 @@ std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displ
   return std::nullopt;
 }
 
-/// A turning point, or an end of the record.
-struct Place {
-  std::size_t sample = 0;
-  double displacement = 0.0;  // [m]
-};
-
-std::vector<Place> PlacesOf(std::span<const double> displacement,
-                            std::span<const std::size_t> samples) {
-  std::vector<Place> places;
-  places.reserve(samples.size());
-  for (const std::size_t sample : samples) places.push_back({sample, displacement[sample]});
-  return places;
-}
-
 /// The part of a record that lies outside of its test, which ends at a sample.
 struct Part {
   std::size_t sample = 0;
@@ -98,28 +85,28 @@ struct Part {
 /// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
 /// left is travel unless it has as many strokes, as wide or wider, as make a test, and more than a
 /// small part of all: a random motion is a test, the swings of a broken specimen are none.
+/// @param points  samples of the turning points, outwards, and of the end
 /// @param travel  [m] by which travel leaves the positions
 /// @param count   number of the strokes of the record
-template <typename Places>
-Part Outside(const Places& places, const RepeatedStrokes& strokes, double travel,
-             std::size_t count) {
+template <typename Points>
+Part Outside(std::span<const double> displacement, const Points& points,
+             const RepeatedStrokes& strokes, double travel, std::size_t count) {
   double lowest = strokes.lowest;
   double highest = strokes.highest;
-  auto place = places.begin();
-  Part outside{.sample = place->sample};
-  for (; place != places.end(); ++place) {
-    const double at = place->displacement;
+  auto point = points.begin();
+  Part outside{.sample = *point};
+  for (; point != points.end(); ++point) {
+    const double at = displacement[*point];
     if (at < lowest - travel || at > highest + travel) break;
     // A rest within the stroke is no turn of the test.
-    if (at < lowest + travel || at > highest - travel) outside.sample = place->sample;
+    if (at < lowest + travel || at > highest - travel) outside.sample = *point;
     lowest = std::min(lowest, at);
     highest = std::max(highest, at);
   }
-  if (place == places.end()) return outside;
+  if (point == points.end()) return outside;
   std::size_t as_wide = 0;
-  for (auto next = std::next(place); next != places.end(); ++place, ++next) {
-    const double range = std::abs(next->displacement - place->displacement);
-    if (range > strokes.range / 2) ++as_wide;
+  for (auto next = std::next(point); next != points.end(); ++point, ++next) {
+    if (std::abs(displacement[*next] - displacement[*point]) > strokes.range / 2) ++as_wide;
   }
   const TestPartRules rules;
   const auto small_part = static_cast<std::size_t>(rules.small_part * static_cast<double>(count));
@@ -194,16 +181,14 @@ class TestSearch {
     std::vector<std::size_t> points = FindReversals(displacement, travel);
     points.insert(points.begin(), 0);
     points.push_back(displacement.size() - 1);
-    const std::vector<Place> places = PlacesOf(displacement, points);
-    const auto turn = [&](std::size_t sample) {
-      return std::ranges::lower_bound(places, sample, {}, &Place::sample);
-    };
+    const auto turn = [&](std::size_t sample) { return std::ranges::lower_bound(points, sample); };
     const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
-    const Part before =
-        Outside(std::ranges::subrange(begin, places.rend()), *strokes, travel, places.size());
+    const Part before = Outside(displacement, std::ranges::subrange(begin, points.rend()), *strokes,
+                                travel, points.size());
     if (before.is_travel) CutBefore(LeftOutReason::kTravel, from + before.sample);
-    const Part after = Outside(std::ranges::subrange(turn(strokes->last), places.end()), *strokes,
-                               travel, places.size());
+    const Part after =
+        Outside(displacement, std::ranges::subrange(turn(strokes->last), points.end()), *strokes,
+                travel, points.size());
     if (after.is_travel) CutAfter(LeftOutReason::kTravel, from + after.sample + 1);
   }
 
@@ -234,15 +219,8 @@ class TestSearch {
 }  // namespace
 
 std::string_view NameOf(LeftOutReason reason) {
-  switch (reason) {
-    case LeftOutReason::kLoadRamp:
-      return "load ramp";
-    case LeftOutReason::kTravel:
-      return "travel";
-    case LeftOutReason::kRest:
-      break;
-  }
-  return "rest";
+  constexpr std::array<std::string_view, 3> kNames = {"load ramp", "travel", "rest"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 TestPart FindTestPart(const RecordView& record) {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 

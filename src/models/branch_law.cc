@@ -84,14 +84,6 @@ double BackboneWork(const BranchLaw& law, double x) {
                                        backbone::Work(y, law.shape_exponent));
 }
 
-BackboneGradient DifferentiateBackbone(const BranchLaw& law, double x) {
-  const auto phi = backbone::Differentiate<long double>(ReducedAt(law, x), law.shape_exponent);
-  const long double scale = std::copysign(law.slip_force, x);
-  return {static_cast<double>(scale * phi.elastic),
-          static_cast<double>(scale * phi.shape_derivative),
-          static_cast<double>(scale * (phi.force - phi.elastic))};
-}
-
 namespace {
 
 void RequireLawAndSamples(const BranchLaw& law, std::span<const double> displacement,

@@ -39,24 +39,21 @@ void ContactState::Reset() {
   shape_ = ShapeOn(course_.branch);
 }
 
-ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_force) const {
-  const ScaledBranch scaled =
-      BranchScaling(*model_, law_, spring_travel_).Start(branch, origin_force);
-  return {scaled.origin, scaled.force, scaled.height, scaled.rate, backbone::Reach(scaled.rate)};
+ScaledBranch ContactState::Open(const Branch& branch, double origin_force) const {
+  return BranchScaling(*model_, law_, spring_travel_).Start(branch, origin_force);
 }
 
-ContactState::Shape ContactState::ShapeOn(const OpenBranch& branch) const {
+ContactState::Shape ContactState::ShapeOn(const ScaledBranch& branch) const {
   return backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
     if (!sprung_) return contact;
-    return mindahl::models::ShapeOn(SprungShape{contact, spring_travel_},
-                                    {branch.origin, branch.force, branch.height, branch.rate});
+    return mindahl::models::ShapeOn(SprungShape{contact, spring_travel_}, branch);
   });
 }
 
 std::vector<double> ContactState::Memory() const {
   std::vector<double> memory = {displacement_, force_over_slip_, course_.direction, course_.start,
                                 course_.ahead, course_.end,      course_.rise};
-  const auto add = [&](const OpenBranch& branch) {
+  const auto add = [&](const ScaledBranch& branch) {
     memory.insert(memory.end(),
                   {branch.origin, branch.force, branch.height, branch.rate, branch.reach});
   };
@@ -73,7 +70,7 @@ void ContactState::Remember(std::span<const double> memory) {
                  "must be of as many numbers as Memory()");
   }
   const auto branch_at = [&](std::size_t at) {
-    return OpenBranch{memory[at], memory[at + 1], memory[at + 2], memory[at + 3], memory[at + 4]};
+    return ScaledBranch{memory[at], memory[at + 1], memory[at + 2], memory[at + 3], memory[at + 4]};
   };
   displacement_ = memory[0];
   force_over_slip_ = memory[1];
@@ -114,7 +111,7 @@ ContactState::Entry ContactState::Enter(double displacement) const {
     if (entry.open >= 2)
       end = std::min(end, direction * ClosingDisplacement(entry.open, origin_of));
   }
-  const OpenBranch& branch = course.branch;
+  const ScaledBranch& branch = course.branch;
   // For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
   if (law_.shape_exponent > 1) {
     if (std::abs(displacement - branch.origin) > branch.reach) {

@@ -134,19 +134,15 @@ Excitation MakeExcitation(const ExcitationOptions& options) {
   excitation.envelope.reserve(steps + 1);
   for (std::size_t i = 0; i <= steps; ++i) {
     excitation.time.push_back(static_cast<double>(i) / per_cycle / options.frequency);
-    if (!extremes.empty()) {
-      excitation.displacement.push_back(options.amplitude *
-                                        JoinExtremes(extremes, i, options.samples_per_cycle));
-      excitation.envelope.push_back(options.amplitude);
-      continue;
-    }
     const double phase = static_cast<double>(i % options.samples_per_cycle) / per_cycle;
     const double progress =
         static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(steps, 1));
     const double envelope = options.waveform == Waveform::kGrowingSine
                                 ? options.amplitude * std::pow(options.growth, progress - 1)
                                 : options.amplitude;
-    excitation.displacement.push_back(envelope * UnitWave(options.waveform, phase));
+    excitation.displacement.push_back(
+        envelope * (extremes.empty() ? UnitWave(options.waveform, phase)
+                                     : JoinExtremes(extremes, i, options.samples_per_cycle)));
     excitation.envelope.push_back(envelope);
   }
   return excitation;

@@ -5,7 +5,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "models/load_zones.h"
 
 namespace mindahl::models {
@@ -187,18 +187,6 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
   }
 }
 
-struct NormalizedLoadedResponse::Buffers {
-  std::vector<LoadZone<double>> plain;
-  std::vector<LoadZone<Tangent<2>>> by_law;
-  std::vector<LoadZone<Tangent<3>>> by_all;
-};
-
-NormalizedLoadedResponse::NormalizedLoadedResponse() : buffers_(std::make_unique<Buffers>()) {}
-NormalizedLoadedResponse::NormalizedLoadedResponse(NormalizedLoadedResponse&&) noexcept = default;
-NormalizedLoadedResponse& NormalizedLoadedResponse::operator=(NormalizedLoadedResponse&&) noexcept =
-    default;
-NormalizedLoadedResponse::~NormalizedLoadedResponse() = default;
-
 void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
                                         double unloaded, std::span<double> t) {
   RequireLawUnderLoad(law, history, t);
@@ -206,7 +194,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
   backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
     Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
            ShareOfWidth<std::decay_t<decltype(shape)>>{shape, law.shape_exponent}, at_rest,
-           buffers_->plain, [&](std::size_t i, double force) { t[i] = force; });
+           plain_, [&](std::size_t i, double force) { t[i] = force; });
   });
 }
 
@@ -239,9 +227,9 @@ void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const Loa
   std::ranges::fill(gradient.log_spring_travel, 0.0);
   if (!history.before.empty() || gradient.unloaded_displacement.empty()) {
     std::ranges::fill(gradient.unloaded_displacement, 0.0);
-    follow(Tangent<2>(history.before.empty() ? unloaded : 0.0), buffers_->by_law);
+    follow(Tangent<2>(history.before.empty() ? unloaded : 0.0), by_law_);
   } else {
-    follow(Tangent<3>::Along(unloaded, kUnloadedDisplacement), buffers_->by_all);
+    follow(Tangent<3>::Along(unloaded, kUnloadedDisplacement), by_all_);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 #include <fmt/format.h>
 
@@ -26,13 +26,6 @@ using SprungDifferentiation = Differentiation<SprungShape<backbone::GeneralShape
 BranchLaw LawOf(const NormalizedLaw& law) {
   return {
       .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
-}
-
-void RequireResponseSizes(const LoadingPath& path, std::span<const double> displacement,
-                          std::span<const double> t) {
-  RequireSameSize("displacement", displacement.size(), "response", t.size());
-  RequireSameSize("displacement", displacement.size(), "loading path",
-                  path.runs.empty() ? 0 : path.runs.back().end);
 }
 
 /// Computes forces over Tc of one run.
@@ -109,36 +102,20 @@ void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,
 
 }  // namespace
 
-struct NormalizedResponse::Buffers {
-  ScaledBranches branches;
-  std::vector<double> per_asymmetry;  // ∂t/∂a at the branches' origins
-  std::vector<RigidDifferentiation::BranchGradient> rigid;
-  std::vector<SprungDifferentiation::BranchGradient> sprung;
-
-  auto& GradientsOf(const RigidDifferentiation& /*differentiation*/) { return rigid; }
-  auto& GradientsOf(const SprungDifferentiation& /*differentiation*/) { return sprung; }
-};
-
-NormalizedResponse::NormalizedResponse() : buffers_(std::make_unique<Buffers>()) {}
-NormalizedResponse::NormalizedResponse(NormalizedResponse&&) noexcept = default;
-NormalizedResponse& NormalizedResponse::operator=(NormalizedResponse&&) noexcept = default;
-NormalizedResponse::~NormalizedResponse() = default;
-
 void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLaw& law,
                                   const LoadingPath& path, std::span<const double> displacement,
                                   std::span<double> t) {
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
-  RequireResponseSizes(path, displacement, t);
-  ScaledBranches& branches = buffers_->branches;
+  RequireSizes(path, displacement, "response", t);
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const double limit = ForceLimit(model, path.asymmetry);
   WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
-    ScaleBranches(scaling, path, shape, branches);
-    RequireReach(branch_law, branches, displacement);
+    ScaleBranches(scaling, path, shape, branches_);
+    RequireReach(branch_law, branches_, displacement);
     for (const BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
-      const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
+      const ScaledBranch& branch = branches_[static_cast<std::size_t>(run.branch)];
       EvaluateResponseRun(branch, ShapeOn(shape, branch), limit,
                           displacement.subspan(run.begin, count), t.subspan(run.begin, count));
     }
@@ -155,18 +132,17 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
   }
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
-  RequireResponseSizes(path, displacement, t);
-  ScaledBranches& branches = buffers_->branches;
+  RequireSizes(path, displacement, "response", t);
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const double limit = ForceLimit(model, path.asymmetry);
   const auto differentiate = [&](const auto& shape) {
-    ScaleBranches(scaling, path, shape, branches);
-    RequireReach(branch_law, branches, displacement);
+    ScaleBranches(scaling, path, shape, branches_);
+    RequireReach(branch_law, branches_, displacement);
     const Differentiation differentiation(scaling, branch_law, shape);
-    auto& gradients = buffers_->GradientsOf(differentiation);
-    differentiation.Differentiate(path, branches, gradients);
+    auto& gradients = GradientsOf(differentiation);
+    differentiation.Differentiate(path, branches_, gradients);
     if (!gradient.asymmetry.empty()) {
-      DifferentiateByAsymmetry(shape, path, branches, displacement, buffers_->per_asymmetry,
+      DifferentiateByAsymmetry(shape, path, branches_, displacement, per_asymmetry_,
                                gradient.asymmetry);
     }
     for (const BranchRun& run : path.runs) {
@@ -174,7 +150,7 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
       const auto part = [&](std::span<double> column) {
         return column.empty() ? column : column.subspan(run.begin, run.end - run.begin);
       };
-      DifferentiateRun(ShapeOn(shape, branches[b]), branches[b], gradients[b], limit,
+      DifferentiateRun(ShapeOn(shape, branches_[b]), branches_[b], gradients[b], limit,
                        displacement.subspan(run.begin, run.end - run.begin), part(t),
                        {.log_rate = part(gradient.log_rate),
                         .shape_exponent = part(gradient.shape_exponent),
@@ -191,7 +167,6 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
                                                 OriginSensitivity& sensitivity) {
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
-  ScaledBranches& branches = buffers_->branches;
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const std::size_t count = path.branches.size();
   sensitivity.slope.assign(count, 0.0);
@@ -201,20 +176,20 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
   sensitivity.sample_slope.resize(displacement.size());
   sensitivity.sample_gain.resize(displacement.size());
   const auto differentiate = [&](const auto& shape) {
-    ScaleBranches(scaling, path, shape, branches);
+    ScaleBranches(scaling, path, shape, branches_);
     const Differentiation differentiation(scaling, branch_law, shape);
-    auto& by_origin = buffers_->GradientsOf(differentiation);
+    auto& by_origin = GradientsOf(differentiation);
     by_origin.clear();
     const auto at = [&](std::size_t b, double x, double& slope, double& gain) {
       double force = 0.0;
-      const auto g = differentiation.DifferentiateSample(ShapeOn(shape, branches[b]), branches[b],
+      const auto g = differentiation.DifferentiateSample(ShapeOn(shape, branches_[b]), branches_[b],
                                                          by_origin[b], x, force);
       slope = -g[kUnloaded];
       gain = g[kRate];
     };
     for (std::size_t b = 0; b < count; ++b) {
       const Branch& branch = path.branches[b];
-      sensitivity.origin_force[b] = branches[b].force;
+      sensitivity.origin_force[b] = branches_[b].force;
       if (branch.start == BranchStart::kReversal) {
         at(static_cast<std::size_t>(branch.parent), branch.origin, sensitivity.slope[b],
            sensitivity.gain[b]);
@@ -223,7 +198,7 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
                                        scaling.DifferentiatePeak(branch).peak.per_log_stiffness /
                                        branch.amplitude;
       }
-      by_origin.push_back(differentiation.DifferentiateByOriginForce(branch, branches[b].force));
+      by_origin.push_back(differentiation.DifferentiateByOriginForce(branch, branches_[b].force));
     }
     for (const BranchRun& run : path.runs) {
       for (std::size_t i = run.begin; i < run.end; ++i) {

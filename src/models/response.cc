@@ -23,34 +23,17 @@ void ThrowBeyondReach(double displacement, double largest, double elastic_limit)
                            largest, elastic_limit));
 }
 
-namespace {
-
-void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
-                  std::span<double> force) {
-  RequireSameSize("displacement", displacement.size(), "force", force.size());
-  RequireSameSize("displacement", displacement.size(), "loading path",
-                  path.runs.empty() ? 0 : path.runs.back().end);
-}
-
-}  // namespace
-
 void Validate(const SeriesSpring& rig) {
   if (!(rig.stiffness > 0)) {
     ThrowInvalid("series stiffness [N/m]", rig.stiffness, "must be > 0, infinite for a rigid rig");
   }
 }
 
-double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig) {
-  Validate(law);
-  Validate(rig);
-  return GrossSlipDisplacement(law) + law.slip_force / rig.stiffness;
-}
-
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig) {
   Validate(law);
-  RequireSizes(path, displacement, force);
+  RequireSizes(path, displacement, "force", force);
   const double travel = IsRigid(rig) ? 0.0 : SpringTravel(model, law, rig);
   const double limit = ForceLimit(model, path.asymmetry);
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {

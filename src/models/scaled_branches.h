@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -17,19 +18,6 @@
 #include "mindahl/models/response.h"
 
 namespace mindahl::models {
-
-/// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
-struct ScaledBranch {
-  double origin = 0.0;
-  double force = 0.0;   // t₀
-  double height = 1.0;  // span·v
-  double rate = 0.0;    // k [1/m]
-
-  /// Returns rate·|e|, from which φ does not overflow.
-  [[nodiscard]] double Normalize(double e) const {
-    return rate * std::min(std::abs(e), backbone::Reach(rate));
-  }
-};
 
 using ScaledBranches = std::vector<ScaledBranch>;
 
@@ -123,8 +111,9 @@ class BranchScaling {
   [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
                                    double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
-    return {branch.origin, origin_force, scale.span * scale.remaining * limit,
-            RateOf(scale) / limit};
+    const double rate = RateOf(scale) / limit;
+    return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate,
+            backbone::Reach(rate)};
   }
 
   /// Force over Tc at the branch's origin, `force_of_parent` giving that of the parent there.
@@ -207,6 +196,14 @@ ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& pa
   return scaled;
 }
 
+/// @throws InvalidArgument unless a path and what becomes of it are of the displacements
+inline void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
+                         std::string_view what, std::span<const double> written) {
+  RequireSameSize("displacement", displacement.size(), what, written.size());
+  RequireSameSize("displacement", displacement.size(), "loading path",
+                  path.runs.empty() ? 0 : path.runs.back().end);
+}
+
 /// @throws InvalidArgument always
 [[noreturn]] void ThrowBeyondReach(double displacement, double largest, double elastic_limit);
 
@@ -232,10 +229,9 @@ inline void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
 template <typename Shape>
 void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_force, double limit,
                  std::span<const double> displacement, std::span<double> force) {
-  const double reach = backbone::Reach(branch.rate);
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     const double e = displacement[i] - branch.origin;
-    const double phi = shape.Force(branch.rate * std::min(std::abs(e), reach));
+    const double phi = shape.Force(branch.rate * std::min(std::abs(e), branch.reach));
     const double t = branch.force + std::copysign(branch.height * phi, e);
     force[i] = slip_force * std::clamp(t, -limit, limit);
   }

@@ -31,18 +31,6 @@ void Validate(const LoadDependentLaw& law) {
   }
 }
 
-BranchLaw BranchLawAtLoad(const LoadDependentLaw& law, double normal_load) {
-  Validate(law);
-  RequirePositive("normal load [N]", normal_load);
-  const double load_ratio = normal_load / law.reference_load;
-  const double growth = law.shape_exponent == 1.0 / 3 ? std::cbrt(load_ratio)
-                                                      : std::pow(load_ratio, law.shape_exponent);
-  const BranchLaw at_load{law.reference_stiffness * growth, law.shape_exponent,
-                          law.friction_coefficient * normal_load};
-  Validate(at_load);
-  return at_load;
-}
-
 void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double> displacement,
                             std::span<const double> normal_load, std::span<double> force) {
   Validate(law);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
@@ -18,25 +19,10 @@ using models::FrictionModel;
 
 namespace {
 
-/// Resolutions at which a method is tried.
-struct TriedResolutions {
-  std::string_view method;
-  std::array<Resolution, 5> resolutions;
-};
-
-constexpr std::array kTried = {
-    TriedResolutions{"dopri5",
-                     {{{.tolerance = 1e-2},
-                       {.tolerance = 1e-4},
-                       {.tolerance = 1e-6},
-                       {.tolerance = 1e-8},
-                       {.tolerance = 1e-10}}}},
-    TriedResolutions{
-        "iwan", {{{.steps = 4}, {.steps = 16}, {.steps = 64}, {.steps = 256}, {.steps = 1024}}}},
-    TriedResolutions{
-        "table",
-        {{{.steps = 16}, {.steps = 64}, {.steps = 256}, {.steps = 1024}, {.steps = 4096}}}},
-};
+/// Resolutions at which a method is tried: tolerances, or steps, which grow fourfold.
+constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
+constexpr std::size_t kFewestElements = 4;
+constexpr std::size_t kFewestIntervals = 16;
 
 const FrictionModel& RequireModel(std::string_view name) {
   const FrictionModel* model = models::FindFrictionModel(name);
@@ -109,9 +95,13 @@ std::vector<Approximation> AllApproximations(const BranchLaw& law) {
   if (std::ranges::find(all, exact, &Approximation::model) == all.end()) {
     all.push_back({exact, "exact"});
   }
-  for (const auto& [method, resolutions] : kTried) {
-    for (const Resolution& resolution : resolutions) {
-      all.push_back({exact, std::string(method), resolution});
+  for (const Method& method : methods::Methods()) {
+    if (method.name == "exact") continue;
+    std::size_t steps = method.masing_only ? kFewestElements : kFewestIntervals;
+    for (const double tolerance : kTolerances) {
+      all.push_back({exact, std::string(method.name),
+                     method.adaptive ? Resolution{.tolerance = tolerance}
+                                     : Resolution{.steps = std::exchange(steps, 4 * steps)}});
     }
   }
   return all;

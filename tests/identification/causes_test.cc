@@ -130,7 +130,7 @@ TEST(Backlash, IsMeasuredOfAGapThatIsTakenUpAtZeroForce) {
   ASSERT_TRUE(fit.records[0].facts.backlash);
   // Beside the gap the contact's own travel over 0.4 half gaps is taken off by the slopes around
   // it: of Mindlin's branch these differ by a factor below two, on 0.4·Tc/σ = 0.09 of the gap.
-  EXPECT_NEAR(fit.records[0].facts.backlash->width / kGap, 1.0, 0.09);
+  EXPECT_NEAR(fit.records[0].facts.backlash.value() / kGap, 1.0, 0.09);
 }
 
 TEST(Backlash, IsNotSeenWhereThereIsNone) {

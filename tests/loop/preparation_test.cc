@@ -128,18 +128,18 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
 
 TEST(Preparation, GateIsGivenFoundOrFromAKnownNoise) {
   PreparationOptions options;
-  EXPECT_EQ(PrepareAll({Made()}, options).records[0].reversal_gate, 0.0);
+  EXPECT_EQ(PrepareAll({Made()}, options).records[0].gate_choice.gate, 0.0);
   options.displacement_noise = 1e-3;
   const std::vector<Record> records = {Made()};
   const double reach = 2e-3 * std::sqrt(2 * std::log(static_cast<double>(records[0].size())));
-  EXPECT_NEAR(PrepareAll(records, options).records[0].reversal_gate, reach, 1e-12);
+  EXPECT_NEAR(PrepareAll(records, options).records[0].gate_choice.gate, reach, 1e-12);
   options.reversal_gate = 0.25;
-  EXPECT_EQ(PrepareAll(records, options).records[0].reversal_gate, 0.25);
+  EXPECT_EQ(PrepareAll(records, options).records[0].gate_choice.gate, 0.25);
   Generator generator(2);
   Record noisy = Made();
   for (double& x : noisy.displacement) x += 0.02 * Normal(generator);
   const PreparedRecords found = PrepareAll({noisy}, {});
-  EXPECT_GT(found.records[0].reversal_gate, 0.02);
+  EXPECT_GT(found.records[0].gate_choice.gate, 0.02);
   EXPECT_EQ(found.records[0].reversals.size(), 6U);
 }
 
@@ -215,16 +215,10 @@ TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
   EXPECT_NEAR(one.measures.peak_force, whole.records[0].measures.peak_force, kBridged);
 }
 
-TEST(Preparation, LeavesGlitchesInWhereItIsAskedTo) {
-  Record spiked = Made();
-  spiked.displacement[120] += 3;
-  PreparationOptions options;
-  options.leave_out_glitches = false;
-  const std::vector<Record> records = {spiked};
-  const PreparedRecords prepared = PrepareAll(records, options);
-  EXPECT_EQ(prepared.records[0].glitches.total(), 0U);
-  EXPECT_EQ(prepared.records[0].left_out, 0U);
-  EXPECT_EQ(prepared.records[0].displacement()[120], spiked.displacement[120]);
+TEST(Preparation, RefusesARecordThatIsEmptyOrNotFinite) {
+  EXPECT_THROW(PrepareAll({Record{}}, {}), InvalidArgument);
+  EXPECT_THROW(PrepareAll({Record{{1, 2}, {1}, {}, {}}}, {}), InvalidArgument);
+  EXPECT_THROW(PrepareAll({Record{{1, 2}, {1, std::nan("")}, {}, {}}}, {}), InvalidArgument);
 }
 
 TEST(Preparation, SaysHowSureTheGateIs) {
@@ -235,7 +229,6 @@ TEST(Preparation, SaysHowSureTheGateIs) {
   const PreparedRecords found = PrepareAll(records, {});
   EXPECT_TRUE(found.records[0].gate_choice.certain);
   EXPECT_EQ(found.records[0].gate_choice.count, 6U);
-  EXPECT_EQ(found.records[0].gate_choice.gate, found.records[0].reversal_gate);
   PreparationOptions options;
   options.reversal_gate = 0.0;
   const PreparedRecords given = PrepareAll(records, options);

@@ -5,7 +5,7 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"
 

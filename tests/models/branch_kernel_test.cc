@@ -18,7 +18,8 @@ using Reference = long double;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// t = φ(δ), δ >= 0, with ∂t/∂ln κ = yφ' and ∂t/∂δ₀ = −φ'.
-const ScaledBranch kBranch{.origin = 0, .force = 0, .height = 1, .rate = 1};
+const ScaledBranch kBranch{
+    .origin = 0, .force = 0, .height = 1, .rate = 1, .reach = backbone::Reach(1.0)};
 Gradient GradientOfBranch() {
   Gradient gradient;
   gradient.log_rate[kRate] = 1;

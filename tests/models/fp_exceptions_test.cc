@@ -68,7 +68,6 @@ TEST(FloatingPointExceptions, ComeFromNoFunctionOfTheBranchLaw) {
                   BackboneRemaining(law, at);
                   BackboneSlope(law, at);
                   BackboneWork(law, at);
-                  DifferentiateBackbone(law, at);
                 }
                 GrossSlipDisplacement(law);
               }),

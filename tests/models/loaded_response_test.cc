@@ -1,7 +1,7 @@
 
 
 #include "../support/histories.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "mindahl/models/variable_load.h"
 #include "support/prelude.h"
 

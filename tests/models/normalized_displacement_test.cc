@@ -1,6 +1,6 @@
 
 
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
 #include "support/histories.h"
 #include "support/prelude.h"

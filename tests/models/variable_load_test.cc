@@ -5,6 +5,7 @@
 #include "../support/histories.h"
 #include "../support/winkler_foundation.h"
 #include "../support/worst.h"
+#include "models/load_zones.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::variable_load_test {
@@ -21,6 +22,11 @@ constexpr LoadDependentLaw UnitLaw(double shape_exponent) {
 }
 
 constexpr double kShapeExponents[] = {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 0.9, 0.99};
+
+/// The branch law that holds while N stays constant.
+BranchLaw BranchLawAtLoad(const LoadDependentLaw& law, double load) {
+  return AtLoad(ReferenceLaw(law), load / law.reference_load, law.shape_exponent);
+}
 
 /// A path of (δ, N).
 struct LoadedHistory {

@@ -78,9 +78,19 @@ def test_a_record_is_copied_with_all_its_columns(tmp_path):
                               covariates=["temp"])
     for other in (copy.deepcopy(record), pickle.loads(pickle.dumps(record))):
         assert other.name == record.name and other.is_torsional == record.is_torsional
+        assert other.columns == record.columns and other.notes == record.notes
         for name in ("displacement", "force", "time", "normal_load"):
             np.testing.assert_array_equal(getattr(other, name), getattr(record, name))
         np.testing.assert_array_equal(other.covariates["temp"], [20, 21, 22, 23])
+
+
+def test_the_fit_of_a_copied_record_is_that_of_the_record(tmp_path):
+    path = tmp_path / "loop.csv"
+    lines = SPHERE.read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join(["F [mN],x [nm]", *(f"{float(force) * 1e3!r},{float(x) * 1e9!r}" for _, x, force in (
+        line.split(",")[:3] for line in lines[1:]))]), encoding="utf-8")
+    record = mindahl.read_csv(path)
+    assert mindahl.fit(copy.deepcopy(record)).to_json() == mindahl.fit(record).to_json()
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")

@@ -96,7 +96,7 @@ inline loop::Record WithForceNoise(loop::Record record, double standard_deviatio
 
 /// A Masing contact in series with a rig's spring [N/m], moved together to 1.5 times gross slip.
 inline loop::Record SprungLoop(const models::BranchLaw& law, double stiffness) {
-  const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
+  const double reach = 1.5 * (GrossSlipDisplacement(law) + law.slip_force / stiffness);
   const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
   std::vector<double> force(displacement.size());
   const models::FrictionModel& model = Model("mindlin-dahl");

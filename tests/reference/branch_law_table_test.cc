@@ -96,22 +96,6 @@ TEST(BranchLawTable, WorkIsRoundedOnce) {
   });
 }
 
-TEST(BranchLawTable, StiffnessAndShapeDerivativesAreRoundedOnce) {
-  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
-    const BackboneGradient gradient = DifferentiateBackbone(law, row.y);
-    return std::max(Error(gradient.log_stiffness, row.per_log_stiffness, row.per_log_stiffness),
-                    Error(gradient.shape_exponent, row.per_shape, row.per_shape));
-  });
-}
-
-TEST(BranchLawTable, SlipForceDerivativeIsRoundedOnceOnTheForcesScale) {
-  // f − y·f' is of second order in y: below y = 1e-16 it is lost against either term.
-  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
-    return Error(DifferentiateBackbone(law, row.y).log_slip_force, row.per_log_slip_force,
-                 row.force);
-  });
-}
-
 TEST(BranchLawTable, MasingLoopEnergyHasNoCancellation) {
   ExpectWithin(kEnergy, [](const BranchLaw& law, const Row& row) {
     return Error(SteadyLoopEnergy(Model("mindlin-dahl"), law, row.y), row.loop_energy,

@@ -177,21 +177,6 @@ inline std::vector<Measurement> Measurements() {
        [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(models::BackboneWork(law, x), exact.work);
        }},
-      {"DifferentiateBackbone, ln σ", "value", 1.0,
-       [](const models::BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(models::DifferentiateBackbone(law, x).log_stiffness,
-                              exact.per_log_stiffness);
-       }},
-      {"DifferentiateBackbone, α", "value", 1.0,
-       [](const models::BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(models::DifferentiateBackbone(law, x).shape_exponent,
-                              exact.per_shape);
-       }},
-      {"DifferentiateBackbone, ln Tc", "f", 1.0,
-       [](const models::BranchLaw& law, double x, const Exact& exact) {
-         return ErrorInEpsilons(models::DifferentiateBackbone(law, x).log_slip_force,
-                                exact.per_log_slip_force, exact.force);
-       }},
       {"SteadyPeakForce, Masing", "value", 6.0,
        [&masing](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(models::SteadyPeakForce(masing, law, x), exact.force);

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
 
 namespace mindahl::models {

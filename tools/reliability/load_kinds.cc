@@ -38,7 +38,7 @@ Loop UnderLoad(const Truth& truth, double variation, Draws& draws, Load load) {
   const auto [lowest, highest] = std::ranges::minmax(record.normal_load);
   expected.slip_force = Range{kFriction * lowest, kFriction * highest};
   const auto stiffness_at = [&](double normal) {
-    return models::BranchLawAtLoad(law, normal).tangential_stiffness;
+    return law.reference_stiffness * std::pow(normal / law.reference_load, law.shape_exponent);
   };
   expected.sigma = Range{stiffness_at(lowest), stiffness_at(highest)};
   return {record, expected};

@@ -63,8 +63,7 @@ class CycleSplitter {
   double gate_;
   std::size_t together_;
   loop::ReversalFinder finder_;
-  loop::Record kept_;               // from the cycle's first sample on
-  std::vector<std::size_t> lines_;  // of those
+  io::Samples kept_;                // from the cycle's first sample on
   std::size_t dropped_ = 0;         // samples before them
   std::size_t begin_ = 0;           // of the cycle, in those
   std::size_t turns_ = 0;           // turning points since the cycle's first, with it
@@ -79,9 +78,6 @@ struct Reading {
   bool gate_is_given = false;
   std::size_t samples = 0;  ///< number of samples examined
 };
-
-/// Returns the samples as every stage takes them, valid as long as they.
-loop::RecordView ViewOf(const io::Samples& samples);
 
 /// Reads the first samples, as many as determine how the record is read: some cycles, or the
 /// first million.

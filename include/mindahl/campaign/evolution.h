@@ -85,11 +85,9 @@ std::optional<CourseDescription> Describe(const Course& course);
 /// Describes a quantity whose time history is reported.
 struct TrackedQuantity {
   std::string_view name;       ///< column of the table of cycles
-  std::string_view unit;       ///< in a record of forces; "-" for a pure number
   std::string_view symbol;     ///< "μ"; "" where the headline does not name it
   std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
-  std::optional<double> (*of)(const CycleFit&) = nullptr;
-  std::optional<double> (*error)(const CycleFit&) = nullptr;  ///< in proportion to its standard one
+  std::string_view error;      ///< column in proportion to its standard error
   bool is_drawn = true;
 };
 
@@ -110,7 +108,7 @@ class TrackedCourses {
   TrackedCourses();
 
   /// A cycle that did not converge, or leaves a quantity open, is not in its time history.
-  void Add(const CycleFit& fit);
+  void Add(CycleFit fit);
 
   /// Returns those that have a value, described, in the order of TrackedQuantities().
   [[nodiscard]] std::vector<Evolution> Describe(bool is_torsional) const;

@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/record.h"
 
 namespace mindahl::io {
 
 /// Samples of a record [m, N, s, N], or [rad, N m, s, N], in the order of the file.
-struct Samples {
-  std::vector<double> displacement{};
-  std::vector<double> force{};
-  std::vector<double> time{};         ///< empty where the file has none
-  std::vector<double> normal_load{};  ///< likewise
-  std::vector<std::size_t> lines{};   ///< lines in the file, 1-based
-
-  [[nodiscard]] std::size_t size() const { return lines.size(); }
+struct Samples : loop::Record {
+  std::vector<std::size_t> lines{};  ///< lines in the file, 1-based
 };
 
 /// A record read piece by piece, in memory that does not depend on its length.

@@ -1,11 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory_resource>
-#include <span>
-#include <vector>
-
-#include "mindahl/loop/record.h"
 
 namespace mindahl::loop {
 
@@ -25,28 +20,5 @@ struct LoopMeasures {
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
 };
-
-/// Returns the energy of each closed cycle [J] = ∮ T dδ by the trapezoidal rule, closed by a chord:
-/// from every other reversal to the next but one. The record's ends count as reversals where they
-/// lie within 2 % of the range of the extreme on their side. Positive when the contact dissipates
-/// and the force is that of the contact, with the displacement's sign.
-/// @throws InvalidArgument where an energy exceeds the largest double
-/// Summed in long double: where it has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
-/// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the cycle's n samples.
-std::vector<double> CycleEnergies(const RecordView& record, std::span<const std::size_t> reversals);
-
-/// @param reversals  as from FindReversals on the same record
-/// @throws InvalidArgument when the record is empty or inconsistent
-LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
-                         std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
-
-/// Returns +1 for a force with the displacement's sign, −1 for the opposite (load cell on the other
-/// body): the sign of the mean energy of the closed cycles, which no offset changes; that of the
-/// covariance of force and displacement without a closed cycle, or where the loop is under 1 % of
-/// the rectangle round it or five standard deviations of what noise of both channels makes of its
-/// energy, so that noise would decide. 0 when neither has a sign (constant force or displacement).
-/// @throws InvalidArgument when the record is inconsistent
-int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
-               std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
 
 }  // namespace mindahl::loop

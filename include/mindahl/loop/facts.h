@@ -30,12 +30,6 @@ struct CycleFacts {
   std::optional<double> sliding_amplitude;
 };
 
-/// A gap that the motion takes up after each reversal while the force stays constant.
-struct Backlash {
-  double width = 0.0;  ///< [m]: travel over it, mean over the directions
-  double force = 0.0;  ///< [N]: at which it is taken up, mean over the directions
-};
-
 /// Holds what a record shows without any model.
 ///
 /// Means are those of the widest steady cycles, whose amplitude is at least 0.95 of the widest
@@ -62,10 +56,11 @@ struct LoopFacts {
   /// [-]: Σ|Δδ| over the strokes' widths, from the first cycle to the last: 1 where every turn is
   /// known; far above, there are reversals or noise between.
   double path_ratio = 0.0;
-  /// Gap where the force rises at less than half the slope before and after it, between −0.4 and
-  /// 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 %
-  /// of the amplitude or more. No contact's branch does so: it only softens.
-  std::optional<Backlash> backlash;
+  /// Width [m] of a gap, mean over the directions, that the motion takes up after each reversal
+  /// while the force rises at less than half the slope before and after it, between −0.4 and 0.4
+  /// half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 % of
+  /// the amplitude or more. No contact's branch does so: it only softens.
+  std::optional<double> backlash;
 };
 
 /// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty where

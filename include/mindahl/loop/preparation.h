@@ -36,9 +36,6 @@ struct PreparationOptions {
   /// deviations.
   std::optional<double> reversal_gate{};
 
-  /// Spikes, dropouts and held values (FindGlitches) do not count, and make no history.
-  bool leave_out_glitches = true;
-
   /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).
   /// Empty: decided by the sign of the loop's energy.
   std::optional<int> force_sense{};
@@ -83,8 +80,7 @@ struct PreparedRecord {
   GlitchCount glitches;                          ///< glitches left out, by kind
   std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
   std::pmr::vector<double> mended_force;         ///< [N]; likewise
-  double reversal_gate = 0.0;                    ///< [unit of the excitation]
-  ReversalGate gate_choice;                 ///< how sure the gate is; `certain` where it was given
+  ReversalGate gate_choice;  ///< [unit of the excitation]; `certain` where it was given
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;                    ///< with the force's sign that of the displacement
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
@@ -123,7 +119,8 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Finds glitches, reversals, sign of force, smoothing and the mask of samples that count: what
+/// Finds glitches - spikes, dropouts and held values, which do not count and make no history -,
+/// reversals, sign of force, smoothing and the mask of samples that count: what
 /// depends on no model.
 /// @param records  not empty; their memory must outlive the result
 /// @param memory   of the result and of scratch; must outlive it

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -24,6 +25,10 @@ struct Record {
 
   [[nodiscard]] std::size_t size() const { return displacement.size(); }
 };
+
+/// The columns that a record may have, covariates aside.
+inline constexpr std::array kRecordColumns = {&Record::displacement, &Record::force, &Record::time,
+                                              &Record::normal_load};
 
 /// A record somewhere in memory: what every stage takes. Columns as in Record.
 struct RecordView {

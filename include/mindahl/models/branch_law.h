@@ -51,15 +51,6 @@ double BackboneSlope(const BranchLaw& law, double x);
 /// @throws InvalidArgument also for an infinite x and where the work exceeds the largest double
 double BackboneWork(const BranchLaw& law, double x);
 
-/// ∂f/∂ln σ, ∂f/∂α, ∂f/∂ln Tc at x, all in [N]. The last is the difference f − xf', second order in
-/// x: its error is below 1 ε of f.
-struct BackboneGradient {
-  double log_stiffness = 0.0;
-  double shape_exponent = 0.0;
-  double log_slip_force = 0.0;
-};
-BackboneGradient DifferentiateBackbone(const BranchLaw& law, double x);
-
 /// Describes a limit of the branch law at either end of the amplitude: a model without a history,
 /// for scenes that need no more. It cannot be fitted (each lacks a parameter) and dissipates
 /// nothing or has no presliding.

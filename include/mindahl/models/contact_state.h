@@ -106,18 +106,9 @@ class ContactState {
   using Shape = std::variant<Jenkins, Mindlin, General, backbone::InSeries<Jenkins>,
                              backbone::InSeries<Mindlin>, backbone::InSeries<General>>;
 
-  /// t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin
-  struct OpenBranch {
-    double origin = 0.0;  // [m]
-    double force = 0.0;   // over Tc
-    double height = 1.0;
-    double rate = 0.0;   // [1/m]
-    double reach = 0.0;  // [m], largest |e| that rate multiplies
-  };
-
   /// A branch as it is run in one direction s, in which sgn(e) = s.
   struct Course {
-    OpenBranch branch;
+    ScaledBranch branch;
     double direction = 0.0;  // s = ±1; 0 before any motion
     double start = 0.0;      // s·origin
     double ahead = 0.0;      // s·δ, of the present displacement
@@ -156,8 +147,8 @@ class ContactState {
     return law_.slip_force * std::clamp(force_over_slip, -limit_, limit_);
   }
 
-  [[nodiscard]] OpenBranch Open(const Branch& branch, double origin_force) const;
-  [[nodiscard]] Shape ShapeOn(const OpenBranch& branch) const;
+  [[nodiscard]] ScaledBranch Open(const Branch& branch, double origin_force) const;
+  [[nodiscard]] Shape ShapeOn(const ScaledBranch& branch) const;
   [[nodiscard]] Entry Enter(double displacement) const;
   void Turn(double displacement);
   [[nodiscard]] double PeekAcrossBranches(double displacement) const;
@@ -172,7 +163,7 @@ class ContactState {
   Shape shape_;  // on the present branch
   double displacement_ = 0.0;
   double force_over_slip_ = 0.0;
-  std::vector<OpenBranch> suspended_;  // the open branches below the present one, oldest first
+  std::vector<ScaledBranch> suspended_;  // the open branches below the present one, oldest first
 };
 
 }  // namespace mindahl::models

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -35,6 +37,18 @@ struct Branch {
   std::int32_t parent = -1;  ///< branch on which the origin lies; −1 unless start is kReversal
   BranchStart start = BranchStart::kReversal;
   std::int8_t direction = 1;  ///< s = ±1; on the virgin curve, which is run both ways, the first
+};
+
+/// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
+struct ScaledBranch {
+  double origin = 0.0;  ///< [m]
+  double force = 0.0;   ///< t₀, over Tc
+  double height = 1.0;  ///< span·v
+  double rate = 0.0;    ///< k [1/m]
+  double reach = 0.0;   ///< [m], largest |e| that rate multiplies without overflow
+
+  /// Returns y = rate·|e|.
+  [[nodiscard]] double Normalize(double e) const { return rate * std::min(std::abs(e), reach); }
 };
 
 /// Largest |displacement| [m] of a path: differences and mirror images of such are still doubles.

@@ -21,11 +21,6 @@ struct SeriesSpring {
 /// @throws InvalidArgument unless the stiffness is > 0, or infinite
 void Validate(const SeriesSpring& rig);
 
-/// Returns the gross-slip displacement [m] of spring and contact: δc + Tc/k_r, ∞ for α >= 1.
-/// @throws InvalidArgument for an invalid law or spring
-/// Relative error < 2 ε.
-double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig);
-
 /// Computes the tangential force [N] at each sample of a loading path: exact, no time step.
 ///
 ///   T(δ) = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the sample's branch
@@ -45,7 +40,7 @@ double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig);
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
 /// 10⁶); closed loops leave nothing behind. |T| <= Tc where the model is bounded. Cost: one branch
-/// law a sample and a branch; nothing is allocated per sample, 32 bytes per branch, and runs of one
+/// law a sample and a branch; nothing is allocated per sample, 40 bytes per branch, and runs of one
 /// branch have no data-dependent jump. With a spring the same errors, and up to 3 iterations a
 /// sample (bench/response_bench.cc); none for α = 0.
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,

@@ -32,13 +32,6 @@ struct LoadDependentLaw {
 /// at the reference load is invalid
 void Validate(const LoadDependentLaw& law);
 
-/// Returns the branch law that holds while N stays constant.
-///   σ = σ_ref·(N/N_ref)^α, α, Tc = μN
-/// @param normal_load  N [N], finite, > 0
-/// @throws InvalidArgument for an invalid law or load, and where the result is no valid branch law
-/// Relative error of σ below 4 ε, of Tc below 1 ε.
-BranchLaw BranchLawAtLoad(const LoadDependentLaw& law, double normal_load);
-
 /// Computes the tangential force [N] at each sample: no time step, exact for a path that runs
 /// straight in (δ, δc(N)) from sample to sample, which for samples of a smooth path leaves an error
 /// of second order in their spacing, slipping or not.

@@ -12,7 +12,7 @@
 #include "identification/problem/problem.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 /// Columns of forces that arise along the branches of a response, to first order: what one is at a
 /// sample is what it is where the sample's branch starts, and what was added on the branch since.

@@ -11,7 +11,7 @@
 #include "mindahl/loop/preparation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 /// Contacts that are elsewhere than the displacement at the time of the force: T_file(t) = T(δ(t −
 /// lag)) of a force that is read late, and those behind a gap.

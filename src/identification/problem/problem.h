@@ -12,7 +12,7 @@
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 namespace mindahl::identification {
 

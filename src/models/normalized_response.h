@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
+#include "models/load_zones.h"
+#include "models/response_gradient.h"
+#include "models/scaled_branches.h"
 
 namespace mindahl::models {
 
@@ -53,11 +55,6 @@ struct OriginSensitivity {
 /// next to slip.
 class NormalizedResponse {
  public:
-  NormalizedResponse();
-  NormalizedResponse(NormalizedResponse&&) noexcept;
-  NormalizedResponse& operator=(NormalizedResponse&&) noexcept;
-  ~NormalizedResponse();
-
   /// @param path  as from MakeLoadingPath on the same displacements, for the model's memory
   /// @param t     written, of the same size
   /// @throws InvalidArgument as EvaluateForce
@@ -74,8 +71,16 @@ class NormalizedResponse {
                               OriginSensitivity& sensitivity);
 
  private:
-  struct Buffers;
-  std::unique_ptr<Buffers> buffers_;
+  using Rigid = Differentiation<DirectShape>;
+  using Sprung = Differentiation<SprungShape<backbone::GeneralShape<double>>>;
+
+  auto& GradientsOf(const Rigid& /*differentiation*/) { return rigid_; }
+  auto& GradientsOf(const Sprung& /*differentiation*/) { return sprung_; }
+
+  ScaledBranches branches_;
+  std::vector<double> per_asymmetry_;  // ∂t/∂a at the branches' origins
+  std::vector<Rigid::BranchGradient> rigid_;
+  std::vector<Sprung::BranchGradient> sprung_;
 };
 
 /// A record under a load that varies, as the law follows it: what LoadingPath is at constant load.
@@ -107,11 +112,6 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
 /// t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
 class NormalizedLoadedResponse {
  public:
-  NormalizedLoadedResponse();
-  NormalizedLoadedResponse(NormalizedLoadedResponse&&) noexcept;
-  NormalizedLoadedResponse& operator=(NormalizedLoadedResponse&&) noexcept;
-  ~NormalizedLoadedResponse();
-
   /// @param law       α < 1; no spring in series, behind which the contact's own displacement would
   ///                  depend on the force
   /// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at
@@ -128,8 +128,9 @@ class NormalizedLoadedResponse {
                      std::span<double> t, const NormalizedGradient& gradient);
 
  private:
-  struct Buffers;
-  std::unique_ptr<Buffers> buffers_;
+  std::vector<LoadZone<double>> plain_;
+  std::vector<LoadZone<Tangent<2>>> by_law_;
+  std::vector<LoadZone<Tangent<3>>> by_all_;
 };
 
 /// Holds the parameters on which a displacement over Tc/σ depends along a path of forces: the
