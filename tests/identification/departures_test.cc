@@ -83,11 +83,9 @@ struct Contact {
 struct Departed {
   const Contact& contact;
   const Motion& motion;
-  double middle;     // [m] of the motion
-  double whole;      // [s], of the first record
-  double peak;       // [N], the largest force of all records
-  double narrowest;  // [m] of the strokes of all records, half their way
-  double widest;     // [m]
+  double middle;  // [m] of the motion
+  double whole;   // [s], of the first record
+  double peak;    // [N], the largest force of all records
 
   [[nodiscard]] std::size_t size() const { return motion.displacement.size(); }
 
@@ -110,25 +108,6 @@ struct Departed {
     return contact.Force(displacement, function(contact.unloaded));
   }
 };
-
-/// Half the way [m] of the stroke of each sample, from one turn to the next; cut ones, at the ends,
-/// count as their neighbours.
-std::vector<double> HalfWays(const History& displacement) {
-  std::vector<std::size_t> turns;
-  for (std::size_t i = 1; i + 1 < displacement.size(); ++i) {
-    const double before = displacement[i] - displacement[i - 1];
-    const double after = displacement[i + 1] - displacement[i];
-    if (before * after < 0) turns.push_back(i);
-  }
-  std::vector<double> ways;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const auto passed = static_cast<std::size_t>(
-        std::ranges::count_if(turns, [i](std::size_t turn) { return turn < i; }));
-    const std::size_t stroke = std::clamp<std::size_t>(passed, 1, turns.size() - 1);
-    ways.push_back(std::abs(displacement[turns[stroke]] - displacement[turns[stroke - 1]]) / 2);
-  }
-  return ways;
-}
 
 using Simulate = std::function<std::vector<double>(const Departed&, double size)>;
 
@@ -408,16 +387,6 @@ std::vector<Case> Cases() {
          return force + size * kSlipForce * x * x * x;
        })},
       {"smoothing", 0, kDuration * kDuration, Averaged, kSecondDifferences},
-      {"amplitude_dependence", 0, 1,
-       [](const Departed& departed, double size) {
-         std::vector<double> force = departed.contact.Force(departed.motion.displacement);
-         const std::vector<double> ways = HalfWays(departed.motion.displacement);
-         const double range = departed.widest - departed.narrowest;
-         for (std::size_t i = 0; i < force.size(); ++i) {
-           force[i] *= 1 + size * ((ways[i] - departed.narrowest) / range - 0.5);
-         }
-         return force;
-       }},
       {"speed_power", 0, 1, WithSpeed(0.5), kDifferences},
       {"speed_power", 1, 1, WithSpeed(1.0), kDifferences},
       {"slip_position_quadratic", 0, 1,
@@ -524,18 +493,10 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
       peak = std::max(peak, std::abs(force));
     }
   }
-  double narrowest = kLength;
-  double widest = 0.0;
-  for (const Motion& motion : motions) {
-    const std::vector<double> ways = HalfWays(motion.displacement);
-    narrowest = std::min(narrowest, std::ranges::min(ways));
-    widest = std::max(widest, std::ranges::max(ways));
-  }
   std::vector<Departed> departed;
   std::vector<Record> records;
   for (const Motion& motion : motions) {
-    departed.push_back(
-        {contact, motion, Middle(motion), motions.front().time.back(), peak, narrowest, widest});
+    departed.push_back({contact, motion, Middle(motion), motions.front().time.back(), peak});
     Record& record = records.emplace_back();
     record.displacement = motion.displacement;
     record.time = motion.time;

@@ -27,7 +27,7 @@ TEST(ResidualStatistics, AreThoseComputedByHand) {
   const ResidualStatistics s = Describe(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}});
   EXPECT_EQ(s.samples, 4u);
   EXPECT_NEAR(s.rms, std::sqrt(6.0 / 4), kRounding);
-  EXPECT_EQ(s.max_abs);
+  EXPECT_EQ(s.max_abs, 2.0);
   EXPECT_NEAR(s.r_squared, 1 - 6.0 / 32, kRounding);
   EXPECT_NEAR(s.durbin_watson, 11.0 / 6, kRounding);
 }
@@ -36,21 +36,21 @@ TEST(ResidualStatistics, DifferencesAreTakenWithinARecordOnly) {
   // Across the join 1 → −1 the difference would add 4.
   const ResidualStatistics s = Describe(Series{{1, 1}, {-1, -1}}, Series{{0, 1}, {2, 3}});
   EXPECT_EQ(s.samples, 4u);
-  EXPECT_EQ(s.durbin_watson);
+  EXPECT_EQ(s.durbin_watson, 0.0);
   // Forces 0 … 3 over both records: mean 3/2, Σ = 5.
   EXPECT_NEAR(s.r_squared, 1 - 4.0 / 5, kRounding);
 }
 
 TEST(ResidualStatistics, PerfectFitIsWhite) {
   const ResidualStatistics s = Describe(Series{{0, 0, 0}}, Series{{1, 2, 3}});
-  EXPECT_EQ(s.rms);
-  EXPECT_EQ(s.r_squared);
-  EXPECT_EQ(s.durbin_watson);
+  EXPECT_EQ(s.rms, 0.0);
+  EXPECT_EQ(s.r_squared, 1.0);
+  EXPECT_EQ(s.durbin_watson, 2.0);
 }
 
 TEST(ResidualStatistics, ConstantForceExplainsNothing) {
   const ResidualStatistics s = Describe(Series{{1, -1}}, Series{{5, 5}});
-  EXPECT_EQ(s.r_squared);
+  EXPECT_EQ(s.r_squared, 0.0);
 }
 
 }  // namespace

@@ -142,6 +142,7 @@ bool IsDoubted(const Thresholds& thresholds, double chance) {
 
 DepartureFit FitWith(double p_value, double delta_aicc) {
   DepartureFit fit;
+  fit.departure = &Departures().front();
   fit.p_value = p_value;
   fit.delta_aicc = delta_aicc;
   return fit;

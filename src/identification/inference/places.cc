@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/normalized_response.h"
@@ -160,44 +159,6 @@ void SetMissedWay(const ScaledRecord& record, const Sampling& sampling, std::spa
           step * (sampling.time[samples[j]] - sampling.time[samples[k]]) / duration;
     }
     k = next;
-  }
-}
-
-/// Half the way [units of the data] of each sample's stroke; those that the record begins and ends
-/// on count as wide as their neighbours, since they may be cut.
-std::vector<double> StrokeAmplitudes(const ScaledRecord& record) {
-  const auto& reversals = record.reversals;
-  const auto [lowest, highest] = std::ranges::minmax(record.displacement);
-  std::vector<double> amplitudes(record.size(), (highest - lowest) / 2);
-  if (reversals.size() < 2) return amplitudes;
-  for (std::size_t k = 0; k + 1 < reversals.size(); ++k) {
-    const double way =
-        std::abs(record.displacement[reversals[k + 1]] - record.displacement[reversals[k]]);
-    const std::size_t begin = k == 0 ? 0 : reversals[k] + 1;
-    const std::size_t end = k + 2 < reversals.size() ? reversals[k + 1] + 1 : record.size();
-    std::fill(amplitudes.begin() + static_cast<std::ptrdiff_t>(begin),
-              amplitudes.begin() + static_cast<std::ptrdiff_t>(end), way / 2);
-  }
-  return amplitudes;
-}
-
-/// Sets the amplitude of every sample's stroke, unless strokes are nearly equal.
-void SetAmplitudes(const ScaledRecords& data, std::span<RecordPlaces> places) {
-  constexpr double kEqual = 0.95;  // of the widest: the same as of steady cycles
-  std::vector<std::vector<double>> amplitudes;
-  double narrowest = std::numeric_limits<double>::infinity();
-  double widest = 0.0;
-  for (const ScaledRecord& record : data.records) {
-    const auto [least, most] =
-        std::ranges::minmax(amplitudes.emplace_back(StrokeAmplitudes(record)));
-    narrowest = std::min(narrowest, least);
-    widest = std::max(widest, most);
-  }
-  if (narrowest >= kEqual * widest) return;
-  for (std::size_t r = 0; r < places.size(); ++r) {
-    for (std::size_t i = 0; i < places[r].samples.size(); ++i) {
-      places[r].samples[i].amplitude = (amplitudes[r][i] - narrowest) / (widest - narrowest) - 0.5;
-    }
   }
 }
 
@@ -405,7 +366,6 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
     }
     begin += record.size();
   }
-  SetAmplitudes(data, places);
   return places;
 }
 

@@ -22,7 +22,6 @@ struct Place {
   double peak = 0.0;   // largest |force| of all records
   double load_change = 0.0;  // of the measured load, over its mean
   double missed = 0.0;       // way since the displacement was last read anew, where it is repeated
-  double amplitude = 0.0;    // of the stroke, −½ of the narrowest to ½ of the widest
   double asymmetry = 0.0;    // of the force over the slip force, its derivative by an asymmetry
   // The branch, with forces of the contact over the slip force and under the mean load:
   double imposed = 0.0;  // of the two channels

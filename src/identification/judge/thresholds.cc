@@ -92,7 +92,7 @@ constexpr std::array kTable = {
                  "with fewer the columns together explain much of any noise"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "an omitted term that noise alone makes less often is a cause",
-                 "23 are tried, so one loop in forty has one by chance"},
+                 "22 are tried, so one loop in forty has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "intervals also include causes that explain at least this much",
                  "omitted terms are tried to first order: the better of two imperfect models need "
