@@ -242,7 +242,7 @@ bool IsFitted(const Plan& plan, const ShownError& shown) {
 }
 
 bool IsLawDecided(const ExpectedFit& fit) {
-  return fit.law_evidence > identification::Thresholds().rival_past;
+  return fit.law_evidence > identification::Thresholds().undecided;
 }
 
 Json ErrorRows(const Plan& plan) {
@@ -300,7 +300,7 @@ std::string ToText(const Plan& plan) {
       "  -: error larger than the value; law: is this loop expected to distinguish Mindlin's "
       "memory\n  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} "
       "m{}.\n",
-      report::TableText(ErrorRows(plan)), identification::Thresholds().rival_past, plan.slip,
+      report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip,
       plan.protocol.loads.empty() ? "" : " at that load");
   if (plan.wanted.empty()) return text;
   text += fmt::format("\nwanted: {}\n", WantedInWords(plan.wanted));

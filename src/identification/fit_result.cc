@@ -78,13 +78,36 @@ double FitResult::PeakForce() const {
   return widest.measures.peak_force / widest.load_ratio;
 }
 
-double AmplitudeBehindGap(const FitResult& fit, double amplitude) {
-  const ParameterEstimate* const gap = fit.Find("backlash");
-  return gap == nullptr ? amplitude : std::max(amplitude - gap->value / 2, 0.0);
+bool FitResult::is_scaled_by_load() const {
+  return !records.empty() && WidestRecord().load_varies && model->memory == models::Memory::kNone;
+}
+
+std::optional<double> FitResult::MeasuredHalfGap() const {
+  if (is_scaled_by_load() || response != loop::Channel::kForce) return std::nullopt;
+  const RecordFit& widest = WidestRecord();
+  if (!widest.facts.half_gap || !(*widest.facts.half_gap > 0)) return std::nullopt;
+  return *widest.facts.half_gap / widest.load_ratio;
+}
+
+double FitResult::MisfitScale() const {
+  const RecordFit& widest = WidestRecord();
+  if (response == loop::Channel::kDisplacement) return widest.measures.amplitude;
+  const std::optional<double> half_gap = MeasuredHalfGap();
+  const bool slips = loop::Slides(widest.facts) || loop::ReachesSlip(widest.facts);
+  return half_gap && slips ? *half_gap : PeakForce();
+}
+
+std::size_t FitResult::CountFreeParameters() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(parameters, [](const ParameterEstimate& parameter) {
+        return parameter.status != ParameterStatus::kFixed;
+      }));
 }
 
 double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude) {
-  return models::ContactAmplitude(*fit.model, law, fit.rig, AmplitudeBehindGap(fit, amplitude));
+  const ParameterEstimate* const gap = fit.Find("backlash");
+  if (gap != nullptr) amplitude = std::max(amplitude - gap->value / 2, 0.0);
+  return models::ContactAmplitude(*fit.model, law, fit.rig, amplitude);
 }
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {

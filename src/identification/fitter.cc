@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/diagnosis/grade.h"
-#include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inferred_fit.h"
@@ -125,8 +124,6 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
     WithdrawInterval(estimate);
     estimate.includes_discrepancy = false;
     estimate.identifiability = Identifiability::kNotIdentifiable;
-    estimate.prior.reset();
-    estimate.without_priors.reset();
   }
   result.law = parameters.LawAt(solution.theta);
   result.rig = parameters.RigAt(solution.theta);
@@ -182,21 +179,6 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   return result;
 }
 
-/// Returns WithinMeasuredForce() of a fit that is not adequate, from starts of its own.
-std::optional<FitOptions> OptionsWithinForce(const FitResult& result, const FitOptions& given) {
-  // Below, nothing says that the model does not follow the record.
-  if (result.depth < Depth::kIntervals) return std::nullopt;
-  if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
-      result.response == loop::Channel::kDisplacement || IsScaledByLoad(result)) {
-    return std::nullopt;
-  }
-  const RecordFit& widest = result.WidestRecord();
-  std::optional<FitOptions> within =
-      WithinMeasuredForce(widest.facts, widest.load_ratio, result.law.slip_force, given);
-  if (within) within->start.clear();
-  return within;
-}
-
 /// True if the record determines the law, as far as the depth shows. Where it does not, the
 /// likelihood is a valley with several minima.
 bool TellsTheLaw(const FitResult& result) {
@@ -217,21 +199,6 @@ FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
   return Fitter(open).Fit(records, std::min(depth, Depth::kErrors));
 }
 
-/// Adds to each parameter which prior it has and what it is without any.
-FitResult AddPriors(const FitOptions& options, const Problem& problem, const FitResult& without,
-                    FitResult result) {
-  for (std::size_t k = 0; k < result.parameters.size(); ++k) {
-    ParameterEstimate& estimate = result.parameters[k];
-    if (problem.parameters[problem.parameters.reported()[k]].has_prior()) {
-      estimate.prior = options.priors.at(estimate.name);
-    }
-    if (const ParameterEstimate* open = without.Find(estimate.name)) {
-      estimate.without_priors = {open->value, open->standard_error};
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 struct Fitter::State {
@@ -243,7 +210,7 @@ struct Fitter::State {
   /// Fits, and once more where the slip force runs away from what was measured.
   void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
     Fit(records, depth, given);
-    const std::optional<FitOptions> within = OptionsWithinForce(result, given);
+    const std::optional<FitOptions> within = WithinMeasuredForce(result, given);
     if (within) Fit(records, depth, *within);
   }
   void Continue(const RecordView& record, Depth depth);
@@ -275,12 +242,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   RequireRigStifferThanLoop(given, prepared);
   RequireNoise(given, data);
 
-  const Attempt attempt{given, depth, prepared, data, thin, buffers, &arena};
+  const Attempt attempt{given, depth,   prepared, data,
+                        thin,  buffers, &arena,   without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved, std::move(result));
-  if (without_priors) {
-    result = AddPriors(given, solved.best.problem, *without_priors, std::move(result));
-  }
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
   result = Infer(attempt, std::move(solved), std::move(result));
   if (depth < Depth::kFull) return;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mindahl/identification/terms.h"
-
 namespace mindahl::identification {
 
 namespace {
@@ -34,24 +32,10 @@ void Include(ParameterEstimate& estimate, Ends ends) {
       is_closed_above ? std::optional(std::max(*estimate.upper95, *ends.upper)) : std::nullopt;
 }
 
-void RaiseLowerEnd(ParameterEstimate& estimate, double least) {
-  if (estimate.lower95 && *estimate.lower95 < least) estimate.lower95 = least;
-}
-
-void OpenAbove(ParameterEstimate& estimate) {
-  estimate.upper95.reset();
-  estimate.standard_error.reset();
-}
-
 void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.standard_error.reset();
   estimate.lower95.reset();
   estimate.upper95.reset();
-}
-
-bool IsScaledByLoad(const FitResult& result) {
-  return !result.records.empty() && result.WidestRecord().load_varies &&
-         result.model->memory == models::Memory::kNone;
 }
 
 }  // namespace mindahl::identification

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "identification/diagnosis/residual_structure.h"
+#include "identification/diagnosis/residuals.h"
 #include "identification/held_out.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
@@ -38,11 +38,10 @@ bool AreComparable(const FitOptions& options, const ScaledRecords& data, const F
 }
 
 /// True if a record starts inside the range of its strokes: then it may be virgin.
-bool StartsInside(const ScaledRecord& record) {
+bool StartsInside(const ScaledRecord& record, const Thresholds& thresholds) {
   const auto [low, high] = std::ranges::minmax(record.excitation());
   const double start = record.excitation().front();
-  constexpr double kInside = 0.1;  // of the range: what is nearer has turned there
-  return std::min(start - low, high - start) > kInside * (high - low);
+  return std::min(start - low, high - start) > thresholds.starts_inside * (high - low);
 }
 
 /// Returns the options of a fit of the other law, from that of the same steady loop. α stays as it
@@ -72,13 +71,9 @@ double IndependentSamples(const ScaledRecords& data, const FitResult& fit,
   std::vector<double> residual;
   double widening = 1.0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
     const std::vector<double>& own = fit.records[r].residual;
     residual.insert(residual.end(), own.begin(), own.end());
-    widening = std::max(widening,
-                        DescribeStructure(record.excitation(), record.reversals, own, record.counts,
-                                          {thresholds.main_stroke, thresholds.repeat_chance})
-                            .Widening());
+    widening = std::max(widening, DescribeStructure(data.records[r], own, thresholds).Widening());
   }
   return std::max(EffectiveSamples(data, residual) / widening, 1.0);
 }
@@ -91,8 +86,9 @@ bool LawIsAtBound(const FitResult& fit) {
   });
 }
 
-}  // namespace
-
+/// True if all swings of the records are as wide as the widest, those to their ends no wider. Then
+/// a steady contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a
+/// Tc of its own (models/steady_loop.h).
 bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
   double widest = 0.0;
   double narrowest = std::numeric_limits<double>::infinity();
@@ -115,9 +111,7 @@ bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
   return widest <= wider && longest_end <= wider;
 }
 
-bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds) {
-  return std::abs(delta_aicc) < thresholds.rival_law;
-}
+}  // namespace
 
 std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                                      const FitOptions& options, const ScaledRecords& data,
@@ -137,7 +131,10 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const bool is_one_curve = is_steady && HasOneAmplitude(data, options.thresholds);
   if (is_one_curve) {
     const bool is_open = !options.initial_state && options.initial_states.empty();
-    if (!is_open || std::ranges::none_of(data.records, StartsInside)) return choice;
+    const auto starts_inside = [&](const ScaledRecord& record) {
+      return StartsInside(record, options.thresholds);
+    };
+    if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_state = InitialState::kVirgin;
   }
   FitResult other;
@@ -157,11 +154,11 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const Evidence evidence(samples.count, IndependentSamples(data, rms_of_other < rms ? other : fit,
                                                             options.thresholds));
   const auto criterion = [&](const FitResult& of, double its_rms) {
-    return evidence.Aicc(SumOfSquares(its_rms, samples), CountFreeParameters(of));
+    return evidence.Aicc(SumOfSquares(its_rms, samples), of.CountFreeParameters());
   };
   const double delta = criterion(other, rms_of_other) - criterion(fit, rms);
   // If the laws are one curve, a virgin start counts only if it is better.
-  const bool is_undecided = LawIsUndecided(delta, options.thresholds);
+  const bool is_undecided = std::abs(delta) < options.thresholds.undecided;
   if (is_one_curve && (delta > 0 || is_undecided)) return choice;
   choice.delta_aicc = delta;
   choice.law = other.law;

@@ -10,11 +10,10 @@
 #include "identification/inference/reweighting.h"
 #include "identification/intervals.h"
 #include "identification/problem/parameters.h"
+#include "identification/solve/search.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
-
-using loop::RecordView;
 
 namespace {
 
@@ -57,7 +56,6 @@ double RobustScaleOf(const FitResult& fit, const ScoredSamples& samples) {
 
 /// Leaves out the samples that are far off for the candidate with the least robust scale.
 void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
-  constexpr double kOutlier = 4.685;  // where Tukey's loss ends
   const FitResult* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const FitResult& fit : fits) {
@@ -66,7 +64,7 @@ void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
     least = scale;
     best = &fit;
   }
-  const double limit = kOutlier * std::max(least, samples.rounding);
+  const double limit = kTukeyConstant * std::max(least, samples.rounding);
   for (std::size_t r = 0; best != nullptr && r < samples.mask.size(); ++r) {
     for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
       if (samples.mask[r][i] == 0 || std::abs(best->records[r].residual[i]) <= limit) continue;
@@ -112,14 +110,9 @@ std::size_t ScoreByCriterion(std::span<const FitResult> fits, const ScoredSample
 
 }  // namespace
 
-std::vector<ModelScore> CompareModels(std::span<const loop::Record> records,
+std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
                                       const FitOptions& options) {
-  const std::vector<RecordView> views(records.begin(), records.end());
-  return CompareModels(views, options);
-}
-
-std::vector<ModelScore> CompareModels(std::span<const RecordView> records,
-                                      const FitOptions& options) {
+  const std::vector<loop::RecordView> records(given.begin(), given.end());
   if (options.response() != loop::Channel::kForce) {
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
@@ -130,7 +123,7 @@ std::vector<ModelScore> CompareModels(std::span<const RecordView> records,
     const FitResult& fit =
         fits.emplace_back(Fitter(OptionsOf(score, options)).Fit(records, Depth::kIntervals));
     score.converged = fit.converged;
-    score.free_parameters = CountFreeParameters(fit);
+    score.free_parameters = fit.CountFreeParameters();
   }
   const auto fitted = std::ranges::find_if(fits, IsFitted);
   if (fitted == fits.end()) return scores;

@@ -10,10 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "identification/diagnosis/adequacy.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/turning_point_test.h"
 #include "identification/problem/requirements.h"
 
 namespace mindahl::identification {
@@ -84,7 +82,7 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
       attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
       attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial_solution);
       const double gain = criterion(from) - criterion(trial);
-      if (!(gain > 0) || PastIsUndecided(gain, attempt.options.thresholds)) continue;
+      if (!(gain >= attempt.options.thresholds.undecided)) continue;
       std::swap(solution, trial_solution);
       trial.solution = &solution;
       best.emplace(std::move(trial));
@@ -173,21 +171,54 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
 }
 
-/// Fits at turning points between samples where the record needs it and allows it.
-std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate& best) {
+/// Fits again with turning points where the motion has them, by the samples about each reversal: no
+/// parameter is spent on them.
+/// @returns empty where they may move no parameter by more than `turning_point_shift` standard
+///   errors, the record shows its outermost samples to be better, or it allows none
+std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate& candidate) {
+  const Problem& problem = candidate.problem;
+  const Solution& best = *candidate.solution;
+  const ScaledRecords& data = *problem.data;
+  const Thresholds& thresholds = attempt.options.thresholds;
   // A gate means noise in the displacement: its outermost samples are the noisiest, and say
   // nothing of where the motion turned.
   const bool gated = std::ranges::any_of(
       attempt.prepared.records, [](const auto& record) { return record.gate_choice.gate > 0; });
-  // Turning points are not fitted together with a term that moves the samples off them.
-  const bool is_moved = best.problem.parameters.moves_contact();
-  // Nor under a load that varies: the path between the samples is not the displacement's alone.
-  // An imposed force is taken as it was sampled.
-  if (!best.solution->converged || gated || is_moved || attempt.data.load_varies ||
-      attempt.data.is_forced()) {
+  // Turning points are not fitted together with a term that moves the samples off them, nor under a
+  // load that varies: the path between the samples is not the displacement's alone. An imposed
+  // force is taken as it was sampled.
+  if (!best.converged || gated || problem.parameters.moves_contact() || data.load_varies ||
+      data.is_forced()) {
     return std::nullopt;
   }
-  return FitAtTurningPoints(best.problem, *best.solution, attempt.options, attempt.buffers);
+  // Residuals of rounding size have nothing left to explain.
+  const double rms = std::sqrt(best.sum_of_squares / static_cast<double>(data.counted));
+  if (rms < kRoundingRms) return std::nullopt;
+  std::vector<double> overshoot;
+  double largest = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      overshoot.push_back(OvershootOfMotion(record, k));
+      largest = std::max(largest, overshoot.back());
+    }
+  }
+  // As if every sample lay on the steepest part of its branch.
+  const double shift = static_cast<double>(data.counted) * std::exp(best.theta[kStiffness]) *
+                       largest / std::sqrt(best.sum_of_squares);
+  if (!(shift > thresholds.turning_point_shift)) return std::nullopt;
+  TurningPointFit fit{PutInTurningPoints(data, overshoot), best};
+  Problem turned = problem;
+  turned.data = &fit.records->data;
+  SearchBuffers& buffers = attempt.buffers;
+  buffers.solver.Bind(turned, buffers.response);
+  buffers.solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
+  if (!fit.solution.converged) return std::nullopt;
+  if (fit.solution.sum_of_squares <= best.sum_of_squares) return fit;
+  // If both are nearly as likely, the fit that does not take a sample for a turn is chosen.
+  const Evidence evidence(data.counted, EffectiveSamples(problem, best.theta, buffers.response));
+  const double loss = evidence.LikelihoodRatio(fit.solution.sum_of_squares, best.sum_of_squares);
+  if (loss > thresholds.indistinguishable) return std::nullopt;
+  return fit;
 }
 
 }  // namespace

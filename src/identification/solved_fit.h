@@ -26,6 +26,7 @@ struct Attempt {
   ThinnedRecords& thin;
   SearchBuffers& buffers;
   std::pmr::memory_resource* memory;
+  const FitResult* without_priors = nullptr;  ///< null where there is none
 };
 
 /// Holds the least squares of some records: what every later stage starts from.

@@ -13,7 +13,6 @@
 #include "core/extremes.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/diagnosis/grade.h"
 #include "identification/intervals.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/parameters.h"

@@ -93,13 +93,10 @@ struct MisfitScale {
 };
 
 MisfitScale ScaleOf(const Report& report) {
-  const loop::LoopFacts& facts = report.fit.WidestRecord().facts;
-  const double peak_force = report.fit.PeakForce();
-  if (!facts.half_gap) return {"half gap"};
-  const double half_gap = std::abs(*facts.half_gap);
-  constexpr double kNarrow = 0.5;  // of T*: such a loop does not slide, and is judged over T*
-  if (!(half_gap > 0) || half_gap > kNarrow * peak_force) return {"half gap"};
-  return {"peak force", peak_force / half_gap};
+  const std::optional<double> half_gap = report.fit.MeasuredHalfGap();
+  const double scale = report.fit.MisfitScale();
+  if (!half_gap || scale == *half_gap) return {"half gap"};
+  return {"peak force", scale / *half_gap};
 }
 
 }  // namespace

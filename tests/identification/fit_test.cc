@@ -116,7 +116,6 @@ TEST(Fit, ResidualIsFittedMinusMeasuredWithSignOfFile) {
       sum += part.residual[i] * part.residual[i];
     }
     EXPECT_NEAR(fit.residuals.rms, std::sqrt(sum / static_cast<double>(record.size())), 1e-12);
-    EXPECT_DOUBLE_EQ(fit.residuals.normalized_rms, fit.residuals.rms / fit.law.slip_force);
     // The noise put in, known to 1/√(2n) = 4.5 %; four times that.
     EXPECT_NEAR(fit.residuals.rms, 0.01 * kLaw.slip_force, 0.18 * 0.01 * kLaw.slip_force);
   }

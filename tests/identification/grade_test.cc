@@ -1,5 +1,4 @@
-#include "identification/diagnosis/grade.h"
-
+#include "identification/diagnosis/adequacy.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 
@@ -43,13 +42,13 @@ TEST(Grade, LeavesTheHalfGapWhereTcIsMoreThanAQuarterOffToEitherSide) {
 }
 
 TEST(Grade, MisfitIsHeldAgainstWhatWasMeasured) {
-  EXPECT_EQ(ScaleOfMisfit(SlidingFit()), 8.0);
-  EXPECT_EQ(ScaleOfMisfit(SlidingFit(/*energy_ratio=*/0.2)), 10.0);
+  EXPECT_EQ(SlidingFit().MisfitScale(), 8.0);
+  EXPECT_EQ(SlidingFit(/*energy_ratio=*/0.2).MisfitScale(), 10.0);
   FitResult fit = SlidingFit();
   fit.law.slip_force = 1e6;  // runs away
-  EXPECT_EQ(ScaleOfMisfit(fit), 8.0);
+  EXPECT_EQ(fit.MisfitScale(), 8.0);
   fit.response = loop::Channel::kDisplacement;
-  EXPECT_EQ(ScaleOfMisfit(fit), fit.records[0].measures.amplitude);
+  EXPECT_EQ(fit.MisfitScale(), fit.records[0].measures.amplitude);
 }
 
 TEST(Grade, WhiteNoiseIsNotMissed) {
@@ -118,8 +117,8 @@ TEST(Grade, LoopThatIsNotSeenIsOfNoUse) {
 TEST(Grade, GapIsThatAtTheMeanLoad) {
   FitResult fit = SlidingFit();
   fit.records[0].load_ratio = 2.0;
-  ASSERT_TRUE(MeasuredHalfGap(fit));
-  EXPECT_EQ(*MeasuredHalfGap(fit), 4.0);
+  ASSERT_TRUE(fit.MeasuredHalfGap());
+  EXPECT_EQ(*fit.MeasuredHalfGap(), 4.0);
 }
 
 }  // namespace

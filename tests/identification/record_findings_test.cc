@@ -1,5 +1,4 @@
-#include "identification/diagnosis/record_findings.h"
-
+#include "identification/diagnosis/diagnosis.h"
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"

@@ -1,6 +1,4 @@
-#include "identification/diagnosis/residual_structure.h"
-
-#include "mindahl/identification/adequacy.h"
+#include "identification/diagnosis/residuals.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 
@@ -10,15 +8,14 @@ namespace {
 
 using namespace loop;
 
-constexpr std::size_t kBins = 20;
-
-ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual,
-                              const std::vector<unsigned char>& counts) {
-  return DescribeStructure(displacement, FindReversals(displacement, 0.0), residual, counts);
-}
-
 ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
-  return StructureOf(displacement, residual, std::vector<unsigned char>(displacement.size(), 1));
+  const std::vector<std::size_t> reversals = FindReversals(displacement, 0.0);
+  ScaledRecord record(std::pmr::get_default_resource());
+  record.displacement.assign(displacement.begin(), displacement.end());
+  record.force.resize(displacement.size());
+  record.counts.assign(displacement.size(), 1);
+  record.reversals = reversals;
+  return DescribeStructure(record, residual, {});
 }
 
 /// Residuals from displacement and direction of motion, +1 or −1, which the sample ends.
@@ -72,59 +69,9 @@ TEST(ResidualStructure, FractionIsVarianceThatRepeats) {
     const ResidualStructure structure = StructureOf(displacement, residual);
     EXPECT_NEAR(structure.repeatable_share, squares / (squares + noise * noise), kShareError)
         << noise;
-    EXPECT_EQ(structure.strokes, 10U);  // down; the way in and the way out are half strokes
+    // The way in and the way out are half strokes.
+    EXPECT_EQ(structure.strokes, (std::array<std::size_t, 2>{9, 10}));
   }
-}
-
-TEST(ResidualStructure, BinsHaveTheMeanAndSignOfEachDirection) {
-  // Growing: linear in the position. Falling: constant, of the other sign. Off centre.
-  constexpr double kOffset = 37.0;
-  constexpr double kHalfBin = 0.5 / kBins;
-  constexpr double kUp = 2.0;
-  constexpr double kDown = -5.0;
-  History displacement = Cycling(Wave::kTriangle, 1.0, 6.0, 400);
-  for (double& x : displacement) x += kOffset;
-  const ResidualStructure structure =
-      StructureOf(displacement, ResidualsOf(displacement, [](double x, int direction) {
-                    return direction > 0 ? kUp * (x - kOffset + 1) / 2 + 1e-3 : kDown;
-                  }));
-  const StrokeResiduals& up = structure.directions[0];
-  const StrokeResiduals& down = structure.directions[1];
-  EXPECT_EQ(up.direction, 1);
-  EXPECT_EQ(down.direction, -1);
-  EXPECT_EQ(up.strokes, 5U);
-  EXPECT_EQ(down.strokes, 6U);
-  ASSERT_EQ(up.bins.size(), kBins);
-  ASSERT_EQ(down.bins.size(), kBins);
-  // The sample on a reversal belongs to both strokes but has one residual: one of 200 of a stroke,
-  // one of 10 of its bin.
-  const double shared = (kUp - kDown) / 200;
-  EXPECT_NEAR(up.mean, kUp / 2, shared + 2e-3);
-  EXPECT_NEAR(down.mean, kDown, shared);
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    const double middle = (static_cast<double>(bin) + 0.5) / kBins;
-    const bool at_end = bin == 0 || bin + 1 == kBins;
-    const double tolerance = kUp * kHalfBin + 2e-3 + (at_end ? (kUp - kDown) / 10 : 0);
-    EXPECT_NEAR(up.bins[bin].position, middle, 1e-12);
-    EXPECT_NEAR(up.bins[bin].mean, kUp * middle, tolerance) << bin;
-    EXPECT_NEAR(down.bins[bin].mean, kDown, tolerance) << bin;
-  }
-}
-
-TEST(ResidualStructure, StandardErrorOfABinIsThatOfItsMean) {
-  // Ten samples of unit noise in a bin and 50 strokes: 1/√500. A scatter over 50 strokes is known
-  // to 1/√100 = 10 %, its mean over 40 bins to 1.6 %.
-  const History displacement = Cycling(Wave::kTriangle, 1.0, 51.0, 400);
-  Generator generator(13);
-  std::vector<double> residual;
-  for (std::size_t i = 0; i < displacement.size(); ++i) residual.push_back(Normal(generator));
-  double squares = 0.0;
-  for (const StrokeResiduals& direction : StructureOf(displacement, residual).directions) {
-    for (const StrokeBin& bin : direction.bins) {
-      squares += bin.standard_error * bin.standard_error / (2 * kBins);
-    }
-  }
-  EXPECT_NEAR(std::sqrt(squares * 505), 1.0, 0.08);
 }
 
 }  // namespace

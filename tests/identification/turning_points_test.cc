@@ -1,6 +1,5 @@
 #include "identification/solve/turning_points.h"
 
-#include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
 

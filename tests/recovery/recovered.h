@@ -135,7 +135,7 @@ inline ::testing::AssertionResult Recovers(const identification::FitResult& fit,
          << fit.law.tangential_stiffness << " of " << truth.tangential_stiffness << ", alpha "
          << fit.law.shape_exponent << " of " << truth.shape_exponent << ", slip force "
          << fit.law.slip_force << " of " << truth.slip_force << "; rms over Tc "
-         << fit.residuals.normalized_rms << ", "
+         << fit.residuals.rms / fit.law.slip_force << ", "
          << (fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady");
 }
 

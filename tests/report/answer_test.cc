@@ -290,7 +290,7 @@ TEST(Answer, HasNoFractionAboveTheWhole) {
   ReportInput input = Doubtful();
   input.fit.adequacy.misfit_over_half_gap = 3.66;
   identification::Cause cause;
-  cause.code = "amplitude_dependence";
+  cause.code = "running_in";
   cause.explains = 3.66;
   input.fit.adequacy.causes = {cause};
   EXPECT_THAT(Details(input), Not(HasSubstr("366")));

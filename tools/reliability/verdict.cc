@@ -117,7 +117,8 @@ std::string ResidualsText(const FitResult& fit) {
       fit.residuals.samples, record.reversals.size(), record.gate.gate / record.measures.amplitude,
       fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady",
       fit.converged ? "converged" : "NOT CONVERGED: " + fit.solver.message,
-      100 * record.measures.peak_force / fit.law.slip_force, 100 * fit.residuals.normalized_rms,
+      100 * record.measures.peak_force / fit.law.slip_force,
+      100 * fit.residuals.rms / fit.law.slip_force,
       100 * fit.residuals.max_abs / fit.law.slip_force, fit.residuals.durbin_watson,
       fit.residuals.effective_samples, 100 * record.structure.repeatable_share);
 }

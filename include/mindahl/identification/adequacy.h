@@ -1,9 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,10 +11,9 @@
 namespace mindahl::identification {
 
 struct ResidualStatistics {
-  double rms = 0.0;             ///< [N] √(Σr²/n)
-  double max_abs = 0.0;         ///< [N]
-  double normalized_rms = 0.0;  ///< [–] rms over Tc
-  double r_squared = 0.0;       ///< [–] 1 − Σr²/Σ(T − mean)²
+  double rms = 0.0;        ///< [N] √(Σr²/n)
+  double max_abs = 0.0;    ///< [N]
+  double r_squared = 0.0;  ///< [–] 1 − Σr²/Σ(T − mean)²
   double durbin_watson = 0.0;  ///< [–] Σ(rᵢ − rᵢ₋₁)²/Σr²: 2 when white, → 0 when correlated
   /// Number of independent residuals of equal information: n/(1 + 2Σρ²), ρ the correlations of an
   /// autoregressive process (Bartlett 1946), over the strokes in which a fraction of them repeats
@@ -23,63 +22,21 @@ struct ResidualStatistics {
   std::size_t samples = 0;
 };
 
-/// @param residuals   [N] fitted − measured, one series a record; differences are taken within a
-/// record
-/// @param forces      [N] measured, of the same sizes
-/// @param slip_force  [N] Tc
-/// @throws InvalidArgument when sizes differ or there is no sample
-/// Effective samples and degrees of freedom, which need the noise, are left at 0.
-ResidualStatistics DescribeResiduals(std::span<const std::span<const double>> residuals,
-                                     std::span<const std::span<const double>> forces,
-                                     double slip_force);
-
-/// Mean residual over a part of the stroke.
-struct StrokeBin {
-  double position = 0.0;        ///< middle, as a fraction of the stroke's travel
-  double mean = 0.0;            ///< [N]
-  double standard_error = 0.0;  ///< [N], from the scatter between strokes; 0 for a single one
-};
-
-/// The strokes of one direction.
-struct StrokeResiduals {
-  int direction = 1;        ///< +1 where the displacement grows
-  std::size_t strokes = 0;  ///< number that count and are long enough
-  double mean = 0.0;        ///< [N]
-  double rms = 0.0;         ///< [N]
-  std::vector<StrokeBin> bins;
-};
-
-/// Holds the mean residual by place in the stroke, in either direction.
+/// Holds what of the residuals comes back at the same place of every stroke.
 struct ResidualStructure {
-  std::array<StrokeResiduals, 2> directions;  ///< growing, then falling displacement
-  /// Fraction of the residuals' variance that repeats at the same place of every stroke: 0 for
-  /// noise, 1 for what the model cannot follow. 0 where an F test finds nothing, or a
-  /// direction has one stroke only.
+  /// Fraction of the residuals' variance that repeats: 0 for noise, 1 for what the model cannot
+  /// follow. 0 where an F test finds nothing, or a direction has one stroke only.
   double repeatable_share = 0.0;
-  std::size_t strokes = 0;  ///< number in the direction that has more
+  /// Number of strokes of growing and of falling displacement that are long enough.
+  std::array<std::size_t, 2> strokes{};
 
   /// Returns the factor by which the variance of estimates exceeds that from noise: a residual that
   /// repeats in every stroke is not averaged away by more of them.
   [[nodiscard]] double Widening() const {
-    return strokes > 1 ? 1 + repeatable_share * static_cast<double>(strokes - 1) : 1.0;
+    const std::size_t most = std::max(strokes[0], strokes[1]);
+    return most > 1 ? 1 + repeatable_share * static_cast<double>(most - 1) : 1.0;
   }
 };
-
-struct ResidualStructureOptions {
-  double main_stroke = 0.75;    ///< fraction of the longest; shorter strokes are left out
-  double repeat_chance = 1e-3;  ///< at which white noise passes for repeatable
-};
-
-/// Makes a one-way analysis of variance of residuals over 20 parts of each stroke.
-/// @param displacement  [m]
-/// @param reversals     as from FindReversals
-/// @param residual      [N], same size as displacement
-/// @param counts        of each sample, 0 where it does not count; the same size
-ResidualStructure DescribeStructure(std::span<const double> displacement,
-                                    std::span<const std::size_t> reversals,
-                                    std::span<const double> residual,
-                                    std::span<const unsigned char> counts,
-                                    const ResidualStructureOptions& options = {});
 
 /// Says whether the model describes the record.
 enum class AdequacyVerdict {

@@ -66,12 +66,6 @@ enum class Depth {
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
-/// Holds the estimate of a parameter without the priors of the fit.
-struct WithoutPriors {
-  double value = 0.0;
-  std::optional<double> standard_error;  ///< empty when fixed, at a bound or undetermined
-};
-
 struct ParameterEstimate {
   std::string name;
   std::string unit;
@@ -82,8 +76,6 @@ struct ParameterEstimate {
   ParameterStatus status = ParameterStatus::kFixed;
   bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
   Identifiability identifiability = Identifiability::kNotIdentifiable;
-  std::optional<Prior> prior = {};                   ///< prior of this parameter; empty without one
-  std::optional<WithoutPriors> without_priors = {};  ///< empty if the fit has no prior
   /// Standard deviation that repeats of the test would have: `standard_error` of a model that is
   /// adequate, else what leaving out one part of the record's cycles after the other changes. A
   /// discrepancy that all repeats have in common is not in it.
@@ -181,6 +173,21 @@ struct FitResult {
   /// Returns the largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
 
+  /// True of Dahl's own law under a load that varies: its force follows the load at once, so that
+  /// neither a peak nor a half gap of the measured force bounds Tc.
+  [[nodiscard]] bool is_scaled_by_load() const;
+
+  /// Returns half the gap between the strokes of the widest record [N], as it would be at the mean
+  /// load of all; empty in a fit of the displacement, and where none was measured or it is not > 0.
+  [[nodiscard]] std::optional<double> MeasuredHalfGap() const;
+
+  /// Returns what a misfit is held against [N or m]: the half gap of a loop that slides or reaches
+  /// slip, else T*; of a displacement its amplitude.
+  [[nodiscard]] double MisfitScale() const;
+
+  /// Returns the number of parameters that are not held, for criteria.
+  [[nodiscard]] std::size_t CountFreeParameters() const;
+
   /// Degrees of freedom of Student's law of the errors.
   [[nodiscard]] double ErrorDegreesOfFreedom() const {
     return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
@@ -203,8 +210,5 @@ struct FitResult {
 /// half of a gap before it, and what a rig in series takes.
 /// @param law  of the record
 double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude);
-
-/// Returns the amplitude [m] behind a gap, where the fit has one.
-double AmplitudeBehindGap(const FitResult& fit, double amplitude);
 
 }  // namespace mindahl::identification

@@ -51,8 +51,6 @@ struct ModelScore {
 /// @throws InvalidArgument as Fit does, or for a fit of the displacement
 /// Deterministic. Cost: 8 fits at Depth::kIntervals, and 8 a fold at Depth::kEstimate from where
 /// these are.
-std::vector<ModelScore> CompareModels(std::span<const loop::RecordView> records,
-                                      const FitOptions& options);
 std::vector<ModelScore> CompareModels(std::span<const loop::Record> records,
                                       const FitOptions& options);
 

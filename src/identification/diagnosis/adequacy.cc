@@ -2,21 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "identification/diagnosis/grade.h"
+#include "identification/diagnosis/diagnosis.h"
 
 namespace mindahl::identification {
+
+double WhiteVariance(const FitResult& result) {
+  constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
+  double squares = 0.0;
+  double count = 0.0;
+  for (const RecordFit& record : result.records) {
+    for (std::size_t i = 1; i + 1 < record.residual.size(); ++i) {
+      if (record.counts[i - 1] == 0 || record.counts[i] == 0 || record.counts[i + 1] == 0) continue;
+      const double off = (record.residual[i - 1] + record.residual[i + 1]) / 2 - record.residual[i];
+      squares += off * off;
+      ++count;
+    }
+  }
+  return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
+}
+
+namespace {
+
+/// True if a slip force [N] is more than a quarter off the measured half gap [N].
+bool RanAway(double slip_force, double half_gap) {
+  constexpr double kFarthest = 1.25;
+  const double ratio = slip_force / std::abs(half_gap);
+  return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
+}
+
+/// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
+/// of both directions come back, of what does not repeat with them; else what differs between
+/// neighbouring samples.
+double NoiseVariance(const FitResult& result) {
+  double repeats = 0.0;
+  bool comes_back = false;
+  for (const RecordFit& record : result.records) {
+    repeats = std::max(repeats, record.structure.repeatable_share);
+    const auto& [rising, falling] = record.structure.strokes;
+    comes_back = comes_back || (rising > 1 && falling > 1);
+  }
+  return comes_back ? (1 - repeats) * result.rms * result.rms : WhiteVariance(result);
+}
+
+}  // namespace
+
+bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
+  if (!loop::Slides(facts) || !RanAway(with, *facts.half_gap)) return false;
+  const auto distance = [&](double slip_force) {
+    return std::abs(slip_force / *facts.half_gap - 1);
+  };
+  return !(distance(with) < distance(without));
+}
+
+std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options) {
+  constexpr const char* kName = "slip_force";
+  // Below, nothing says that the model does not follow the record.
+  if (result.depth < Depth::kIntervals) return std::nullopt;
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
+      result.response == loop::Channel::kDisplacement || result.is_scaled_by_load() ||
+      options.bounds.contains(kName) || options.fixed.contains(kName)) {
+    return std::nullopt;
+  }
+  const RecordFit& widest = result.WidestRecord();
+  const double peak_force = widest.facts.peak_force / widest.load_ratio;
+  if (!loop::Slides(widest.facts) ||
+      peak_force >= options.thresholds.mobilised_by_asymptote * result.law.slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = options;
+  within.bounds[kName] = {0.0, peak_force};
+  within.start.clear();
+  return within;
+}
+
+double MissedForce(const FitResult& result) {
+  const double explained = result.adequacy.misfit;
+  // The rms includes the readings that a robust loss weighs down.
+  const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
+  if (is_noise || result.outliers > 0) return explained;
+  const double not_white = result.rms * result.rms - WhiteVariance(result);
+  return std::max(explained, std::sqrt(std::max(0.0, not_white)));
+}
 
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force) {
   constexpr double kFollows = 0.3;  // correlation
   return std::abs(ColumnCorrelation(column, fitted_force)) > kFollows;
-}
-
-bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
-  return test.p_value < thresholds.doubt;
 }
 
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
@@ -31,35 +105,12 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
   });
   // Causes that a fit can model come first: the user can try only those.
   std::ranges::stable_partition(
-      causes, [](const DepartureFit& fit) { return !Departures()[fit.departure].group.empty(); });
+      causes, [](const DepartureFit& fit) { return !fit.departure->group.empty(); });
   return causes;
 }
 
-Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes) {
-  Adequacy adequacy;
-  adequacy.misfit_over_noise = test.misfit_over_noise;
-  adequacy.misfit = test.misfit_over_noise * test.noise * data.response_unit();
-  adequacy.p_value = test.p_value;
-  adequacy.tried = test.fits.size();
-  for (const DepartureFit& fit : causes) {
-    const Departure& departure = Departures()[fit.departure];
-    adequacy.causes.push_back(Cause{
-        .code = departure.code,
-        .delta_aicc = fit.delta_aicc,
-        .explains = fit.explains,
-        .term = std::string(fit.covariate ? std::string_view(data.covariates[*fit.covariate].name)
-                                          : departure.group)});
-  }
-  return adequacy;
-}
-
-bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
-  return std::abs(delta_aicc) < thresholds.rival_past;
-}
-
 bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds) {
-  const double size = ScaleOfMisfit(result);
+  const double size = result.MisfitScale();
   const bool is_small =
       result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
@@ -71,10 +122,60 @@ bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds) {
   return strokes > thresholds.noise_memory * std::max(1.0, forgotten * samples);
 }
 
+Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
+                       std::span<const DepartureFit> causes, bool is_limited,
+                       const FitResult& result, const Thresholds& thresholds) {
+  Adequacy adequacy;
+  adequacy.misfit_over_noise = test.misfit_over_noise;
+  adequacy.misfit = test.misfit_over_noise * test.noise * data.response_unit();
+  adequacy.p_value = test.p_value;
+  adequacy.tried = test.fits.size();
+  for (const DepartureFit& fit : causes) {
+    adequacy.causes.push_back(Cause{
+        .code = fit.departure->code,
+        .delta_aicc = fit.delta_aicc,
+        .explains = fit.explains,
+        .term = std::string(fit.covariate ? std::string_view(data.covariates[*fit.covariate].name)
+                                          : fit.departure->group)});
+  }
+  const double noise = NoiseVariance(result);
+  const double square = result.rms * result.rms;
+  // The rms includes the readings that a robust loss weighs down.
+  const bool exceeds_noise =
+      result.outliers == 0 && square > thresholds.above_noise * thresholds.above_noise * noise;
+  if (exceeds_noise) {
+    adequacy.p_value = std::min(adequacy.p_value, thresholds.repeat_chance);
+    if (noise > 0) {
+      adequacy.misfit_over_noise =
+          std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));
+    }
+  }
+  const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
+                           RemembersTooLong(result, thresholds);
+  adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
+  return adequacy;
+}
+
+Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
+  Adequacy adequacy = result.adequacy;
+  const double missed = MissedForce(result);
+  const std::optional<double> half_gap = result.MeasuredHalfGap();
+  adequacy.misfit = missed;
+  adequacy.misfit_over_half_gap.reset();
+  if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
+  const double scale = half_gap ? *half_gap : result.MisfitScale();
+  const double ratio = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
+  const bool is_seen = !FindUnseenLoop(result, thresholds);
+  adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
+                 : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
+                                                                    : Use::kNone;
+  return adequacy;
+}
+
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         MissedForce(result) > thresholds.failing_misfit * ScaleOfMisfit(result);
+         MissedForce(result) > thresholds.failing_misfit * result.MisfitScale();
 }
 
 }  // namespace mindahl::identification

@@ -5,15 +5,36 @@
 #include <vector>
 
 #include "identification/gram/omitted_terms.h"
-#include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/facts.h"
 
+/// Whether a model describes a record, and how large the force is that it misses, against what was
+/// measured without a model: never against a fitted slip force, which may be as wrong as the model.
 namespace mindahl::identification {
 
-/// True if noise hardly makes what all omitted terms explain.
-bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
+/// True if, of a loop that slides, Tc ran away from the half gap that was measured, no nearer than
+/// before: it is more than a quarter off.
+/// @param without  Tc [N] of the smaller model
+/// @param with     of the larger one
+bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
+
+/// Returns the options of a second fit, with a slip force no larger than the largest force, where
+/// the loop slides over most of its stroke and a law that is not adequate carries its slip force
+/// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
+std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& options);
+
+/// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
+/// part that the causes explain or that comes back in every stroke; of others all of them but their
+/// white noise.
+double MissedForce(const FitResult& result);
+
+/// Returns the variance [N² or m²] of the white part of the residuals that count: 2/3 of the mean
+/// square of a residual's distance from the middle of its neighbours (Gasser, Sroka &
+/// Jennen-Steinmetz 1986).
+double WhiteVariance(const FitResult& result);
 
 /// Returns the omitted terms that noise alone does not make, the best first, without those that
 /// another beats clearly.
@@ -22,19 +43,24 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
 /// True if a column follows the force of the fitted model: its factor would take a part of Tc.
 bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force);
 
-/// Returns the misfit, its chance and its causes.
+/// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
+/// what all omitted terms explain, the search ended at a limit of its own, the residuals remember
+/// for too long, or they exceed the noise that the record has without a model: what does not repeat
+/// from stroke to stroke (pure error), or of a single cycle what differs between neighbouring
+/// samples. Tests of columns take a misfit that no column explains for autocorrelated noise.
 /// @param causes  result of CausesOf()
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes);
-
-/// True if the record hardly determines whether the contact was virgin or in a steady loop.
-/// @param delta_aicc  of the two
-bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
+                       std::span<const DepartureFit> causes, bool is_limited,
+                       const FitResult& result, const Thresholds& thresholds);
 
 /// True if residuals are a poor misfit and remember for longer than noise_memory: by their
 /// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
 /// confounded with whatever changes slowly.
 bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds);
+
+/// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use
+/// is judged by T*.
+Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);
 
 /// A misfit that is no noise and as large as failing_misfit, wherever it comes back; or a force in
 /// which no loop is seen.

@@ -10,12 +10,89 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "identification/diagnosis/grade.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
+namespace {
+
+/// Adds the number of the record where there are several.
+Finding OfRecord(std::size_t record, std::size_t records, Finding finding) {
+  if (records > 1) finding.numbers.emplace_back("record", static_cast<double>(record + 1));
+  return finding;
+}
+
+/// Counted as the report does, after smoothing.
+Finding UncertainReversals(const RecordFit& record) {
+  const loop::ReversalGate& gate = record.gate;
+  return {.code = "reversals_uncertain",
+          .numbers = {{"count", static_cast<double>(record.reversals.size())},
+                      {"gate", gate.gate},
+                      {"other_count", static_cast<double>(gate.other_count)},
+                      {"other_gate", gate.other_gate}}};
+}
+
+Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
+  Finding finding{.code = "glitches_left_out",
+                  .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
+                              {"dropouts", static_cast<double>(glitches.dropouts)},
+                              {"held", static_cast<double>(glitches.held)}}};
+  const std::size_t examples = std::min(glitches.total(), glitches.examples.size());
+  for (std::size_t i = 0; i < examples; ++i) {
+    finding.numbers.emplace_back("row", static_cast<double>(glitches.examples[i] + 1));
+  }
+  return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
+                                   loop::Channel excitation) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const RecordFit& record = records[r];
+    const auto append = [&](Finding finding) {
+      findings.push_back(OfRecord(r, records.size(), std::move(finding)));
+    };
+    if (!record.gate.certain) append(UncertainReversals(record));
+    // Noise of a displacement that responds is no part of the path.
+    const bool is_driven = excitation == loop::Channel::kDisplacement;
+    if (is_driven && record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
+      append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
+    }
+    if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
+    if (!record.facts.closed) append({.code = "no_closed_cycle"});
+  }
+  return findings;
+}
+
+std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const bool is_followed = !record.load_ratio.empty();
+    if (!is_followed && record.load_change.empty()) continue;
+    double sum = 0.0;
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] == 0) continue;
+      const double change = is_followed ? record.load_ratio[i] - 1 : record.load_change[i];
+      sum += change;
+      squares += change * change;
+      ++count;
+    }
+    // The mean of a load of either sign differs from that of its magnitude.
+    const double mean = sum / std::max(count, 1.0);
+    const double variance = squares / std::max(count, 1.0) - mean * mean;
+    findings.push_back(OfRecord(
+        r, data.records.size(),
+        {.code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
+         .numbers = {{"variation", std::sqrt(2 * std::max(variance, 0.0))}}}));
+  }
+  return findings;
+}
 
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
   if (local.null.empty()) return std::nullopt;
@@ -51,22 +128,21 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   return findings;
 }
 
-std::optional<Finding> FindContradictedPrior(const FitResult& result,
-                                             const Thresholds& thresholds) {
+std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitOptions& options) {
   Finding finding{.code = "prior_contradicted"};
   double farthest = 0.0;
-  for (const ParameterEstimate& estimate : result.parameters) {
-    if (!estimate.prior || !estimate.without_priors || !estimate.without_priors->standard_error) {
-      continue;
-    }
-    const auto& [prior, uncertainty] = *estimate.prior;
-    const auto& [value, error] = *estimate.without_priors;
-    const Term* term = FindTerm(TermNameOf(estimate.name), result.response);
+  for (const ParameterEstimate& estimate : without.parameters) {
+    const auto given = options.priors.find(estimate.name);
+    if (given == options.priors.end() || !estimate.standard_error) continue;
+    const auto& [prior, uncertainty] = given->second;
+    const double value = estimate.value;
+    const double error = *estimate.standard_error;
+    const Term* term = FindTerm(TermNameOf(estimate.name), without.response);
     const bool is_positive = term != nullptr && term->positive;
     const double distance =
-        is_positive ? std::log(value / prior) / std::hypot(*error / value, uncertainty / prior)
-                    : (value - prior) / std::hypot(*error, uncertainty);
-    if (!(std::abs(distance) > thresholds.prior_distance)) continue;
+        is_positive ? std::log(value / prior) / std::hypot(error / value, uncertainty / prior)
+                    : (value - prior) / std::hypot(error, uncertainty);
+    if (!(std::abs(distance) > options.thresholds.prior_distance)) continue;
     finding.parameters.push_back(estimate.name);
     farthest = std::max(farthest, std::abs(distance));
   }
@@ -113,11 +189,10 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 namespace {
 
 /// True if a record of two strokes ends where it began, in both channels: one closed cycle.
-bool IsOneCycle(const ScaledRecord& record) {
-  constexpr double kSame = 0.02;  // of the range
-  const auto returns = [](std::span<const double> values) {
+bool IsOneCycle(const ScaledRecord& record, const Thresholds& thresholds) {
+  const auto returns = [&](std::span<const double> values) {
     const auto [lowest, highest] = std::ranges::minmax(values);
-    return std::abs(values.back() - values.front()) <= kSame * (highest - lowest);
+    return std::abs(values.back() - values.front()) <= thresholds.one_cycle * (highest - lowest);
   };
   return record.reversals.size() == 1 && returns(record.displacement) && returns(record.force);
 }
@@ -129,7 +204,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    if (record.reversals.size() >= 2 || IsOneCycle(record)) return std::nullopt;
+    if (record.reversals.size() >= 2 || IsOneCycle(record, thresholds)) return std::nullopt;
     const std::size_t offset = problem.parameters.PositionOfOrigin(r);
     is_assumed = is_assumed || problem.parameters[offset].assumed;
     if (problem.parameters[offset].assumed) continue;
@@ -229,28 +304,23 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
-  constexpr double kSamePlace = 0.005;  // of the range: closer samples say the same
   std::size_t places = 0;
   std::size_t samples = 0;
   for (const ScaledRecord& record : problem.data->records) {
+    const std::span<const double> excitation = record.excitation();
+    const std::vector<double> direction = DirectionsOf(excitation, record.reversals);
     std::array<std::vector<double>, 2> ways;  // down, up
-    std::size_t turn = 0;
     for (std::size_t i = 0; i < record.size(); ++i) {
-      while (turn < record.reversals.size() && record.reversals[turn] < i) ++turn;
       const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
       if (record.counts[i] == 0 || is_inserted) continue;
-      const std::size_t end =
-          turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
-      const std::size_t begin = turn > 0 ? record.reversals[turn - 1] : 0;
-      const std::span<const double> excitation = record.excitation();
-      ways[excitation[end] > excitation[begin] ? 1 : 0].push_back(excitation[i]);
+      ways[direction[i] > 0 ? 1 : 0].push_back(excitation[i]);
       ++samples;
     }
     for (std::vector<double>& way : ways) {
       std::ranges::sort(way);
       double last = -std::numeric_limits<double>::infinity();
       for (const double place : way) {
-        if (place - last <= 2 * kSamePlace) continue;  // the range is 2 in units of the data
+        if (place - last <= thresholds.same_place) continue;
         ++places;
         last = place;
       }

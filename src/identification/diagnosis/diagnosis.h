@@ -1,20 +1,33 @@
 #pragma once
 
 #include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "identification/inference/local.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
 
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
+
+/// Reversals that are not certain, glitches that are left out, a way that is longer than the
+/// strokes of a motion that is imposed, and that no cycle is closed: whatever is fitted. Numbers of
+/// a record count from 1.
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
+                                   loop::Channel excitation = loop::Channel::kDisplacement);
+
+/// `load_followed` where the normal load varies within a record and the law knows it,
+/// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's
+/// standard deviation over its mean, and record of several.
+std::vector<Finding> FindVaryingLoads(const ScaledRecords& data);
 
 /// Parameters on which, alone or combined, the records do not depend.
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local);
@@ -23,7 +36,8 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
 std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 
 /// `prior_contradicted`: parameters whose prior lies far from what the records say without it.
-std::optional<Finding> FindContradictedPrior(const FitResult& result, const Thresholds& thresholds);
+/// @param without  the fit without priors
+std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitOptions& options);
 
 /// Closed intervals too wide to call a parameter known, of those that no other finding calls
 /// unknown.

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "identification/inference/estimates.h"
 #include "identification/intervals.h"
 #include "identification/problem/problem.h"
@@ -13,23 +10,6 @@
 /// Intervals of a fit whose model misses something that comes back in every stroke: such an error
 /// does not average out, however many samples there are, and its size is that of the record.
 namespace mindahl::identification {
-
-/// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
-/// record, whole cycles that follow on each other: √((1 − f)²/f·Σ(θ₋ₖ − θ̄)²/(n − 1)), the jackknife
-/// of n parts that have a fraction f of the samples each, each θ₋ₖ by one linear step of all free
-/// parameters. What the model misses in the same way in every cycle is not in them.
-/// @returns none of fewer than three cycles, or where the rest does not determine them
-std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
-                                        const Thresholds& thresholds);
-
-/// The stiffness of the record after its reversals over that of the model: slopes of least squares,
-/// each stroke with an intercept of its own, over the places where the model's force has changed by
-/// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
-/// reversal itself, the line through the first two of these and the parabola through all,
-/// and the square of the narrowest window's.
-/// @returns those of windows that have two samples a stroke or more
-std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
-                                       const Thresholds& thresholds);
 
 /// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
 /// where the measured loop slides over most of its stroke or reaches slip: it becomes the union of
@@ -43,7 +23,7 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Threshold
                                     const FitResult& result);
 
 /// Returns the estimates with their repeat_error: the standard error where the model is adequate,
-/// else of ErrorsBetweenCycles().
+/// else from leaving out one part of the record's cycles after the other.
 ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
                                     const FitResult& result);
 

@@ -15,9 +15,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Each column is paid for by so many samples, or it is not looked for.
-constexpr std::size_t kSamplesAColumn = 8;
-
 /// Noise of the residuals, where it is asked of their products: what no column explains.
 struct NoiseLevel {
   double variance = 0.0;  // of a weighted residual
@@ -82,13 +79,9 @@ std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
 }
 
 /// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
-DepartureFit FitOf(const Gram& gram, const DepartureColumns& departures,
-                   std::span<const Eigen::Index> places, const GramAxes& axes,
+DepartureFit FitOf(const Gram& gram, const OmittedTerm& term, const GramAxes& axes,
                    const NoiseLevel& noise, const Evidence& evidence, double limit) {
-  const auto first = static_cast<std::size_t>(places[0]);
-  const std::size_t own = departures.of.size() - departures.covariates.size();
-  DepartureFit fit{.departure = departures.of[first]};
-  if (first >= own) fit.covariate = departures.covariates[first - own];
+  DepartureFit fit{.departure = term.departure, .covariate = term.covariate};
   const auto columns = static_cast<double>(axes.values.size());
   const double f = (axes.coefficients.square() / axes.noise).mean() / noise.variance;
   fit.p_value = f > 0 ? PValueOfF(f, columns, noise.degrees) : 1.0;
@@ -112,11 +105,11 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
-  const std::size_t most = (data.counted - problem.parameters.free().size()) / kSamplesAColumn;
+  const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
   const DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, response, most);
-  if (departures.of.empty()) return {};
+  if (departures.terms.empty()) return {};
   Gram gram(jacobian, departures.columns, residual);
-  std::vector<Eigen::Index> all(departures.of.size());
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(departures.columns.cols()));
   std::iota(all.begin(), all.end(), Eigen::Index{0});
   GramAxes axes = gram.AxesOf(all);
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
@@ -131,8 +124,8 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   }
   AdequacyTest test;
   const auto own = static_cast<double>(axes.values.size());
-  test.effective_samples = samples / std::max(1.0, process.SquaredCorrelations());
-  test.degrees_of_freedom = std::max(1.0, test.effective_samples - law - own);
+  const double effective_samples = samples / std::max(1.0, process.SquaredCorrelations());
+  test.degrees_of_freedom = std::max(1.0, effective_samples - law - own);
   // A fit absorbs more of correlated noise than the number of its parameters.
   const double absorbed = std::min(gram.absorbed() + axes.noise.sum(), samples / 2);
   const NoiseLevel level{
@@ -149,16 +142,11 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   test.step = ValuesOf(step.law);
   test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
 
-  const Evidence evidence(data.counted, test.effective_samples);
-  for (std::size_t group = 0; group < departures.groups; ++group) {
-    std::vector<Eigen::Index> places;
-    for (std::size_t c = 0; c < departures.group.size(); ++c) {
-      if (departures.group[c] == group) places.push_back(static_cast<Eigen::Index>(c));
-    }
-    const GramAxes of_term = gram.AxesOf(places);
+  const Evidence evidence(data.counted, effective_samples);
+  for (const OmittedTerm& term : departures.terms) {
+    const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
-    test.fits.push_back(
-        FitOf(gram, departures, places, of_term, level, evidence, thresholds.cause));
+    test.fits.push_back(FitOf(gram, term, of_term, level, evidence, thresholds.cause));
   }
   return test;
 }

@@ -16,7 +16,7 @@ namespace mindahl::identification {
 /// Predicts the fit with one omitted term added, by one linear step; only the p-value of a term
 /// that noise may well have made.
 struct DepartureFit {
-  std::size_t departure = 0;                  // its place in Departures()
+  const Departure* departure = nullptr;       // one of Departures()
   std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
   double p_value = 1.0;                       // that noise alone makes it
   double delta_aicc = 0.0;                    // against the fit without
@@ -32,7 +32,6 @@ struct AdequacyTest {
   double p_value = 1.0;             // of τ = 0, by the ratio of likelihoods
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
-  double effective_samples = 1.0;   // of it
   std::vector<double> step;         // E(δ), one a free parameter
   std::vector<double> error;        // standard deviation of δ, γ integrated out
   std::vector<DepartureFit> fits;   // of each term that the record can identify

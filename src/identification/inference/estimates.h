@@ -54,12 +54,9 @@ class Estimates {
   [[nodiscard]] double HalfWidth(std::size_t parameter) const {
     return quantile_ * ErrorOfTheta(parameter);
   }
-  [[nodiscard]] double confidence() const { return confidence_; }
   /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
-  /// Returns the variance of a weighted residual from which errors are computed.
-  [[nodiscard]] double variance() const { return variance_; }
 
  private:
   [[nodiscard]] const LocalUncertainty& LocalOf(std::size_t parameter) const;

@@ -207,16 +207,16 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
          2 * k * (k + 1) / std::max(samples_ - k - 1, 1.0);
 }
 
+std::size_t CountedSamplesOf(const ScaledRecord& record) {
+  return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+}
+
 namespace {
 
 struct RecordVariance {
   double variance = 0.0;
   double degrees_of_freedom = 0.0;
 };
-
-std::size_t CountedSamplesOf(const ScaledRecord& record) {
-  return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
-}
 
 RecordVariance VarianceOf(const Problem& problem, std::size_t r, std::span<const double> residual) {
   const ScaledRecord& record = problem.data->records[r];
@@ -235,6 +235,10 @@ RecordVariance VarianceOf(const Problem& problem, std::size_t r, std::span<const
 }
 
 }  // namespace
+
+bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares) {
+  return std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted)) < kOnlyRounding;
+}
 
 double ParametersOfRecord(const Problem& problem, std::size_t r) {
   double own = 0.0;

@@ -75,8 +75,6 @@ class Evidence {
   /// Takes the sample size over the variance inflation from autocorrelation.
   explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
 
-  [[nodiscard]] double effective() const { return effective_; }
-
   /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
   /// sums that are both no less than rounding errors leave.
   [[nodiscard]] double LikelihoodRatio(double held, double free) const;
@@ -97,6 +95,10 @@ class Evidence {
   double effective_;
 };
 
+/// True if the residuals are rounding errors: they are no noise, are autocorrelated as they like,
+/// and nothing is to be learnt from what they look like.
+bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares);
+
 /// Bartlett's test that the residuals of all records have one variance: Σν_r·ln(s²/s_r²) against χ²
 /// of one degree less than records, ν_r each record's effective samples less its parameters. A
 /// record with few of them has no say.
@@ -104,6 +106,9 @@ class Evidence {
 /// @returns the chance that noise of one variance makes them so unlike; 1 of one record, and where
 ///   residuals are rounding errors
 double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual);
+
+/// Returns the number of samples that count.
+std::size_t CountedSamplesOf(const ScaledRecord& record);
 
 /// Parameters that a record takes up: its own, and its part of the contact's by its samples.
 double ParametersOfRecord(const Problem& problem, std::size_t record);

@@ -128,10 +128,9 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
   return is_bound && !by_shape && !IsSearchLimit(of, side) ? std::optional(limit) : std::nullopt;
 }
 
-/// True if a slip force of twenty times the largest force, which is about 1, is not excluded.
+/// True if a slip force far above the largest force, which is about 1, is not excluded.
 bool IsOpenAbove(HeldParameter& held, const FittedProblem& fitted, const Thresholds& thresholds) {
-  constexpr double kFar = 20.0;
-  const double far = std::log(kFar);
+  const double far = std::log(thresholds.far_slip_force);
   const Parameter& of = fitted.problem.parameters[kSlipForce];
   if (far > of.upper || far < fitted.solution.theta[kSlipForce]) return false;
   return held.At(far, Continue(fitted.problem, fitted.solution.theta, kSlipForce, far)) <
@@ -145,7 +144,7 @@ bool IsOpenAbove(HeldParameter& held, const FittedProblem& fitted, const Thresho
 double CarriedForce(const Problem& problem, const FitResult& result) {
   const double peak_force = result.PeakForce();
   if (problem.data->is_forced() || result.records.empty()) return peak_force;
-  if (IsScaledByLoad(result)) return 0.0;
+  if (result.is_scaled_by_load()) return 0.0;
   const RecordFit& widest = result.WidestRecord();
   if (widest.fitted_force.empty()) return peak_force;
   const auto [low, high] = std::ranges::minmax(widest.fitted_force);
@@ -159,13 +158,14 @@ double CarriedForce(const Problem& problem, const FitResult& result) {
   return std::min(peak_force, carried / widest.load_ratio);
 }
 
-}  // namespace
-
+/// True if the parabola's interval of a logarithm, or of α, is too wide for a parabola.
 bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter,
                   const Thresholds& thresholds) {
   return !(fitted.estimates.HalfWidth(parameter) <= thresholds.parabola_error);
 }
 
+/// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
+/// is badly known, and where the likelihood at the ends of the parabola's interval is another one.
 bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
                   SearchBuffers& buffers) {
   const auto& [problem, best, noise, estimates] = fitted;
@@ -189,6 +189,25 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   });
 }
 
+/// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
+std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult& result,
+                                    const FitOptions& options, SearchBuffers& buffers) {
+  const bool slips =
+      result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
+  const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
+  if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, buffers) ||
+      NeedsProfile(fitted, kRig, options, buffers)) {
+    return {kStiffness, kShape, kSlipForce, kRig};
+  }
+  // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
+  // parabola is wrong.
+  const bool only_rounding = LeavesOnlyRounding(fitted.problem, fitted.solution.sum_of_squares);
+  if (!IsBadlyKnown(fitted, kStiffness, options.thresholds) && !only_rounding) return {};
+  return {kStiffness};
+}
+
+}  // namespace
+
 Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
              SearchBuffers& buffers) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
@@ -206,11 +225,11 @@ Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOption
   return ends;
 }
 
-ParameterEstimates WithProfiles(const FittedProblem& fitted, std::span<const std::size_t> profiled,
-                                const FitOptions& options, SearchBuffers& buffers,
-                                ParameterEstimates parameters) {
+ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
+                                const FitOptions& options, SearchBuffers& buffers) {
+  ParameterEstimates parameters = result.parameters;
   const double quantile = fitted.estimates.quantile();
-  for (const std::size_t p : profiled) {
+  for (const std::size_t p : ProfiledOf(fitted, result, options, buffers)) {
     if (fitted.problem.parameters[p].fixed || fitted.problem.parameters[p].absent) continue;
     const auto& reported = fitted.problem.parameters.reported();
     const auto k = static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin());
@@ -228,7 +247,10 @@ ParameterEstimates WithProfiles(const FittedProblem& fitted, std::span<const std
   // Where α reaches its bound, the likelihood does not determine the lower end either.
   const bool by_bound = parameters[kShape].status == ParameterStatus::kAtUpperBound;
   if (by_bound) SetInterval(slip_force, {.lower = 0.0});
-  if (parameters[kShape].status != ParameterStatus::kFixed) OpenAbove(parameters[kShape]);
+  ParameterEstimate& shape = parameters[kShape];
+  if (shape.status == ParameterStatus::kFixed) return parameters;
+  SetInterval(shape, {.lower = shape.lower95});
+  shape.standard_error.reset();
   return parameters;
 }
 
@@ -237,7 +259,9 @@ ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult&
   const bool is_open = slip_force.lower95 && !slip_force.upper95;
   if (!is_open || slip_force.status == ParameterStatus::kFixed) return slip_force;
   const double carried = CarriedForce(problem, result);
-  if (carried < slip_force.value) RaiseLowerEnd(slip_force, carried);
+  if (carried < slip_force.value && *slip_force.lower95 < carried) {
+    SetInterval(slip_force, {.lower = carried});
+  }
   return slip_force;
 }
 

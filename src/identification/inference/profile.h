@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
 #include "identification/inference/estimates.h"
 #include "identification/intervals.h"
@@ -16,14 +15,6 @@
 /// and k share another, which bends towards the rigid rig.
 namespace mindahl::identification {
 
-/// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
-/// is badly known, and where the likelihood at the ends of the parabola's interval is another one.
-bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
-                  SearchBuffers& buffers);
-
-/// True if the parabola's interval of a logarithm, or of α, is too wide for a parabola.
-bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter, const Thresholds& thresholds);
-
 /// Returns the ends of the interval of a parameter, where F of the best fit against those with it
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
@@ -31,11 +22,12 @@ bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter, const Thre
 Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
              SearchBuffers& buffers);
 
-/// Returns the estimates with the intervals of some of σ, α, Tc and a fitted rig by the likelihood;
-/// a standard error that was too small follows. Where Tc is open above, so is α.
-ParameterEstimates WithProfiles(const FittedProblem& fitted, std::span<const std::size_t> profiled,
-                                const FitOptions& options, SearchBuffers& buffers,
-                                ParameterEstimates parameters);
+/// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig of
+/// which the parabola may be wrong: of a loop that hardly slips, at a bound, where they are badly
+/// known, and where the likelihood at the parabola's ends is another one. A standard error that was
+/// too small follows. Where Tc is open above, so is α.
+ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
+                                const FitOptions& options, SearchBuffers& buffers);
 
 /// Returns Tc, a limit of which is no less than the force that the contact is seen to carry, unless
 /// the fit is too poor to say.

@@ -108,9 +108,8 @@ DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& pro
 namespace {
 
 constexpr int kMostRounds = 50;
-constexpr double kSettled = 1e-4;  // rms change of the forces, over the noise: a valley has no end
-constexpr double kHarmless =
-    1e-2;  // what goes on for ever moves the forces by less, and matters not
+constexpr double kSettled = 1e-4;   // rms change of the forces, over the noise: a valley has no end
+constexpr double kHarmless = 1e-2;  // likewise, of what goes on for ever: it matters not
 
 /// ψ(z)/z and ψ'(z).
 struct Influence {
@@ -183,7 +182,7 @@ class Weighting {
       SetNoiseOfRecords(residual, from_displacement, loss, noise);
     } else {
       noise.force = known ? *known / data_.response_unit()
-                          : ForceNoise(residual, from_displacement, loss, {0, residual.size()},
+                          : ForceNoise(residual, from_displacement, loss, 0, residual.size(),
                                        static_cast<double>(data_.counted) / degrees_);
     }
     // Weighted residuals have the variance of those where the loop is flat.
@@ -221,17 +220,12 @@ class Weighting {
   /// Scale of the weighted residuals, for a loss of them over it [units of the data].
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// The weights of all samples' residuals, root and all.
-  void Copy(std::vector<double>& weights) const {
-    weights.clear();
-    for (const ScaledRecord& record : data_.records) {
-      weights.insert(weights.end(), record.root_weight.begin(), record.root_weight.end());
-    }
-  }
-  /// Moves only a fraction of the distance from the last weights.
-  void GoOnlyPartOfTheWay(std::span<const double> last, double share) {
-    ForEachWeight(
-        [&](std::size_t i, double& weight) { weight = last[i] + share * (weight - last[i]); });
+  /// Moves only a fraction of the distance from the last weights, which become those of now.
+  void GoPartOfTheWay(std::span<double> last, double share) {
+    ForEachWeight([&](std::size_t i, double& weight) {
+      if (share < 1) weight = last[i] + share * (weight - last[i]);
+      last[i] = weight;
+    });
   }
 
   /// True if the last weights leave no sample of any weight.
@@ -257,15 +251,11 @@ class Weighting {
     std::size_t begin = 0;
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const std::size_t end = begin + data_.records[r].size();
-      samples.push_back(
-          static_cast<double>(std::count_if(counts_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                            counts_.begin() + static_cast<std::ptrdiff_t>(end),
-                                            [](unsigned char counts) { return counts != 0; })));
+      samples.push_back(static_cast<double>(CountedSamplesOf(data_.records[r])));
       const double left = std::max(samples.back() - ParametersOfRecord(problem_, r), 1.0);
-      noise.of_records.push_back(
-          samples.back() > 0
-              ? ForceNoise(residual, from_displacement, loss, {begin, end}, samples.back() / left)
-              : 0.0);
+      noise.of_records.push_back(samples.back() > 0 ? ForceNoise(residual, from_displacement, loss,
+                                                                 begin, end, samples.back() / left)
+                                                    : 0.0);
       largest = std::max(largest, noise.of_records.back());
       begin = end;
     }
@@ -278,22 +268,18 @@ class Weighting {
     noise.force = std::sqrt(squares / static_cast<double>(data_.counted));
   }
 
-  struct SampleRange {
-    std::size_t begin;
-    std::size_t end;
-  };
-
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
   /// displacement determine it. Where outliers are expected, that for which the standardised
   /// residuals have the median of normal ones. Bisection.
   /// @param samples_a_degree  samples over degrees of freedom
   [[nodiscard]] double ForceNoise(const std::vector<double>& residual,
                                   const std::vector<double>& from_displacement, Loss loss,
-                                  SampleRange range, double samples_a_degree) const {
+                                  std::size_t begin, std::size_t end,
+                                  double samples_a_degree) const {
     std::vector<double> standardised;
     const auto excess = [&](double variance) {
       standardised.clear();
-      for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (std::size_t i = begin; i < end; ++i) {
         if (counts_[i] != 0) {
           standardised.push_back(residual[i] / std::sqrt(variance + from_displacement[i]));
         }
@@ -302,7 +288,7 @@ class Weighting {
       double squares = 0.0;
       double precisions = 0.0;
       std::size_t k = 0;
-      for (std::size_t i = range.begin; i < range.end; ++i) {
+      for (std::size_t i = begin; i < end; ++i) {
         if (counts_[i] == 0) continue;
         const double precision = 1 / (variance + from_displacement[i]);
         squares += standardised[k] * standardised[k] * precision;
@@ -312,7 +298,7 @@ class Weighting {
       return samples_a_degree * squares / precisions - 1;
     };
     double high = kRoundingRms * kRoundingRms;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       high = std::max(high, 2 * residual[i] * residual[i]);
     }
     double low = kRoundingRms * kRoundingRms;
@@ -407,16 +393,16 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
   std::vector<double> last_force(problem.size());
-  std::vector<double> last_weight;
+  std::vector<double> last_weight(problem.size());
   response.Bind(problem);
   Predict(problem, solution.theta, response, last_force);
   std::vector<double> force(problem.size());
-  double last_change = std::numeric_limits<double>::infinity();
+  double change = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
-    noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
-    if (weighting.is_lost()) return false;
     const Loss loss = first_huber ? Loss::kHuber : options.loss;
+    noise = weighting.Update(loss, solution.theta, response);
+    if (weighting.is_lost()) return false;
     if (loss != Loss::kNone) {
       weighting.UseWeightsWithoutLoss();
       SolveRobustly(problem, loss, weighting.scale(), solver_options, solution);
@@ -425,10 +411,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
       if (weighting.is_lost()) return false;
     } else {
       // Weights and forces that chase each other meet at the weights' mean.
-      if (round >= kHuberRounds) {
-        weighting.GoOnlyPartOfTheWay(last_weight, 1.0 / (round - kHuberRounds + 2));
-      }
-      weighting.Copy(last_weight);
+      weighting.GoPartOfTheWay(last_weight, 1.0 / std::max(round - kHuberRounds + 2, 1));
       const std::vector<double> start = solution.theta;
       solver.Bind(problem, response);
       solver.Solve(start, solver_options, solution);
@@ -440,8 +423,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
       squares += (force[i] - last_force[i]) * (force[i] - last_force[i]);
     }
     std::swap(force, last_force);
-    const double change = std::sqrt(squares / static_cast<double>(force.size()));
-    last_change = change;
+    change = std::sqrt(squares / static_cast<double>(force.size()));
     const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) {
       FillResidual(problem, response, solution);
@@ -450,7 +432,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     if (settled && first_huber) round = kHuberRounds - 1;
   }
   FillResidual(problem, response, solution);
-  return last_change < kHarmless * std::max(noise.force, kRoundingRms);
+  return change < kHarmless * std::max(noise.force, kRoundingRms);
 }
 
 }  // namespace mindahl::identification

@@ -1,29 +1,11 @@
 #include "identification/judge/judge.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string_view>
 #include <utility>
 
 #include "identification/intervals.h"
 
 namespace mindahl::identification {
-namespace {
-
-/// Returns the worst verdict on a parameter of the findings that name it.
-Identifiability VerdictOn(std::string_view parameter, std::span<const Finding> findings) {
-  Identifiability worst = Identifiability::kIdentifiable;
-  for (const Finding& finding : findings) {
-    const bool is_named =
-        std::ranges::find(finding.parameters, parameter) != finding.parameters.end();
-    if (is_named) worst = std::max(worst, finding.code.row().verdict);
-  }
-  return worst;
-}
-
-}  // namespace
-
 FitResult WithoutInadequate(FitResult result) {
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   // Omitted terms are taken to first order, here of a curve that is none of the record's.
@@ -57,7 +39,12 @@ void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> find
     } else if (!estimate.upper95) {
       worsen(Identifiability::kBoundedBelow);
     }
-    worsen(VerdictOn(estimate.name, findings));
+    for (const Finding& finding : findings) {
+      const auto& named = finding.parameters;
+      if (std::ranges::find(named, estimate.name) != named.end()) {
+        worsen(finding.code.row().verdict);
+      }
+    }
   }
 }
 

@@ -52,9 +52,12 @@ constexpr std::array kTable = {
                  "α does not count as known if its 95 % interval is wider",
                  "0 to 1 contains Jenkins', Mindlin's and Dahl's exponents alike"},
     ThresholdRow{"open_slip_force", &Thresholds::open_slip_force, "2 ln Λ",
-                 "a slip force of twenty times the largest force is not excluded if it costs less",
+                 "a slip force of far_slip_force is not excluded if it costs less",
                  "five standard errors: by the 95 % test alone one loop in twenty far from slip "
                  "would pass for one that slips"},
+    ThresholdRow{"far_slip_force", &Thresholds::far_slip_force, "of the largest force",
+                 "a slip force that is not excluded here leaves the interval of Tc open",
+                 "the loop is then that of an elastic contact, to a twentieth of its force"},
     ThresholdRow{"parabola_error", &Thresholds::parabola_error, "half interval of ln Tc",
                  "above it the likelihood is profiled, not approximated by a parabola",
                  "exp(0.1) − 1 differs from 0.1 by a twentieth, and so do the ends of the "
@@ -80,9 +83,16 @@ constexpr std::array kTable = {
     ThresholdRow{"doubt", &Thresholds::doubt, "p",
                  "residuals that noise alone makes less often are not noise alone",
                  "one adequate loop in two hundred is doubted"},
+    ThresholdRow{"above_noise", &Thresholds::above_noise, "rms over noise",
+                 "larger residuals are not noise, whatever the tests of omitted terms say",
+                 "noise by pure error or by neighbours is known to a few per cent: half as much "
+                 "again is what no column explains"},
+    ThresholdRow{"samples_a_column", &Thresholds::samples_a_column, "samples",
+                 "columns of omitted terms are looked for if so many samples pay for each",
+                 "with fewer the columns together explain much of any noise"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "an omitted term that noise alone makes less often is a cause",
-                 "23 are tried, so one loop in forty has one by chance"},
+                 "22 are tried, so one loop in forty has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "intervals also include causes that explain at least this much",
                  "omitted terms are tried to first order: the better of two imperfect models need "
@@ -91,13 +101,25 @@ constexpr std::array kTable = {
                  "a poor misfit whose residuals stay correlated for longer is not taken for noise",
                  "within half a stroke the force passes through the whole law: noise of that "
                  "length cannot be distinguished from a misfit"},
-    ThresholdRow{"rival_past", &Thresholds::rival_past, "ΔAICc",
-                 "one record of several is virgin, or steady, unlike the others if it gains more",
-                 "evidence of e⁵ = 150 to 1: the two differ in a few samples only, where a single "
-                 "odd reading decides"},
+    ThresholdRow{"undecided", &Thresholds::undecided, "ΔAICc",
+                 "Masing's law and Dahl's own, and a record of several that is virgin or steady "
+                 "unlike the others, are not distinguished if they differ by less",
+                 "evidence of e⁵ = 150 to 1: initial states differ in a few samples only, where a "
+                 "single odd reading decides, and what either law misses of a real loop can be "
+                 "worth less"},
     ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
                  "if every cycle samples fewer, σ and α are not identifiable",
                  "four each for σ, α, Tc and for where the motion turns between them"},
+    ThresholdRow{"same_place", &Thresholds::same_place, "of X",
+                 "samples of the loop that are closer are at the same place",
+                 "the force then differs by a hundredth of σX at most"},
+    ThresholdRow{"one_cycle", &Thresholds::one_cycle, "of the range",
+                 "a record of two strokes that ends this near to its beginning, in both channels, "
+                 "is a closed cycle",
+                 "a step of 300 samples a cycle is as long, and noise of one per cent"},
+    ThresholdRow{"starts_inside", &Thresholds::starts_inside, "of the range",
+                 "a record that starts nearer to the end of its strokes has turned there",
+                 "a virgin curve that is cut shorter shows no difference from a steady loop"},
     ThresholdRow{"starts_unloaded", &Thresholds::starts_unloaded, "of X",
                  "a contact unloaded this near to the first sample was unloaded before it",
                  "the end of a record counts as a turning point within the same distance"},
@@ -108,10 +130,6 @@ constexpr std::array kTable = {
                  "strokes that are wider by less have the same amplitude",
                  "Masing's and Dahl's loops of the two amplitudes, with one σ and Tc, then differ "
                  "by less than 0.3 % of Tc"},
-    ThresholdRow{"rival_law", &Thresholds::rival_law, "ΔAICc",
-                 "Masing's law and Dahl's own are not distinguished if they differ by less",
-                 "evidence of e⁵ = 150 to 1, as for the initial states: what either law misses of "
-                 "a real loop can be worth less"},
     ThresholdRow{
         "seen_loop", &Thresholds::seen_loop, "R²",
         "a loop that explains less of the force is not seen, and no parameter is given",

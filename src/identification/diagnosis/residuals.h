@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+#include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+
+namespace mindahl::identification {
+
+/// A stroke about as long as the record's longest.
+struct MainStroke {
+  std::size_t begin = 0;
+  std::size_t end = 0;  // the sample where it ends
+  bool rises = false;
+};
+
+/// Returns the strokes that are no shorter than `main_stroke` of the longest.
+std::vector<MainStroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
+
+/// Describes the residuals that count; differences are taken within a record. Effective samples and
+/// degrees of freedom, which need the noise, are left at 0.
+/// @param measured  of each record, every sample
+ResidualStatistics DescribeResiduals(std::span<const RecordFit> records,
+                                     std::span<const std::span<const double>> measured);
+
+/// Makes a one-way analysis of variance of a record's residuals over 20 parts of each main stroke.
+/// @param residual  of the record's samples, in any unit
+ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
+                                    const Thresholds& thresholds);
+
+}  // namespace mindahl::identification
