@@ -70,34 +70,28 @@ T ReducedStiffness(const SweepOptions& options, const T& sigma, const T& alpha, 
   return (slips && !options.over_force ? T(1.0) : T(-expm1(log_rest))) / x;
 }
 
-class SweepResiduals {
- public:
-  SweepResiduals(std::span<const double> amplitude, std::span<const double> response,
-                 const SweepOptions& options, double scale)
-      : amplitude_(amplitude), response_(response), options_(options), scale_(scale) {}
-
+struct SweepResiduals {
   template <typename T>
   bool operator()(const T* log_sigma, const T* alpha, const T* log_slip_force, T* residuals) const {
     using std::exp;
     const T sigma = exp(*log_sigma);
     const T slip_force = exp(*log_slip_force);
-    for (std::size_t i = 0; i < amplitude_.size(); ++i) {
-      T stiffness = sigma * ReducedStiffness(options_, sigma, *alpha, slip_force, amplitude_[i]);
-      if (options_.is_compliance) {
+    for (std::size_t i = 0; i < amplitude.size(); ++i) {
+      T stiffness = sigma * ReducedStiffness(options, sigma, *alpha, slip_force, amplitude[i]);
+      if (options.is_compliance) {
         constexpr double kLeast = 1e-9;  // of σ: a compliance that is not infinite
         if (stiffness < kLeast * sigma) stiffness = kLeast * sigma;
         stiffness = 1.0 / stiffness;
       }
-      residuals[i] = (stiffness - response_[i]) / scale_;
+      residuals[i] = (stiffness - response[i]) / scale;
     }
     return true;
   }
 
- private:
-  std::span<const double> amplitude_;
-  std::span<const double> response_;
-  const SweepOptions& options_;
-  double scale_;
+  std::span<const double> amplitude;
+  std::span<const double> response;
+  const SweepOptions& options;
+  double scale;
 };
 
 struct Solved {
@@ -145,9 +139,12 @@ class SweepProblem {
   /// True at a bound of the search, and not at one of the law: α = 0, and over forces the least Tc.
   [[nodiscard]] bool IsAtSearchBound(std::size_t k, double value) const {
     constexpr double kNearBoundOfSweep = 1e-6;
-    const bool is_law_below = k == 1 || (k == 2 && options_.over_force);
     return value >= upper_[k] - kNearBoundOfSweep ||
-           (!is_law_below && value <= lower_[k] + kNearBoundOfSweep);
+           (!IsLawBelow(k) && value <= lower_[k] + kNearBoundOfSweep);
+  }
+  /// True if the lower bound is the law's, not the search's.
+  [[nodiscard]] bool IsLawBelow(std::size_t k) const {
+    return k == 1 || (k == 2 && options_.over_force);
   }
 
   /// Returns the best fit from nine starts.
@@ -172,13 +169,11 @@ class SweepProblem {
     if (held) start[*held] = value;
     ceres::Problem problem;
     AddResiduals(start, problem);
-    bool any_free = false;
     for (std::size_t k = 0; k < start.size(); ++k) {
       if (fixed_[k] || k == held) {
         problem.SetParameterBlockConstant(&start[k]);
         continue;
       }
-      any_free = true;
       problem.SetParameterLowerBound(&start[k], 0, lower_[k]);
       problem.SetParameterUpperBound(&start[k], 0, upper_[k]);
     }
@@ -189,22 +184,12 @@ class SweepProblem {
     solver.parameter_tolerance = 1e-12;
     solver.gradient_tolerance = 1e-16;
     solver.max_num_iterations = 200;
-    Solved solved;
-    if (any_free) {
-      ceres::Solver::Summary summary;
-      ceres::Solve(solver, &problem, &summary);
-      solved.converged = summary.termination_type == ceres::CONVERGENCE;
-      solved.message = summary.message;
-      solved.sum_of_squares = 2 * summary.final_cost;
-    } else {
-      double cost = 0.0;
-      problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-      solved.converged = true;
-      solved.message = "nothing is free";
-      solved.sum_of_squares = 2 * cost;
-    }
-    solved.point = start;
-    return solved;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    return {.point = start,
+            .sum_of_squares = 2 * summary.final_cost,
+            .converged = summary.termination_type == ceres::CONVERGENCE,
+            .message = summary.message};
   }
 
   /// Returns the standard deviations of the coordinates for a unit variance; empty where a
@@ -212,12 +197,15 @@ class SweepProblem {
   [[nodiscard]] std::array<std::optional<double>, 3> Errors(Point at) const {
     ceres::Problem problem;
     AddResiduals(at, problem);
-    std::vector<std::pair<const double*, const double*>> blocks;
+    const auto is_held = [&](std::size_t k) {
+      return fixed_[k] || at[k] <= lower_[k] || at[k] >= upper_[k];
+    };
+    std::vector<const double*> blocks;
     for (std::size_t k = 0; k < at.size(); ++k) {
-      if (fixed_[k] || at[k] <= lower_[k] || at[k] >= upper_[k]) {
+      if (is_held(k)) {
         problem.SetParameterBlockConstant(&at[k]);
       } else {
-        blocks.emplace_back(&at[k], &at[k]);
+        blocks.push_back(&at[k]);
       }
     }
     std::array<std::optional<double>, 3> errors;
@@ -227,9 +215,7 @@ class SweepProblem {
     if (blocks.empty() || !covariance.Compute(blocks, &problem)) return errors;
     for (std::size_t k = 0; k < at.size(); ++k) {
       double variance = 0.0;
-      const bool is_free =
-          std::ranges::any_of(blocks, [&](const auto& block) { return block.first == &at[k]; });
-      if (!is_free || !covariance.GetCovarianceBlock(&at[k], &at[k], &variance)) continue;
+      if (is_held(k) || !covariance.GetCovarianceBlock(&at[k], &at[k], &variance)) continue;
       if (std::isfinite(variance) && variance > 0) errors[k] = std::sqrt(variance);
     }
     return errors;
@@ -239,7 +225,7 @@ class SweepProblem {
   /// @param at  parameter blocks, which must outlive the problem
   void AddResiduals(Point& at, ceres::Problem& problem) const {
     using Cost = ceres::AutoDiffCostFunction<SweepResiduals, ceres::DYNAMIC, 1, 1, 1>;
-    problem.AddResidualBlock(new Cost(new SweepResiduals(amplitude_, response_, options_, scale_),
+    problem.AddResidualBlock(new Cost(new SweepResiduals{amplitude_, response_, options_, scale_},
                                       static_cast<int>(amplitude_.size())),
                              nullptr, &at[0], &at[1], &at[2]);
   }
@@ -411,17 +397,17 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
     if (estimate.status == ParameterStatus::kFree && error > 0) {
       estimate.standard_error = is_log ? estimate.value * error : error;
     }
+    const auto end_at = [&](double bound) -> std::optional<double> {
+      const auto end = IntervalEnd(problem, best, k, limit, step, bound);
+      return end ? std::optional(value_of(*end)) : std::nullopt;
+    };
     if (estimate.status != ParameterStatus::kAtLowerBound) {
-      const auto end = IntervalEnd(problem, best, k, limit, step, problem.lower(k));
-      if (end) estimate.lower95 = value_of(*end);
+      estimate.lower95 = end_at(problem.lower(k));
     }
     if (estimate.status != ParameterStatus::kAtUpperBound) {
-      const auto end = IntervalEnd(problem, best, k, limit, step, problem.upper(k));
-      if (end) estimate.upper95 = value_of(*end);
+      estimate.upper95 = end_at(problem.upper(k));
     }
-    // The lower bounds of α and, over forces, of Tc are the law's, not the search's.
-    const bool is_closed_below = k == 1 || (k == 2 && options.over_force);
-    if (!estimate.lower95 && is_closed_below) estimate.lower95 = value_of(problem.lower(k));
+    if (!estimate.lower95 && problem.IsLawBelow(k)) estimate.lower95 = value_of(problem.lower(k));
     estimate.identifiability = VerdictOf(estimate);
     fit.parameters.push_back(std::move(estimate));
   }
