@@ -35,6 +35,9 @@ struct Thresholds {
   double rival_past = 10.0;
   double fewest_places = 16.0;
   double starts_unloaded = 0.02;
+  double starts_without_force = 0.1;
+  double hopeless_past = 4.0;
+  double similar_misfit = 1.5;
   double mobilised_by_asymptote = 0.9;
   double one_amplitude = 0.01;
   double rival_law = 10.0;

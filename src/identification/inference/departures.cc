@@ -435,7 +435,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   if (problem.data->is_forced()) {
     return ColumnsOfDisplacementDepartures(problem, theta, response, most);
   }
-  const std::pmr::vector<ScaledRecord>& records = problem.data->records;
+  const std::vector<ScaledRecord>& records = problem.data->records;
   std::vector<Neighbours> neighbours;
   for (const ScaledRecord& record : records) neighbours.push_back(NeighboursOf(record));
   const Clock clock = ClockOf(*problem.data, neighbours);
@@ -494,7 +494,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   response.Bind(problem);
   std::vector<double> by_asymmetry(tells_asymmetry ? problem.size() : 0);
   ResponseColumns wanted_of_response;
-  wanted_of_response.asymmetry = by_asymmetry;
+  wanted_of_response[TermId::kAsymmetry] = by_asymmetry;
   response.Differentiate(point, force, wanted_of_response);
   Predict(problem, theta, response, complete);
   double peak = 0.0;
@@ -532,7 +532,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       for (std::size_t i = 0; i < record.size(); ++i) values[i] *= record.root_weight[i];
     }
     for (std::size_t c = 0; c < result.covariates.size(); ++c) {
-      const std::pmr::vector<double>& column = record.covariates[result.covariates[c]];
+      const std::vector<double>& column = record.covariates[result.covariates[c]];
       double* const values =
           result.columns.col(static_cast<Eigen::Index>(wanted.size() + c)).data() + begin;
       for (std::size_t i = 0; i < record.size(); ++i) {

@@ -41,9 +41,10 @@ std::optional<TurningPointFit> FitAtTurningPoints(const Problem& problem, const 
       overshoot.push_back(OvershootOfMotion(record, k));
     }
   }
-  TurningPointFit fit{PutInTurningPoints(*problem.data, overshoot), best};
+  TurningPointFit fit{std::make_unique<ScaledRecords>(PutInTurningPoints(*problem.data, overshoot)),
+                      best};
   Problem turned = problem;
-  turned.data = &fit.records->data;
+  turned.data = fit.records.get();
   buffers.solver.Bind(turned, buffers.response);
   buffers.solver.Solve(best.theta, SolverOptionsOf(options), fit.solution);
   if (!fit.solution.converged) return {};
