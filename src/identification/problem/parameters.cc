@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -20,31 +21,13 @@ namespace mindahl::identification {
 
 namespace {
 
-struct PlacedForce {
-  double position;
-  double force;
-};
-
-/// Takes the least-squares cubic over the position off.
-void TakeOffCubic(std::vector<PlacedForce>& forces) {
-  const auto size = static_cast<Eigen::Index>(forces.size());
-  Eigen::MatrixXd columns(size, 4);
-  Eigen::VectorXd values(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const PlacedForce& at = forces[static_cast<std::size_t>(i)];
-    const double square = at.position * at.position;
-    columns.row(i) << 1.0, at.position, square, square * at.position;
-    values[i] = at.force;
-  }
-  const Eigen::VectorXd left = LeftOver(columns, values);
-  for (Eigen::Index i = 0; i < size; ++i) forces[static_cast<std::size_t>(i)].force = left[i];
-}
-
-/// Forces of the strokes of one direction, of their second halves.
-std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
+/// Returns position and force of the samples in the second halves of the strokes of one direction,
+/// a row each; of the forces a cubic over the position is taken off.
+Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
   constexpr double kMayStick = 0.5;
-  constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
-  std::vector<PlacedForce> forces;
+  constexpr Eigen::Index kFewest = 12;  // for a cubic and a wave to be distinguished from noise
+  Eigen::MatrixXd forces(2 * static_cast<Eigen::Index>(data.samples()), 2);  // ends count twice
+  Eigen::Index count = 0;
   for (const ScaledRecord& record : data.records) {
     std::size_t begin = 0;
     for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
@@ -54,13 +37,16 @@ std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
       for (std::size_t i = begin; i <= end && (way > 0) == is_up; ++i) {
         const double position = record.displacement[i];
         if ((position - from) / way < kMayStick || record.counts[i] == 0) continue;
-        forces.push_back({position, record.force[i]});
+        forces.row(count++) << position, record.force[i];
       }
       begin = end;
     }
   }
-  if (forces.size() < kFewest) return {};
-  TakeOffCubic(forces);
+  if (count < kFewest) count = 0;
+  forces.conservativeResize(count, 2);
+  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(count, 4);
+  for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(forces.col(0));
+  if (count > 0) forces.col(1) = LeftOver(powers, forces.col(1));
   return forces;
 }
 
@@ -70,24 +56,21 @@ double StartingPeriod(const ScaledRecords& data) {
   constexpr double kLongest = 1.0;
   constexpr double kStep = 0.1;  // of the frequency: a fifth of what a stroke resolves
   constexpr int kSteps = 390;    // to a frequency of 40
-  constexpr std::size_t kMostSamples = 500;
-  const std::vector<PlacedForce> directions[] = {SlidingForces(data, true),
-                                                 SlidingForces(data, false)};
+  constexpr Eigen::Index kMostSamples = 500;
+  const std::array directions = {SlidingForces(data, true), SlidingForces(data, false)};
   double best = 0.0;
   double period = kLongest;
   for (int step = 0; step <= kSteps; ++step) {
     const double frequency = 1 / kLongest + kStep * step;
     double power = 0.0;
-    for (const std::vector<PlacedForce>& forces : directions) {
-      const std::size_t every = 1 + forces.size() / kMostSamples;
+    for (const Eigen::MatrixXd& forces : directions) {
+      const Eigen::Index every = 1 + forces.rows() / kMostSamples;
       std::complex<double> sum = 0.0;
-      for (std::size_t i = 0; i < forces.size(); i += every) {
-        sum += forces[i].force *
-               std::polar(1.0, 2 * std::numbers::pi * frequency * forces[i].position);
+      for (Eigen::Index i = 0; i < forces.rows(); i += every) {
+        sum += forces(i, 1) * std::polar(1.0, 2 * std::numbers::pi * frequency * forces(i, 0));
       }
-      if (!forces.empty()) {
-        power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.size());
-      }
+      if (forces.rows() == 0) continue;
+      power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.rows());
     }
     if (!(power > best)) continue;
     best = power;
