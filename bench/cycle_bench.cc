@@ -104,13 +104,13 @@ void Continue(benchmark::State& state) {
 void Search(benchmark::State& state) {
   const FitOptions& options = OfSteadyCycles();
   Fitter fitter(options);
-  std::pmr::memory_resource* const memory = std::pmr::get_default_resource();
   const loop::RecordView view(Cycles().front().record);
-  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation, memory);
-  const identification::ScaledRecords data = identification::Scale(prepared, options, memory);
+  const loop::PreparedRecords prepared =
+      loop::Prepare({&view, 1}, options.preparation, std::pmr::get_default_resource());
+  const identification::ScaledRecords data = identification::Scale(prepared, options);
   const identification::Problem problem{
       &data, options.model, models::InitialState::kSteady,
-      identification::Parameters(data, options, models::InitialState::kSteady, memory)};
+      identification::Parameters(data, options, models::InitialState::kSteady)};
   identification::SearchBuffers buffers;
   buffers.solver.Bind(problem, buffers.response);
   std::vector<std::vector<double>> starts;

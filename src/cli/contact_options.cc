@@ -146,10 +146,9 @@ void AddLawOptions(CLI::App& command, LawOptions& request) {
 }
 
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
-  const double slip = models::GrossSlipDisplacement(law, rig);
-  return std::isfinite(slip)
-             ? slip
-             : 3 * law.slip_force / law.tangential_stiffness + law.slip_force / rig.stiffness;
+  const double slip = models::GrossSlipDisplacement(law);
+  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+         law.slip_force / rig.stiffness;
 }
 
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {

@@ -27,9 +27,9 @@ struct Validation {
   ValidationReport report = {};
 };
 
-Json ErrorsJson(const ValidationRow& row, double median, double worst) {
+Json ErrorsJson(const ValidationRow& row, std::size_t parameter) {
   if (row.cases == 0) return {{"median", nullptr}, {"worst", nullptr}};
-  return {{"median", median}, {"worst", worst}};
+  return {{"median", row.errors[parameter].median}, {"worst", row.errors[parameter].worst}};
 }
 
 Json ValidationRows(const std::vector<ValidationRow>& rows) {
@@ -41,10 +41,9 @@ Json ValidationRows(const std::vector<ValidationRow>& rows) {
                   {"failures", row.failures},
                   {"not_identifiable", row.undetermined},
                   {"tolerance", row.tolerance},
-                  {"sigma_error", ErrorsJson(row, row.median_sigma_error, row.worst_sigma_error)},
-                  {"alpha_error", ErrorsJson(row, row.median_alpha_error, row.worst_alpha_error)},
-                  {"slip_force_error",
-                   ErrorsJson(row, row.median_slip_force_error, row.worst_slip_force_error)}};
+                  {"sigma_error", ErrorsJson(row, 0)},
+                  {"alpha_error", ErrorsJson(row, 1)},
+                  {"slip_force_error", ErrorsJson(row, 2)}};
     if (row.noise > 0) {
       entry["worst_standard_errors"] = row.cases == 0 ? Json() : Json(row.worst_standardized);
       entry["coverage"] = row.cases == 0 ? Json() : Json(row.coverage);

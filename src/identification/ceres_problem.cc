@@ -36,11 +36,8 @@ void WeighAsFit(const FitResult& fit, ScaledRecords& data) {
 ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& options,
                          const FitResult& fit) {
   LeaveOutBeyondLags(options, prepared);
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-  ScaledRecords data = Scale(prepared, options, memory);
-  AddCovariates(options.covariates, /*with_others=*/false, prepared, options.offsets, data);
-  AddColumnsOfTerms(options, data);
-  if (HasTerm(options, TermId::kLag)) SetClocks(data);
+  ScaledRecords data = Scale(prepared, options);
+  AddColumns(options, prepared, /*with_others=*/false, data);
   WeighAsFit(fit, data);
   return data;
 }
@@ -68,8 +65,7 @@ struct CeresProblem::State {
       : options(given),
         prepared(PrepareAsFit(views, options, fit)),
         data(ScaleAsFit(prepared, options, fit)),
-        problem{&data, options.model, StatesOf(fit),
-                Parameters(data, options, StatesOf(fit), std::pmr::get_default_resource())},
+        problem{&data, options.model, StatesOf(fit), Parameters(data, options, StatesOf(fit))},
         unit(residual_unit / data.response_unit()) {}
 
   FitOptions options;
@@ -78,8 +74,8 @@ struct CeresProblem::State {
   Problem problem;
   double unit;  // of residuals [units of the data]
   std::vector<CeresParameter> parameters;
-  std::vector<std::size_t> place;                // of the problem's parameters among these
   std::vector<std::vector<std::size_t>> blocks;  // of each record, among the parameters
+  std::vector<std::shared_ptr<UnprojectedRecord>> records;
 };
 
 CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
@@ -87,10 +83,10 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   RequirePositive("residual unit", residual_unit);
   state_ = std::make_unique<State>(records, options, fit, residual_unit);
   const Parameters& parameters = state_->problem.parameters;
-  state_->place.assign(parameters.size(), parameters.size());
+  std::vector<std::size_t> place(parameters.size());  // of the problem's among the reported
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    state_->place[p] = state_->parameters.size();
+    place[p] = state_->parameters.size();
     CeresParameter& block = state_->parameters.emplace_back();
     block = {.name = parameters.NameOf(p),
              .unit = parameters.UnitOf(p, !state_->data.records.front().velocity.empty()),
@@ -108,8 +104,9 @@ CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitO
   }
   for (std::size_t r = 0; r < state_->data.records.size(); ++r) {
     std::vector<std::size_t>& blocks = state_->blocks.emplace_back();
-    const UnprojectedRecord record(state_->problem, r, state_->unit);
-    for (const std::size_t p : record.blocks()) blocks.push_back(state_->place[p]);
+    const auto& record = state_->records.emplace_back(
+        std::make_shared<UnprojectedRecord>(state_->problem, r, state_->unit));
+    for (const std::size_t p : record->blocks()) blocks.push_back(place[p]);
   }
 }
 
@@ -134,7 +131,7 @@ std::span<const std::size_t> CeresProblem::BlocksOf(std::size_t record) const {
 }
 
 std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction(std::size_t record) const {
-  return CostOfRecord(std::make_shared<UnprojectedRecord>(state_->problem, record, state_->unit));
+  return CostOfRecord(state_->records.at(record));
 }
 
 void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
@@ -145,41 +142,24 @@ void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFun
     for (const std::size_t place : BlocksOf(r)) {
       blocks.push_back(&state_->parameters[place].theta);
     }
-    auto record = std::make_shared<UnprojectedRecord>(state_->problem, r, state_->unit);
-    if (shared_loss == nullptr) {
-      problem.AddResidualBlock(CostOfRecord(std::move(record)).release(), nullptr, blocks);
-      continue;
-    }
-    for (std::size_t i = 0; i < record->samples(); ++i) {
-      if (!record->Counts(i)) continue;
-      problem.AddResidualBlock(CostOfSample(record, i).release(), shared_loss, blocks);
-    }
+    AddRecord(state_->records[r], blocks, shared_loss, problem);
   }
   for (CeresParameter& parameter : state_->parameters) {
-    if (!problem.HasParameterBlock(&parameter.theta)) continue;
-    if (parameter.fixed) {
-      problem.SetParameterBlockConstant(&parameter.theta);
-      continue;
-    }
-    problem.SetParameterLowerBound(&parameter.theta, 0, parameter.lower);
-    problem.SetParameterUpperBound(&parameter.theta, 0, parameter.upper);
+    BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }
 }
 
 struct LogLikelihood::State {
-  State(std::span<const loop::RecordView> given, const FitOptions& options, const FitResult& fit)
-      : problem(given, options, fit, fit.ResponseNoise()) {}
+  State(std::span<const loop::RecordView> records, const FitOptions& options, const FitResult& fit)
+      : residuals(records, options, fit, fit.ResponseNoise()) {
+    residuals.AddTo(problem);
+  }
 
-  CeresProblem problem;
+  CeresProblem residuals;
+  ceres::Problem problem;
   double effective_fraction = 1.0;  // of the samples
   std::vector<std::string> names;
-  std::vector<std::size_t> places;  // of these, among the problem's parameters
-  struct Record {
-    std::unique_ptr<ceres::CostFunction> cost;
-    std::vector<double const*> blocks;
-    std::vector<double> residual;
-  };
-  std::vector<Record> records;
+  std::vector<CeresParameter*> parameters;  // of these
 };
 
 LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const FitOptions& options,
@@ -199,21 +179,10 @@ LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const Fi
   state_ = std::make_unique<State>(records, options, fit);
   state_->effective_fraction =
       std::min(fit.residuals.effective_samples / static_cast<double>(counted), 1.0);
-  const std::span<CeresParameter> parameters = state_->problem.parameters();
-  std::vector<bool> has_effect(parameters.size(), false);
-  for (std::size_t r = 0; r < state_->problem.records(); ++r) {
-    State::Record& record = state_->records.emplace_back();
-    record.cost = state_->problem.MakeCostFunction(r);
-    record.residual.resize(static_cast<std::size_t>(record.cost->num_residuals()));
-    for (const std::size_t place : state_->problem.BlocksOf(r)) {
-      record.blocks.push_back(&parameters[place].theta);
-      has_effect[place] = true;
-    }
-  }
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].fixed || !has_effect[i]) continue;
-    state_->names.push_back(parameters[i].name);
-    state_->places.push_back(i);
+  for (CeresParameter& parameter : state_->residuals.parameters()) {
+    if (parameter.fixed || !state_->problem.HasParameterBlock(&parameter.theta)) continue;
+    state_->names.push_back(parameter.name);
+    state_->parameters.push_back(&parameter);
   }
 }
 
@@ -225,20 +194,17 @@ std::span<const std::string> LogLikelihood::names() const { return state_->names
 
 double LogLikelihood::operator()(std::span<const double> values) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  RequireSameSize("values", values.size(), "free parameters", state_->places.size());
+  RequireSameSize("values", values.size(), "free parameters", state_->parameters.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    CeresParameter& parameter = state_->problem.parameters()[state_->places[i]];
+    CeresParameter& parameter = *state_->parameters[i];
     if (parameter.positive && !(values[i] > 0)) return kNone;
     const double theta = parameter.ThetaAt(values[i]);
     if (!(theta >= parameter.lower && theta <= parameter.upper)) return kNone;
     parameter.theta = theta;
   }
-  double squares = 0.0;
-  for (State::Record& record : state_->records) {
-    if (!record.cost->Evaluate(record.blocks.data(), record.residual.data(), nullptr)) return kNone;
-    for (const double residual : record.residual) squares += residual * residual;
-  }
-  return std::isfinite(squares) ? -state_->effective_fraction * squares / 2 : kNone;
+  double cost = 0.0;
+  const bool is_defined = state_->problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return is_defined && std::isfinite(cost) ? -state_->effective_fraction * cost : kNone;
 }
 
 }  // namespace mindahl::identification

@@ -53,12 +53,6 @@ Eigen::MatrixXd InverseOfTriangle(const MatrixView& triangle) {
       Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
 }
 
-Eigen::MatrixXd OrthonormalBasis(const MatrixView& a, double threshold) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(a);
-  if (threshold >= 0) factors.setThreshold(threshold);
-  return factors.householderQ() * Eigen::MatrixXd::Identity(a.rows(), factors.rank());
-}
-
 Eigenpairs SymmetricEigenpairs(const MatrixView& a) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};

@@ -33,10 +33,6 @@ Eigen::MatrixXd PseudoInverse(const MatrixView& a);
 Eigen::MatrixXd UpperTriangle(const MatrixView& a);
 /// Returns R⁻¹ of an upper triangle.
 Eigen::MatrixXd InverseOfTriangle(const MatrixView& triangle);
-/// Returns orthonormal columns that span those of A.
-/// @param threshold  pivots below this fraction of the largest are zero; Eigen's own if negative
-Eigen::MatrixXd OrthonormalBasis(const MatrixView& a, double threshold = -1.0);
-
 struct Eigenpairs {
   Eigen::VectorXd values;   ///< increasing
   Eigen::MatrixXd vectors;  ///< a column each

@@ -37,7 +37,8 @@ double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_
 
 }  // namespace
 
-const ParameterEstimate* FitResult::Find(std::string_view name) const {
+const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& parameters,
+                                      std::string_view name) {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
   return found == parameters.end() ? nullptr : &*found;
 }

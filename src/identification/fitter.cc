@@ -24,7 +24,6 @@
 #include "identification/solve/search.h"
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
@@ -40,17 +39,10 @@ using models::InitialState;
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
-  // If all samples count the same, the solution has their residuals.
-  std::span<const double> residuals = solved.solution().residual;
-  std::pmr::vector<double> unweighted(attempt.memory);
-  if (solved.is_weighted || solved.turned || attempt.data.counted != attempt.data.samples() ||
-      residuals.empty()) {
-    unweighted.resize(problem.size());
-    attempt.buffers.response.Bind(problem);
-    Predict(problem, solved.solution().theta, attempt.buffers.response, unweighted);
-    TakeOffMeasured(data, unweighted);
-    residuals = unweighted;
-  }
+  std::vector<double> residuals(problem.size());
+  attempt.buffers.response.Bind(problem);
+  Predict(problem, solved.solution().theta, attempt.buffers.response, residuals);
+  TakeOffMeasured(data, residuals);
   double squares = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -99,41 +91,15 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
         data.is_forced() ? noise.force * data.length : prepared.displacement_noise;
     fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
     fit.left_out = prepared.left_out;
-    fit.normal_load.reset();
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;
     fit.load_varies = !data.records[r].load_ratio.empty();
-    fit.structure = {};
-    fit.fitted_force.clear();
-    fit.fitted_displacement.clear();
-    fit.residual.clear();
   }
-}
-
-void FillParameters(const Problem& problem, const Solution& solution, FitResult& result) {
-  const Parameters& parameters = problem.parameters;
-  result.parameters.resize(parameters.reported().size());
-  const bool timed = !problem.data->records.front().velocity.empty();
-  for (std::size_t k = 0; k < parameters.reported().size(); ++k) {
-    const std::size_t p = parameters.reported()[k];
-    ParameterEstimate& estimate = result.parameters[k];
-    parameters.NameOf(p, estimate.name);
-    estimate.unit.assign(parameters.UnitOf(p, timed));
-    estimate.value = parameters[p].ToValue(solution.theta[p]);
-    estimate.status = StatusOf(parameters[p], solution.side[p]);
-    WithdrawInterval(estimate);
-    estimate.includes_discrepancy = false;
-    estimate.identifiability = Identifiability::kNotIdentifiable;
-  }
-  result.law = parameters.LawAt(solution.theta);
-  result.rig = parameters.RigAt(solution.theta);
-  result.load_exponent = parameters.LoadExponentAt(solution.theta);
 }
 
 /// Assembles what a solution says by itself: values, residuals and what the records show without a
 /// model.
-/// @param last  a result that is not wanted any more, whose memory is used again
-FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult last) {
+FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   const ScaledRecords& data = attempt.data;
   const Problem& problem = solved.best.problem;
   const Solution& solution = solved.solution();
@@ -143,11 +109,6 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   result.response = attempt.options.response();
   result.confidence = attempt.options.confidence;
   result.force_sense = attempt.prepared.force_sense;
-  result.parameters.swap(last.parameters);
-  result.correlation.swap(last.correlation);
-  result.correlation.clear();
-  result.records.swap(last.records);
-  result.solver.message.swap(last.solver.message);
   FillRecords(attempt, solved, result);
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
   const bool is_judged = attempt.depth >= Depth::kIntervals;
@@ -158,11 +119,8 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   const bool any_virgin = problem.state.Any(InitialState::kVirgin);
   result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;
   result.solver = solution.report;
-  const double unit_squared = data.response_unit() * data.response_unit();
-  result.solver.initial_cost *= unit_squared;
-  result.solver.final_cost *= unit_squared;
+  result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {
-    result.parameters.clear();  // otherwise their names' memory is used again
     result.findings.push_back({.code = "fit_failed"});
     return result;
   }
@@ -174,7 +132,11 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved, FitResult la
   }
   if (!data.is_forced()) result.force_noise = solved.noise.force * data.force;
   result.outliers = solved.noise.outliers;
-  FillParameters(problem, solution, result);
+  const Parameters& parameters = problem.parameters;
+  result.parameters = ValuesOf(problem, solution);
+  result.law = parameters.LawAt(solution.theta);
+  result.rig = parameters.RigAt(solution.theta);
+  result.load_exponent = parameters.LoadExponentAt(solution.theta);
   FillFitted(attempt, solved, result);
   return result;
 }
@@ -202,9 +164,7 @@ FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
 }  // namespace
 
 struct Fitter::State {
-  explicit State(FitOptions given) : options(std::move(given)), continued(options) {
-    RequireOptions(options);
-  }
+  explicit State(FitOptions given) : options(std::move(given)) { RequireOptions(options); }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
   /// Fits, and once more where the slip force runs away from what was measured.
@@ -217,35 +177,31 @@ struct Fitter::State {
   [[nodiscard]] bool MayContinue() const;
 
   FitOptions options;
-  FitOptions continued;  // the same, from where the last fit ended
-  Arena arena;
   SearchBuffers buffers;
   FitResult result;
 };
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
-  arena.Reset();
   RequireInitialStates(given, records.size());
-  loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
+  loop::PreparedRecords prepared =
+      loop::Prepare(records, given.preparation, std::pmr::get_default_resource());
   LeaveOutBeyondLags(given, prepared);
-  ScaledRecords data = Scale(prepared, given, &arena);
-  AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
-  AddColumnsOfTerms(given, data);
+  ScaledRecords data = Scale(prepared, given);
+  AddColumns(given, prepared, /*with_others=*/depth >= Depth::kIntervals, data);
   std::optional<FitResult> without_priors;
   if (!given.priors.empty()) {
     without_priors = FitWithoutPriors(records, depth, given);
     data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
   }
-  if (HasTerm(given, TermId::kLag)) SetClocks(data);
-  ThinnedRecords thin(data, &arena);
+  ThinnedRecords thin(data);
   RequireOneLoad(data);
   RequireRigStifferThanLoop(given, prepared);
   RequireNoise(given, data);
 
-  const Attempt attempt{given, depth,   prepared, data,
-                        thin,  buffers, &arena,   without_priors ? &*without_priors : nullptr};
+  const Attempt attempt{
+      given, depth, prepared, data, thin, buffers, without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
-  result = Assemble(attempt, solved, std::move(result));
+  result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
   result = Infer(attempt, std::move(solved), std::move(result));
   if (depth < Depth::kFull) return;
@@ -256,7 +212,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
 
 /// True if the next fit may start at the last one's end: a single minimum, not at a bound.
 bool Fitter::State::MayContinue() const {
-  return result.converged && options.starts == 1 && TellsTheLaw(result) &&
+  return result.converged && TellsTheLaw(result) &&
          std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
            return estimate.status == ParameterStatus::kAtLowerBound ||
                   estimate.status == ParameterStatus::kAtUpperBound ||
@@ -267,18 +223,16 @@ bool Fitter::State::MayContinue() const {
 
 void Fitter::State::Continue(const RecordView& record, Depth depth) {
   if (MayContinue()) {
+    FitOptions continued = options;
     for (const ParameterEstimate& estimate : result.parameters) {
-      if (estimate.status == ParameterStatus::kFixed) continue;
-      const Term* const term = FindTerm(TermNameOf(estimate.name), options.response());
-      const bool is_of_law = term != nullptr && term->entry == Entry::kLaw;
-      if (is_of_law || estimate.name == "slip_force") {
+      if (estimate.status == ParameterStatus::kFree) {
         continued.start[estimate.name] = estimate.value;
       }
     }
     const double last_rms = result.rms;
     FitWithin({&record, 1}, depth, continued);
-    constexpr double kAsGood = 1.5;  // times the last rms
-    if (result.converged && result.rms <= kAsGood * last_rms && TellsTheLaw(result)) return;
+    const double as_good = options.thresholds.similar_misfit * last_rms;
+    if (result.converged && result.rms <= as_good && TellsTheLaw(result)) return;
   }
   FitWithin({&record, 1}, depth, options);
 }

@@ -103,7 +103,6 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   options.model = fit.model;
   HoldInitialStates(fit, options);
   options.preparation.force_sense = fit.force_sense;
-  options.starts = 1;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status == ParameterStatus::kFixed) continue;
     // One that ran to a bound stays there.

@@ -35,36 +35,23 @@ struct Case {
   models::ExcitationOptions excitation;
 };
 
-class CaseGenerator {
- public:
-  explicit CaseGenerator(const ValidationOptions& options)
-      : options_(options), draws_(options.seed) {}
-
-  Case Next(std::size_t index) {
-    Case drawn;
-    drawn.friction_coefficient = draws_.Uniform(0.05, 1.2);
-    drawn.normal_load = draws_.LogUniform(1e-6, 1e5);
-    drawn.contact.contact_radius = draws_.LogUniform(1e-8, 3e-2);
-    drawn.contact.tangential_compliance = draws_.LogUniform(1e-12, 1e-8);
-    drawn.contact.slip_force =
-        contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
-    drawn.lambda = options_.lambdas[index % options_.lambdas.size()];
-    const std::size_t round = index / options_.lambdas.size();
-    drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
-    drawn.excitation.waveform =
-        round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle;
-    drawn.excitation.cycles = kCycles[round % kCycles.size()];
-    drawn.excitation.samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()];
-    drawn.excitation.amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact);
-    return drawn;
-  }
-
-  double Normal() { return draws_.Normal(); }
-
- private:
-  const ValidationOptions& options_;
-  Draws draws_;
-};
+Case DrawCase(const ValidationOptions& options, std::size_t index, Draws& draws) {
+  Case drawn;
+  drawn.friction_coefficient = draws.Uniform(0.05, 1.2);
+  drawn.normal_load = draws.LogUniform(1e-6, 1e5);
+  drawn.contact.contact_radius = draws.LogUniform(1e-8, 3e-2);
+  drawn.contact.tangential_compliance = draws.LogUniform(1e-12, 1e-8);
+  drawn.contact.slip_force = contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
+  drawn.lambda = options.lambdas[index % options.lambdas.size()];
+  const std::size_t round = index / options.lambdas.size();
+  drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
+  drawn.excitation.waveform =
+      round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle;
+  drawn.excitation.cycles = kCycles[round % kCycles.size()];
+  drawn.excitation.samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()];
+  drawn.excitation.amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact);
+  return drawn;
+}
 
 /// Returns the loop by Mindlin's equations 13 to 15, phase by phase.
 Record MindlinRecord(const Case& drawn) {
@@ -127,35 +114,27 @@ Trial ByDahl(const Record& steady, const Case& drawn) {
 }
 
 /// Returns the record from the first extreme on.
-Record SteadyPart(const Record& record, const Case& drawn) {
+Record SteadyPart(Record record, const Case& drawn) {
   const auto first = static_cast<std::ptrdiff_t>(drawn.excitation.samples_per_cycle / 4);
-  Record steady;
-  const auto rest = [first](const std::vector<double>& column) {
-    return std::vector<double>(column.begin() + first, column.end());
-  };
-  steady.time = rest(record.time);
-  steady.displacement = rest(record.displacement);
-  steady.force = rest(record.force);
-  return steady;
+  for (auto* column : {&record.time, &record.displacement, &record.force}) {
+    column->erase(column->begin(), column->begin() + first);
+  }
+  return record;
 }
 
-/// Errors of σ, α and Tc of the contact: by Dahl's law those of the Masing law of the same loop.
-void CompareContact(const Trial& trial, const models::BranchLaw& fitted, Errors& errors) {
-  const models::BranchLaw found =
-      trial.IsDahl() ? models::MasingEquivalent(fitted, trial.amplitude) : fitted;
-  const models::BranchLaw& truth = trial.contact;
-  errors.of_contact = {std::abs(found.tangential_stiffness / truth.tangential_stiffness - 1),
-                       std::abs(found.shape_exponent - truth.shape_exponent),
-                       std::abs(found.slip_force / truth.slip_force - 1)};
-}
-
-Errors Compare(const Trial& trial, const FitResult& fit, double interval_factor) {
+Errors Compare(const Trial& trial, const FitResult& fit) {
   Errors errors;
-  const models::BranchLaw& truth = trial.truth;
   errors.converged = fit.converged;
   errors.termination = fit.solver.message;
   if (fit.parameters.empty()) return errors;
-  CompareContact(trial, fit.law, errors);
+  // By Dahl's law the errors of the contact are those of the Masing law of the same loop.
+  const models::BranchLaw found =
+      trial.IsDahl() ? models::MasingEquivalent(fit.law, trial.amplitude) : fit.law;
+  errors.of_contact = {
+      std::abs(found.tangential_stiffness / trial.contact.tangential_stiffness - 1),
+      std::abs(found.shape_exponent - trial.contact.shape_exponent),
+      std::abs(found.slip_force / trial.contact.slip_force - 1)};
+  const models::BranchLaw& truth = trial.truth;
   const std::array values = {truth.tangential_stiffness, truth.shape_exponent, truth.slip_force};
   for (std::size_t k = 0; k < values.size(); ++k) {
     const ParameterEstimate& estimate = *fit.Find(kValidatedParameters[k]);
@@ -163,20 +142,17 @@ Errors Compare(const Trial& trial, const FitResult& fit, double interval_factor)
       errors.undetermined = true;
       continue;
     }
-    const double off = (values[k] - estimate.value) / interval_factor;
-    const bool covers = (!estimate.lower95 || *estimate.lower95 - estimate.value <= off) &&
-                        (!estimate.upper95 || off <= *estimate.upper95 - estimate.value);
+    const bool covers = (!estimate.lower95 || *estimate.lower95 <= values[k]) &&
+                        (!estimate.upper95 || values[k] <= *estimate.upper95);
     errors.intervals[k] = {.intervals = 1, .covering = covers ? 1U : 0U};
   }
   return errors;
 }
 
-double Median(std::vector<double> values) {
-  return values.empty() ? 0.0 : boost::math::statistics::median(values.begin(), values.end());
-}
-
-double Largest(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : *std::ranges::max_element(values);
+ErrorSpread SpreadOf(std::vector<double> errors) {
+  if (errors.empty()) return {};
+  const double worst = std::ranges::max(errors);
+  return {boost::math::statistics::median(errors.begin(), errors.end()), worst};
 }
 
 /// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
@@ -214,15 +190,11 @@ struct RowBuilder {
   }
 
   ValidationRow Finish() {
-    const auto& [sigma, alpha, slip_force] = of_contact;
-    row.median_sigma_error = Median(sigma);
-    row.worst_sigma_error = Largest(sigma);
-    row.median_alpha_error = Median(alpha);
-    row.worst_alpha_error = Largest(alpha);
-    row.median_slip_force_error = Median(slip_force);
-    row.worst_slip_force_error = Largest(slip_force);
     IntervalCount all;
-    for (const IntervalCount& count : row.intervals) all.Add(count);
+    for (std::size_t k = 0; k < of_contact.size(); ++k) {
+      row.errors[k] = SpreadOf(std::move(of_contact[k]));
+      all.Add(row.intervals[k]);
+    }
     row.coverage = all.fraction();
     return row;
   }
@@ -235,7 +207,6 @@ void RequireValidation(const ValidationOptions& options) {
   }
   for (const double lambda : options.lambdas) RequirePositive("lambda [-]", lambda);
   for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
-  RequirePositive("interval factor [-]", options.interval_factor);
 }
 
 std::string Describe(const Case& drawn, std::size_t index, double noise, const Trial& trial,
@@ -264,41 +235,36 @@ void JudgeCoverage(ValidationReport& report) {
   const double least =
       kCoverageFalseAlarm /
       static_cast<double>(kLaws * kSides * kValidatedParameters.size() * (noisy + 1));
-  const auto chance_of = [](const IntervalCount& all, const IntervalCount& sliding) {
-    return std::min(all.ChanceOfSoFew(), sliding.ChanceOfSoMany());
-  };
-  const auto fail = [&](std::string_view parameter, bool by_dahl, const std::string& where,
-                        const IntervalCount& count, double chance) {
-    report.failed_coverages.push_back(fmt::format(
-        "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
-        "promised (p = {:.1e})",
-        parameter, by_dahl ? " by Dahl's own law" : "", where, count.covering, count.intervals,
-        100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, chance));
-  };
   for (const bool by_dahl : {false, true}) {
-    const std::vector<ValidationRow>& rows = by_dahl ? report.dahl_rows : report.rows;
     for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
-      CoverageVerdict verdict;
-      verdict.parameter = kValidatedParameters[k];
-      verdict.by_dahl = by_dahl;
-      for (const ValidationRow& row : rows) {
+      CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};
+      /// Returns the chance of the counts, and says which of them is too unlikely.
+      const auto judge = [&](const IntervalCount& all, const IntervalCount& sliding,
+                             std::string_view where, std::string_view where_sliding) {
+        const double few = all.ChanceOfSoFew();
+        const double many = sliding.ChanceOfSoMany();
+        const IntervalCount& count = few <= many ? all : sliding;
+        const double chance = std::min(few, many);
+        if (chance >= least) return chance;
+        report.failed_coverages.push_back(fmt::format(
+            "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
+            "promised (p = {:.1e})",
+            verdict.parameter, by_dahl ? " by Dahl's own law" : "",
+            few <= many ? where : where_sliding, count.covering, count.intervals,
+            100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, chance));
+        return chance;
+      };
+      for (const ValidationRow& row : by_dahl ? report.dahl_rows : report.rows) {
         if (!has_noise(row)) continue;
         const IntervalCount& count = row.intervals[k];
         const IntervalCount sliding = Slides(row) ? count : IntervalCount();
         verdict.all.Add(count);
         verdict.sliding.Add(sliding);
-        const double chance = chance_of(count, sliding);
-        if (chance >= least) continue;
-        fail(verdict.parameter, by_dahl,
-             fmt::format(" at lambda {:g}, noise {:g}", row.lambda, row.noise), count, chance);
+        const std::string where = fmt::format(" at lambda {:g}, noise {:g}", row.lambda, row.noise);
+        judge(count, sliding, where, where);
       }
-      verdict.chance = chance_of(verdict.all, verdict.sliding);
+      verdict.chance = judge(verdict.all, verdict.sliding, "", " at lambda > 1");
       verdict.passed = verdict.chance >= least;
-      if (!verdict.passed) {
-        const bool is_low = verdict.all.ChanceOfSoFew() <= verdict.sliding.ChanceOfSoMany();
-        fail(verdict.parameter, by_dahl, is_low ? "" : " at lambda > 1",
-             is_low ? verdict.all : verdict.sliding, verdict.chance);
-      }
       report.coverage.push_back(verdict);
     }
   }
@@ -326,44 +292,43 @@ double NoiseFreeTolerance(double lambda) {
 
 ValidationReport ValidateMapping(const ValidationOptions& options) {
   RequireValidation(options);
-  std::vector<RowBuilder> rows;
-  std::vector<RowBuilder> dahl_rows;
+  std::array<std::vector<RowBuilder>, 2> rows;  // by Masing's law, and by Dahl's own
   for (const double noise : options.noise_levels) {
     for (const double lambda : options.lambdas) {
-      RowBuilder& builder = rows.emplace_back();
+      RowBuilder& builder = rows[0].emplace_back();
       builder.row.noise = noise;
       builder.row.lambda = lambda;
       builder.row.tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated;
-      dahl_rows.push_back(builder);
     }
   }
+  rows[1] = rows[0];
   ValidationReport report;
-  CaseGenerator generator(options);
+  Draws draws(options.seed);
   for (std::size_t index = 0; index < options.cases; ++index) {
-    const Case drawn = generator.Next(index);
+    const Case drawn = DrawCase(options, index, draws);
     const Record clean = MindlinRecord(drawn);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
     for (std::size_t level = 0; level < options.noise_levels.size(); ++level) {
       Record noisy = clean;
       const double noise = options.noise_levels[level];
-      for (double& force : noisy.force) force += noise * std::abs(peak) * generator.Normal();
+      for (double& force : noisy.force) force += noise * std::abs(peak) * draws.Normal();
       const Record steady = SteadyPart(noisy, drawn);
       const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
       for (const Trial& trial : {ByMasing(noisy, drawn), ByDahl(steady, drawn)}) {
         const FitResult fit = Fit({&trial.record, 1}, trial.options);
-        Errors errors = Compare(trial, fit, options.interval_factor);
+        Errors errors = Compare(trial, fit);
         if (noise > 0 && errors.converged) errors.standardized = StandardizedDistance(trial, fit);
         ++report.fits;
-        if (!(trial.IsDahl() ? dahl_rows : rows)[place].Add(errors)) {
+        if (!rows[trial.IsDahl() ? 1 : 0][place].Add(errors)) {
           ++report.failures;
           report.failed_cases.push_back(Describe(drawn, index, noise, trial, errors));
         }
       }
     }
   }
-  for (RowBuilder& row : rows) report.rows.push_back(row.Finish());
-  for (RowBuilder& row : dahl_rows) report.dahl_rows.push_back(row.Finish());
+  for (RowBuilder& row : rows[0]) report.rows.push_back(row.Finish());
+  for (RowBuilder& row : rows[1]) report.dahl_rows.push_back(row.Finish());
   JudgeCoverage(report);
   return report;
 }

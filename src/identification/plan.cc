@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory_resource>
 #include <string_view>
 #include <utility>
 
@@ -16,7 +17,6 @@
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
@@ -100,19 +100,14 @@ Solution SolutionAt(const Expectation& expected, const models::BranchLaw& law,
                     const Parameters& parameters) {
   Solution solution;
   solution.converged = true;
+  const std::array of_contact = {law.tangential_stiffness, law.shape_exponent, law.slip_force,
+                                 expected.rig.stiffness, expected.load_exponent};
+  static_assert(kLoadExponent + 1 == std::tuple_size_v<decltype(of_contact)>);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Parameter& parameter = parameters[p];
     double theta = parameter.theta;
-    if (p == kStiffness) {
-      theta = parameter.ToTheta(law.tangential_stiffness);
-    } else if (p == kShape) {
-      theta = parameter.ToTheta(law.shape_exponent);
-    } else if (p == kSlipForce) {
-      theta = parameter.ToTheta(law.slip_force);
-    } else if (p == kRig && parameters.has_rig()) {
-      theta = parameter.ToTheta(expected.rig.stiffness);
-    } else if (p == kLoadExponent && !parameter.absent) {
-      theta = parameter.ToTheta(expected.load_exponent);
+    if (p < of_contact.size() && !parameter.absent) {
+      theta = parameter.ToTheta(of_contact[p]);
     } else if (!parameter.fixed && !parameter.term->positive) {
       theta = parameter.ToTheta(0.0);
     }
@@ -164,11 +159,6 @@ double LawEvidence(const std::vector<loop::Record>& records, const Expectation& 
 
 }  // namespace
 
-const ParameterEstimate* ExpectedFit::Find(std::string_view name) const {
-  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-  return found == parameters.end() ? nullptr : &*found;
-}
-
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                       const FitOptions& given) {
   RequirePlan(expected, protocol, given);
@@ -183,17 +173,17 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   if (!IsRigid(expected.rig) && !fits_rig) {
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   }
-  Arena arena;
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  const loop::PreparedRecords prepared = loop::Prepare(views, options.preparation, &arena);
-  ScaledRecords data = Scale(prepared, options, &arena);
+  const loop::PreparedRecords prepared =
+      loop::Prepare(views, options.preparation, std::pmr::get_default_resource());
+  ScaledRecords data = Scale(prepared, options);
   if (records.size() > 1 && !data.is_load_series) {
     throw InvalidArgument(
         fmt::format("loads are one load: the largest must exceed the least by more than {:g} %",
                     100 * options.thresholds.load_difference));
   }
   const Problem problem{&data, options.model, protocol.initial_state,
-                        Parameters(data, options, protocol.initial_state, &arena)};
+                        Parameters(data, options, protocol.initial_state)};
   const double mean_load = protocol.loads.empty() ? 1.0 : data.reference_load;
   Solution solution =
       SolutionAt(expected, models::AtLoad(expected.law, mean_load, expected.load_exponent),
@@ -220,14 +210,9 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
       result.peak_force = std::max(result.peak_force, std::abs(force));
     }
   }
-  for (const std::size_t p : problem.parameters.reported()) {
-    const Parameter& parameter = problem.parameters[p];
-    ParameterEstimate& estimate = result.parameters.emplace_back();
-    estimate.name = problem.parameters.NameOf(p);
-    estimate.unit = parameter.term->unit;
-    estimate.value = parameter.ToValue(solution.theta[p]);
-    estimate.status = StatusOf(parameter, solution.side[p]);
-    estimates.Fill(p, estimate);
+  result.parameters = ValuesOf(problem, solution);
+  for (std::size_t k = 0; k < result.parameters.size(); ++k) {
+    estimates.Fill(problem.parameters.reported()[k], result.parameters[k]);
   }
   result.law_evidence = LawEvidence(records, expected, protocol);
   return result;
@@ -239,12 +224,10 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
     RequirePositive(fmt::format("wanted precision of {}", name), precision.value);
     const ParameterEstimate* estimate = fit.Find(name);
     if (estimate == nullptr) {
-      std::string names;
-      for (const ParameterEstimate& known : fit.parameters) {
-        names += (names.empty() ? "" : ", ") + known.name;
-      }
-      throw InvalidArgument(
-          fmt::format("parameter '{}' is not fitted: must be one of {}", name, names));
+      std::vector<std::string> names;
+      for (const ParameterEstimate& known : fit.parameters) names.push_back(known.name);
+      throw InvalidArgument(fmt::format("parameter '{}' is not fitted: must be one of {}", name,
+                                        fmt::join(names, ", ")));
     }
     if (estimate->status == ParameterStatus::kFixed) continue;
     if (!estimate->standard_error) return std::numeric_limits<double>::infinity();

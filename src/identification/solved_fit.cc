@@ -1,11 +1,9 @@
 #include "identification/solved_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <memory_resource>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -63,28 +61,23 @@ std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
 
 /// Turns the initial state of one record after the other, as long as one of them is clearly the
 /// better for it; `criterion` is Akaike's of a candidate.
-/// @param solution  of what is returned
 /// @returns nothing where all records stay as they are
 template <typename Criterion>
 std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate& pure,
-                                        const Criterion& criterion, Solution& solution) {
+                                        const Criterion& criterion) {
   std::optional<Candidate> best;
-  Solution trial_solution;
   constexpr int kMostPasses = 3;
   bool any = true;
   for (int pass = 0; pass < kMostPasses && any; ++pass) {
     any = false;
     for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
       const Candidate& from = best ? *best : pure;
-      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r), attempt.memory);
-      trial.solution = &trial_solution;
-      const std::vector<double> start = ThetaFor(trial.problem, from.problem, *from.solution);
+      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r));
+      const std::vector<double> start = ThetaFor(trial.problem, from.problem, from.solution);
       attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
-      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial_solution);
+      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
       const double gain = criterion(from) - criterion(trial);
       if (!(gain >= attempt.options.thresholds.undecided)) continue;
-      std::swap(solution, trial_solution);
-      trial.solution = &solution;
       best.emplace(std::move(trial));
       any = true;
     }
@@ -96,62 +89,58 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
 /// several records also some as virgin and some as steady, where all as one does not fit.
 Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  std::array<Solution, 3>& solutions = attempt.buffers.states;
-  const auto make = [&](const RecordStates& state, Solution& solution) {
-    Candidate candidate(attempt.data, options, state, attempt.memory);
-    candidate.solution = &solution;
+  const auto make = [&](const RecordStates& state) {
+    Candidate candidate(attempt.data, options, state);
     RequireEnoughSamples(candidate.problem, attempt.prepared, options);
     return candidate;
   };
   const auto find_starts = [&](Candidate& candidate,
                                double look = std::numeric_limits<double>::infinity()) {
-    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
+    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers);
   };
   const auto descend = [&](Candidate& candidate) {
-    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
+    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers);
     Descend(candidate, options, attempt.buffers);
     SearchBesideMinimum(candidate, options, attempt.buffers);
   };
   if (const std::optional<RecordStates> given = GivenState(attempt)) {
-    Candidate candidate = make(*given, solutions[0]);
+    Candidate candidate = make(*given);
     find_starts(candidate);
     descend(candidate);
     return candidate;
   }
-  Candidate virgin = make(InitialState::kVirgin, solutions[0]);
-  Candidate steady = make(InitialState::kSteady, solutions[1]);
+  Candidate virgin = make(InitialState::kVirgin);
+  Candidate steady = make(InitialState::kSteady);
   const double virgin_cost = find_starts(virgin);
   const double virgin_look =
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
-  // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
-  // is beyond the parameter that the two differ by, however few samples are left of it.
-  constexpr double kClearlyWorse = 4.0;
+  const double clearly_worse = options.thresholds.hopeless_past;
   const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
-  if (is_one && steady_cost > kClearlyWorse * virgin_cost) {
+  if (is_one && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
-    if (virgin.solution->converged) return virgin;
-  } else if (is_one && virgin_cost > kClearlyWorse * steady_cost) {
+    if (virgin.solution.converged) return virgin;
+  } else if (is_one && virgin_cost > clearly_worse * steady_cost) {
     descend(steady);
-    if (steady.solution->converged) return steady;
+    if (steady.solution.converged) return steady;
   }
   descend(virgin);
   descend(steady);
   const Candidate& better =
-      virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
+      virgin.solution.sum_of_squares < steady.solution.sum_of_squares ? virgin : steady;
   bool is_virgin = true;
   std::optional<Candidate> mixed;
-  if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
-    const Evidence evidence(attempt.data.counted,
-                            EffectiveSamples(better.problem, better.solution->theta,
-                                             attempt.buffers.response, attempt.memory));
+  if (std::isfinite(better.solution.sum_of_squares)) {  // else neither was even started
+    const Evidence evidence(
+        attempt.data.counted,
+        EffectiveSamples(better.problem, better.solution.theta, attempt.buffers.response));
     const auto criterion = [&](const Candidate& candidate) {
-      return evidence.Aicc(candidate.solution->sum_of_squares,
+      return evidence.Aicc(candidate.solution.sum_of_squares,
                            candidate.problem.parameters.free().size());
     };
     is_virgin = criterion(virgin) < criterion(steady);
     if (!is_one) {
-      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion, solutions[2]);
+      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion);
     }
   }
   if (mixed) return std::move(*mixed);
@@ -163,11 +152,11 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
   const Problem& problem = candidate.problem;
   const bool is_known = attempt.options.response_noise().has_value();
   if (is_known || problem.data->records.size() < 2 ||
-      !std::isfinite(candidate.solution->sum_of_squares)) {
+      !std::isfinite(candidate.solution.sum_of_squares)) {
     return false;
   }
-  std::pmr::vector<double> residual(problem.size(), attempt.memory);
-  EvaluateResidual(problem, candidate.solution->theta, attempt.buffers.response, residual);
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, candidate.solution.theta, attempt.buffers.response, residual);
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
 }
 
@@ -177,7 +166,7 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
 ///   errors, the record shows its outermost samples to be better, or it allows none
 std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate& candidate) {
   const Problem& problem = candidate.problem;
-  const Solution& best = *candidate.solution;
+  const Solution& best = candidate.solution;
   const ScaledRecords& data = *problem.data;
   const Thresholds& thresholds = attempt.options.thresholds;
   // A gate means noise in the displacement: its outermost samples are the noisiest, and say
@@ -206,9 +195,9 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
   const double shift = static_cast<double>(data.counted) * std::exp(best.theta[kStiffness]) *
                        largest / std::sqrt(best.sum_of_squares);
   if (!(shift > thresholds.turning_point_shift)) return std::nullopt;
-  TurningPointFit fit{PutInTurningPoints(data, overshoot), best};
+  TurningPointFit fit{std::make_unique<ScaledRecords>(PutInTurningPoints(data, overshoot)), best};
   Problem turned = problem;
-  turned.data = &fit.records->data;
+  turned.data = fit.records.get();
   SearchBuffers& buffers = attempt.buffers;
   buffers.solver.Bind(turned, buffers.response);
   buffers.solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
@@ -232,21 +221,21 @@ SolvedFit SolveFit(const Attempt& attempt) {
   RequireToldAsymmetry(best.problem);
   const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
   const bool by_record = RecordsDifferInNoise(attempt, best);
-  solved.is_weighted = !is_plain || by_record;
-  if (std::isfinite(best.solution->sum_of_squares)) {
+  const bool is_weighted = !is_plain || by_record;
+  if (std::isfinite(best.solution.sum_of_squares)) {
     const auto fit_with_weights = [&](ScaledRecords& weighted) {
       solved.is_settled = FitWithWeights(
           best.problem, weighted, options, solved.displacement_errors, buffers.solver,
-          buffers.response, SolverOptionsOf(options), *best.solution, solved.noise, by_record);
+          buffers.response, SolverOptionsOf(options), best.solution, solved.noise, by_record);
     };
-    if (solved.is_weighted) {
+    if (is_weighted) {
       fit_with_weights(data);
       // Outliers, or the noisiest of the records, may have hidden the initial state: once
       // more from all starts, as weighted.
       if (options.loss != Loss::kNone || by_record) {
-        ThinnedRecords weighted_thin(data, attempt.memory);
-        const Attempt weighted{options,       attempt.depth, attempt.prepared, data,
-                               weighted_thin, buffers,       attempt.memory};
+        ThinnedRecords weighted_thin(data);
+        const Attempt weighted{options, attempt.depth, attempt.prepared,
+                               data,    weighted_thin, buffers};
         best = FitBestState(weighted);
         fit_with_weights(data);
       }
@@ -254,18 +243,18 @@ SolvedFit SolveFit(const Attempt& attempt) {
     if (is_plain) {
       solved.turned = TurnedFit(attempt, best);
       if (solved.turned) {
-        best.problem.data = &solved.turned->records->data;
-        *best.solution = solved.turned->solution;
+        best.problem.data = solved.turned->records.get();
+        best.solution = solved.turned->solution;
         // The weights come from the residuals of the fit whose turning points are the motion's.
-        if (by_record) fit_with_weights(solved.turned->records->data);
+        if (by_record) fit_with_weights(*solved.turned->records);
       }
       std::vector<double> of_records = std::move(solved.noise.of_records);
-      solved.noise = PlainNoise(*best.problem.data, options, best.solution->sum_of_squares,
+      solved.noise = PlainNoise(*best.problem.data, options, best.solution.sum_of_squares,
                                 best.problem.parameters.free().size());
       solved.noise.of_records = std::move(of_records);
     }
     if (attempt.depth >= Depth::kErrors) {
-      solved.at = LinearizeAt(best.problem, best.solution->theta, buffers.response,
+      solved.at = LinearizeAt(best.problem, best.solution.theta, buffers.response,
                               best.problem.parameters.free());
     }
   }

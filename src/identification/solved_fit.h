@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory_resource>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -25,7 +24,6 @@ struct Attempt {
   ScaledRecords& data;
   ThinnedRecords& thin;
   SearchBuffers& buffers;
-  std::pmr::memory_resource* memory;
   const FitResult* without_priors = nullptr;  ///< null where there is none
 };
 
@@ -37,13 +35,12 @@ struct SolvedFit {
   Candidate best;  ///< best of the initial states that were tried
   DisplacementErrors displacement_errors;
   Noise noise = {};
-  bool is_weighted = false;  ///< samples do not all weigh the same
-  bool is_settled = true;    ///< the weights are those of the residuals that they leave
+  bool is_settled = true;  ///< the weights are those of the residuals that they leave
   /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
   Linearization at = {};  ///< linearization of `best` in its free parameters; from Depth::kErrors
 
-  [[nodiscard]] const Solution& solution() const { return *best.solution; }
+  [[nodiscard]] const Solution& solution() const { return best.solution; }
 };
 
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of

@@ -89,10 +89,8 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
                        const FitOptions& with_all)
     : covariates_(with_all.covariates),
       prepared_(PreparedFor(records, with_all, arena_)),
-      data_(Scale(prepared_, options, &arena_)) {
-  AddCovariates(covariates_, false, prepared_, options.offsets, data_);
-  AddColumnsOfTerms(with_all, data_);
-  if (HasTerm(with_all, TermId::kLag)) SetClocks(data_);
+      data_(Scale(prepared_, options)) {
+  AddColumns(with_all, prepared_, /*with_others=*/false, data_);
 }
 
 std::vector<std::vector<bool>> TermScores::LeftOut() const {
@@ -108,8 +106,7 @@ Problem TermScores::ProblemOf(const FitOptions& options) const {
   FitOptions with_columns = options;
   with_columns.covariates = covariates_;
   with_columns.start.clear();
-  return {&data_, options.model, state_,
-          Parameters(data_, with_columns, state_, std::pmr::get_default_resource())};
+  return {&data_, options.model, state_, Parameters(data_, with_columns, state_)};
 }
 
 /// θ of a problem at the fit's solution, with terms that the fit does not have without effect.

@@ -385,7 +385,6 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
   const FitOptions with = choice.AddedTo(base_.options);
   FitOptions options = with;
   HoldInitialStates(base_.fit, options);
-  options.starts = 1;
   StartFrom(base_.fit, options);
   for (const auto& [name, value] : starts) options.start[name] = value;
   return Fitted(with, options);

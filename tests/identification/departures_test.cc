@@ -621,13 +621,13 @@ TEST(Departures, InsertedTurningPointsTakeNoTime) {
   Stages stages(Complete());
   const DepartureColumns plain = ColumnsOf(stages);
   const ScaledRecord record = stages.data.records[0];
-  const std::unique_ptr<TurnedRecords> turned =
+  const ScaledRecords turned =
       PutInTurningPoints(stages.data, std::vector<double>(record.reversals.size(), 0.0));
-  stages.problem.data = &turned->data;
+  stages.problem.data = &turned;
   const DepartureColumns with = ColumnsOf(stages);
   ASSERT_EQ(with.columns.rows(),
             plain.columns.rows() + static_cast<Eigen::Index>(record.reversals.size()));
-  const auto& inserted = turned->data.records[0].inserted;
+  const auto& inserted = turned.records[0].inserted;
   std::size_t i = 0;  // of the plain record
   for (std::size_t k = 0; k < inserted.size(); ++k) {
     if (inserted[k] != 0) continue;

@@ -31,7 +31,6 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "reversal gate [m] = -1 is invalid: must be finite and >= 0"},
       {[](FitOptions& o) { o.max_iterations = 0; },
        "maximum iterations [-] = 0 is invalid: must be >= 1"},
-      {[](FitOptions& o) { o.starts = 0; }, "starts [-] = 0 is invalid: must be >= 1"},
       {[](FitOptions& o) { o.fixed["stiffness"] = 1; },
        "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
@@ -209,7 +208,6 @@ TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
 TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
   FitOptions options;
   options.max_iterations = 1;
-  options.starts = 1;
   const FitResult fit = FitOne(Loop(), options);
   EXPECT_FALSE(fit.converged);
   EXPECT_THAT(fit.solver.message, HasSubstr("iterations"));

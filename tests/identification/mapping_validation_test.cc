@@ -19,8 +19,8 @@ TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
     const ValidationRow& row = report.rows[i];
     EXPECT_EQ(row.lambda, options.lambdas[i]);
     EXPECT_EQ(row.undetermined, 0u);
-    EXPECT_LE(row.worst_sigma_error, NoiseFreeTolerance(row.lambda));
-    EXPECT_LE(row.median_alpha_error, row.worst_alpha_error);
+    EXPECT_LE(row.errors[0].worst, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.errors[1].median, row.errors[1].worst);
     cases += row.cases;
   }
   EXPECT_EQ(cases, options.cases);
@@ -45,9 +45,9 @@ TEST(MappingValidation, DahlsOwnLawReturnsTheContactToo) {
       EXPECT_GT(row.worst_standardized, 0.0);
       continue;
     }
-    EXPECT_LE(row.worst_sigma_error, NoiseFreeTolerance(row.lambda));
-    EXPECT_LE(row.worst_alpha_error, NoiseFreeTolerance(row.lambda));
-    EXPECT_LE(row.worst_slip_force_error, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.errors[0].worst, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.errors[1].worst, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.errors[2].worst, NoiseFreeTolerance(row.lambda));
     EXPECT_EQ(row.undetermined, 0u);
   }
 }
@@ -58,7 +58,7 @@ TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {
   options.noise_levels = {0.01};
   const auto worst = [&](std::uint64_t seed) {
     options.seed = seed;
-    return ValidateMapping(options).rows[0].worst_sigma_error;
+    return ValidateMapping(options).rows[0].errors[0].worst;
   };
   EXPECT_EQ(worst(1), worst(1));
   EXPECT_NE(worst(1), worst(2));
@@ -73,14 +73,12 @@ TEST(MappingValidation, NoiseMakesTheErrorsItShould) {
   options.lambdas = {1.2};
   const ValidationReport report = ValidateMapping(options);
   ASSERT_EQ(report.rows.size(), 1u);
-  EXPECT_GT(report.rows[0].median_sigma_error, 1e-5);
-  EXPECT_LT(report.rows[0].worst_sigma_error, 0.1);
+  EXPECT_GT(report.rows[0].errors[0].median, 1e-5);
+  EXPECT_LT(report.rows[0].errors[0].worst, 0.1);
   EXPECT_GT(report.rows[0].worst_standardized, 0.0);
 }
 
-TEST(MappingValidation, CoverageOfHonestIntervalsPassesAndOfErrorsStatedTooSmallFails) {
-  // 1.96/1.5 standard errors cover 80.9 %: of 300 loops 243 ± 7, and fewer than 262 of them are
-  // beyond what 93 % would give once in 24 000, the false alarm over 24 tests.
+TEST(MappingValidation, CoverageOfHonestIntervalsPasses) {
   ValidationOptions options;
   options.cases = 300;
   options.noise_levels = {0.01};
@@ -92,14 +90,6 @@ TEST(MappingValidation, CoverageOfHonestIntervalsPassesAndOfErrorsStatedTooSmall
     EXPECT_EQ(verdict.all.intervals, options.cases) << verdict.parameter;
     EXPECT_EQ(verdict.sliding.intervals, options.cases) << verdict.parameter;
   }
-  options.interval_factor = 1 / 1.5;
-  const ValidationReport wrong = ValidateMapping(options);
-  EXPECT_EQ(wrong.failures, 0U) << "six standard errors do not see it";
-  EXPECT_FALSE(wrong.passed());
-  for (const CoverageVerdict& verdict : wrong.coverage) {
-    EXPECT_FALSE(verdict.passed) << verdict.parameter;
-  }
-  EXPECT_THAT(wrong.failed_coverages, ::testing::Contains(::testing::HasSubstr("of 95 % stated")));
 }
 
 TEST(MappingValidation, ChancesOfACountAreThoseOfTheBinomialLaw) {
@@ -127,7 +117,6 @@ TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
   refuses([](ValidationOptions& o) { o.lambdas = {-1}; });
   refuses([](ValidationOptions& o) { o.noise_levels.clear(); });
   refuses([](ValidationOptions& o) { o.noise_levels = {-0.1}; });
-  refuses([](ValidationOptions& o) { o.interval_factor = 0; });
 }
 
 }  // namespace

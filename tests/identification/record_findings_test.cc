@@ -98,9 +98,8 @@ TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {
 }
 
 TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
-  std::pmr::memory_resource* const memory = std::pmr::get_default_resource();
-  ScaledRecords data(memory);
-  ScaledRecord& record = data.records.emplace_back(memory);
+  ScaledRecords data;
+  ScaledRecord& record = data.records.emplace_back();
   record.force.assign({0.0, 0.1, 0.2, 0.3});
   record.load_change.assign({0.5, 0.3, 0.1, 9.0});
   record.counts.assign({1, 1, 1, 0});

@@ -93,7 +93,7 @@ TEST(Solver, HeldStiffnessRigOrSlipForceLeaveTheOthersAtTheirMinimum) {
     Stages stages(record, options);
     const Solution solution = stages.Solve();
     EXPECT_TRUE(solution.converged);
-    const std::size_t p = stages.problem.parameters.PositionOf(name, 0);
+    const std::size_t p = stages.problem.parameters.PositionOf(FindTerm(name)->id);
     EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]) / value, 1.0, 1e-14);
     EXPECT_LT(GradientAt(stages, solution), kStationary);
   }
@@ -105,7 +105,7 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
   options.bounds["force_offset"] = {-20.0, 3.0};
   Stages stages(record, options);
   const Solution solution = stages.Solve();
-  const std::size_t p = stages.problem.parameters.PositionOf("force_offset", 0);
+  const std::size_t p = stages.problem.parameters.PositionOf(TermId::kForceOffset);
   EXPECT_EQ(solution.side[p], BoundSide::kUpper);
   EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]), 3.0, 1e-12);
   EXPECT_LT(GradientAt(stages, solution), kStationary) << "of the others";
@@ -128,7 +128,7 @@ TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
   Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});
-  ThinnedRecords thinned(stages.data, Stages::Memory());
+  ThinnedRecords thinned(stages.data);
   const ScaledRecords& thin = thinned.Get();
   ASSERT_EQ(thin.records.size(), 2U);
   std::size_t counted = 0;

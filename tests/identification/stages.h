@@ -28,10 +28,9 @@ class Stages {
       : records(std::move(given)),
         options(std::move(fit_options)),
         views(records.begin(), records.end()),
-        prepared(loop::Prepare(views, options.preparation, Memory())),
+        prepared(loop::Prepare(views, options.preparation, std::pmr::get_default_resource())),
         data(ScaledRecordsOf(prepared, options)),
-        problem{&data, options.model, state,
-                identification::Parameters(data, options, state, Memory())} {}
+        problem{&data, options.model, state, identification::Parameters(data, options, state)} {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
                   models::InitialState state = models::InitialState::kVirgin)
       : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
@@ -42,27 +41,19 @@ class Stages {
   static identification::ScaledRecords ScaledRecordsOf(loop::PreparedRecords& prepared,
                                                        const identification::FitOptions& options) {
     identification::LeaveOutBeyondLags(options, prepared);
-    identification::ScaledRecords data = identification::Scale(prepared, options, Memory());
-    identification::AddCovariates(options.covariates, /*with_others=*/true, prepared,
-                                  options.offsets, data);
-    identification::AddColumnsOfTerms(options, data);
-    if (identification::HasTerm(options, identification::TermId::kLag))
-      identification::SetClocks(data);
+    identification::ScaledRecords data = identification::Scale(prepared, options);
+    identification::AddColumns(options, prepared, /*with_others=*/true, data);
     return data;
   }
 
-  static std::pmr::memory_resource* Memory() { return std::pmr::get_default_resource(); }
-
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
-    identification::ThinnedRecords thin(data, Memory());
-    identification::Candidate candidate(data, options, problem.state, Memory());
-    identification::Solution solution;
-    candidate.solution = &solution;
+    identification::ThinnedRecords thin(data);
+    identification::Candidate candidate(data, options, problem.state);
     identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
-                                 buffers, Memory());
+                                 buffers);
     identification::Descend(candidate, options, buffers);
-    return solution;
+    return candidate.solution;
   }
 
   /// θ of the parameters that a fit reports.

@@ -33,7 +33,10 @@ TEST(Starts, OfARecordToldToBeVirginLeadToTheLeastMinimum) {
     options.model = models::FindFrictionModel(late.model);
     options.initial_state = models::InitialState::kVirgin;
     const double rms = FitOne(record, options).residuals.rms;
-    options.starts = 30;
+    options.start = {{"sigma", kMindlin.tangential_stiffness},
+                     {"alpha", kMindlin.shape_exponent},
+                     {"slip_force", kMindlin.slip_force},
+                     {"displacement_offset", reach}};
     EXPECT_LE(rms, (1 + 1e-6) * FitOne(record, options).residuals.rms)
         << late.lambda << " " << late.model;
   }

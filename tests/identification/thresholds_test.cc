@@ -84,7 +84,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
-  ThinnedRecords thin(stages.data, Stages::Memory());
+  ThinnedRecords thin(stages.data);
   ParameterEstimate shape;
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;

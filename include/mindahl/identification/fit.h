@@ -18,11 +18,7 @@ class TooFewSamples : public InvalidArgument {
   using InvalidArgument::InvalidArgument;
 };
 
-/// Least-squares fits of records with the same options, one after the other, in memory that is
-/// kept: at Depth::kEstimate a fit of records that are no larger than those before allocates
-/// nothing, unless their displacement is noisy, a loss is robust, the search ends at a bound, or
-/// samples are so coarse for the noise of the force that turning points between them have to be
-/// looked for.
+/// Least-squares fits of records with the same options, one after the other.
 ///
 /// A fit is of one contact: σ, α and Tc (and what else has Scope::kContact) are shared by its
 /// records, offsets belong to each. It minimises

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -79,16 +78,10 @@ struct FitOptions {
 
   /// The solver stops when a step can lower the cost by function_tolerance · cost at the most …
   double function_tolerance = 1e-10;
-  /// … or |Δθ| < parameter_tolerance · (|θ| + parameter_tolerance), θ non-dimensional …
-  double parameter_tolerance = 1e-13;
+  /// … or |Δθ| < 1e-13·(|θ| + 1e-13), θ non-dimensional …
   /// … or 20 steps together raise twice the log-likelihood by less than 1e-3 …
   /// … or it has made this many steps: then the result is not converged.
   int max_iterations = 500;
-
-  /// Starting points refined on all samples, best first: up to four of a look at the plane of σ/Tc
-  /// and α, and beyond them drawn at random.
-  std::size_t starts = 1;
-  std::uint64_t seed = 1;  ///< seed of the random starts
 
   Thresholds thresholds{};
 

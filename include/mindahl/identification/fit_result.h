@@ -49,8 +49,7 @@ struct SolverReport {
   std::string_view termination = "not run";
   std::string message = "not run";  ///< Ceres' reason
   int iterations = 0;               ///< sum over all searches from this start
-  double initial_cost = 0.0;        ///< ½ Σ of the squared weighted residuals [N² or m²]
-  double final_cost = 0.0;          ///< likewise
+  double final_cost = 0.0;          ///< ½ Σ of the squared weighted residuals [N² or m²]
 };
 
 /// Sets how much of a fit is computed; each depth includes the one before.
@@ -86,6 +85,10 @@ struct ParameterEstimate {
     return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;
   }
 };
+
+/// Returns nullptr when there is none of that name.
+const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& parameters,
+                                      std::string_view name);
 
 /// Holds the fit of one record.
 struct RecordFit {
@@ -152,7 +155,9 @@ struct FitResult {
   std::vector<Finding> findings;
 
   /// Returns nullptr when the fit has no such parameter.
-  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
+  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const {
+    return FindEstimate(parameters, name);
+  }
 
   /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;

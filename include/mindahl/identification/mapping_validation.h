@@ -18,9 +18,6 @@ struct ValidationOptions {
   std::vector<double> noise_levels = {0.0, 1e-3, 1e-2, 5e-2};
   /// Amplitudes X/δc, taken in turn.
   std::vector<double> lambdas = {0.3, 0.5, 0.8, 1.0, 1.2, 2.0, 3.0};
-  /// Half widths of the intervals are multiplied by this before they are compared with the truth:
-  /// what a program that states its errors wrongly would do. Other than 1 it tests the validation.
-  double interval_factor = 1.0;
 };
 
 /// Returns the tolerance on relative errors of σ and Tc, and errors of α, of a noise-free loop.
@@ -73,20 +70,21 @@ struct CoverageVerdict {
   bool passed = true;          ///< not less than kCoverageFalseAlarm over the number of tests
 };
 
+struct ErrorSpread {
+  double median = 0.0;
+  double worst = 0.0;
+};
+
 /// All cases at one amplitude and noise level.
 struct ValidationRow {
   double lambda = 0.0;
   double noise = 0.0;
   std::size_t cases = 0;
-  std::size_t failures = 0;         ///< not converged, or an error above the tolerance
-  std::size_t undetermined = 0;     ///< a parameter reported as not identifiable
-  double tolerance = 0.0;           ///< noise-free: on the errors; with noise: in standard errors
-  double median_sigma_error = 0.0;  ///< |σ/(8a/G*) − 1|
-  double worst_sigma_error = 0.0;
-  double median_alpha_error = 0.0;  ///< |α − 1/3|
-  double worst_alpha_error = 0.0;
-  double median_slip_force_error = 0.0;  ///< |Tc/(μN) − 1|
-  double worst_slip_force_error = 0.0;
+  std::size_t failures = 0;      ///< not converged, or an error above the tolerance
+  std::size_t undetermined = 0;  ///< a parameter reported as not identifiable
+  double tolerance = 0.0;        ///< noise-free: on the errors; with noise: in standard errors
+  /// Of |σ/(8a/G*) − 1|, |α − 1/3| and |Tc/(μN) − 1|.
+  std::array<ErrorSpread, kValidatedParameters.size()> errors = {};
   double worst_standardized =
       0.0;  ///< with noise: largest distance of the truth in standard errors
   double coverage =

@@ -51,7 +51,9 @@ struct ExpectedFit {
   double law_evidence = 0.0;
 
   /// Returns nullptr when there is none of that name.
-  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
+  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const {
+    return FindEstimate(parameters, name);
+  }
 };
 
 /// Computes the Cramér–Rao bound with the options' terms, from the exact derivatives at the values

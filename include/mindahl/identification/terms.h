@@ -45,6 +45,15 @@ struct TermUnits {
   double reference_speed = 1.0;         ///< scaled: its mean in the middle third of the strokes
 };
 
+/// The powers of a fit's units in the unit of a parameter.
+struct TermScale {
+  int force = 0;
+  int length = 0;
+  int time = 0;          ///< of half a record
+  int cycle = 0;         ///< time in cycles
+  bool of_file = false;  ///< with the force's sign in the file
+};
+
 /// Names the column of which a linear parameter is the factor, sample by sample in those units.
 enum class Regressor {
   kNone,          ///< it is not linear, or a factor of the model's own response
@@ -121,8 +130,9 @@ struct Term {
   bool positive = false;
   double lowest = 0.0;  ///< default bounds, in units of the data
   double highest = 0.0;
-  double (*scale)(const TermUnits&) = [](const TermUnits& /*units*/) { return 1.0; };
-  double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
+  /// How far a search may move θ in one step; α by so much of itself, where that is beyond 1.
+  double longest_step = 1.5;
+  TermScale powers = {};
   Regressor column = Regressor::kNone;
   bool needs_time = false;
   /// The search may begin at `start`, of a parameter that is not linear.
@@ -142,6 +152,10 @@ struct Term {
   /// Name of the group of terms that it leads, as `--terms` takes it; empty: it comes with another.
   std::string_view group = {};
 
+  /// Returns the scale of the values, in the unit of the parameter.
+  [[nodiscard]] double scale(const TermUnits& units) const;
+  /// Returns the value at θ = 0 of one that is not positive, likewise.
+  [[nodiscard]] double reference(const TermUnits& units) const;
   /// True if a value of zero or below is outside its domain, as of an exponent of the speed.
   [[nodiscard]] constexpr bool must_be_positive() const { return positive || lowest > 0; }
 };

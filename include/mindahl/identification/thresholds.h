@@ -41,6 +41,9 @@ struct Thresholds {
   double one_cycle = 0.02;
   double starts_inside = 0.1;
   double starts_unloaded = 0.02;
+  double starts_without_force = 0.1;
+  double hopeless_past = 4.0;
+  double similar_misfit = 1.5;
   double mobilised_by_asymptote = 0.9;
   double one_amplitude = 0.01;
   double seen_loop = 0.1;

@@ -13,12 +13,33 @@
 
 namespace mindahl::identification {
 
+namespace {
+
 ParameterStatus StatusOf(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed) return ParameterStatus::kFixed;
   if (side == BoundSide::kInside) return ParameterStatus::kFree;
   const bool mirrored = parameter.scale < 0;
   return (side == BoundSide::kLower) != mirrored ? ParameterStatus::kAtLowerBound
                                                  : ParameterStatus::kAtUpperBound;
+}
+
+}  // namespace
+
+std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& solution) {
+  const Parameters& parameters = problem.parameters;
+  const bool timed = !problem.data->records.front().velocity.empty();
+  std::vector<ParameterEstimate> values;
+  values.reserve(parameters.reported().size());
+  for (const std::size_t p : parameters.reported()) {
+    values.push_back({.name = parameters.NameOf(p),
+                      .unit = parameters.UnitOf(p, timed),
+                      .value = parameters[p].ToValue(solution.theta[p]),
+                      .standard_error = {},
+                      .lower95 = {},
+                      .upper95 = {},
+                      .status = StatusOf(parameters[p], solution.side[p])});
+  }
+  return values;
 }
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,

@@ -83,6 +83,7 @@ struct FittedProblem {
   const Estimates& estimates;
 };
 
-ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
+/// Returns what a solution says of the parameters that are reported: values, without errors.
+std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& solution);
 
 }  // namespace mindahl::identification

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "identification/dense.h"
-#include "identification/solve/sums.h"
 #include "identification/solve/turning_points.h"
 
 namespace mindahl::identification {

@@ -7,7 +7,6 @@
 #include "core/probability.h"
 #include "identification/dense.h"
 #include "identification/problem/scaled_records.h"
-#include "identification/solve/sums.h"
 
 namespace mindahl::identification {
 
@@ -29,21 +28,12 @@ Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
                                         std::span<const Mask> counts, std::size_t order) {
   std::size_t samples = 0;
   for (const Series series : residuals) samples += series.size();
-  const bool all_count =
-      std::ranges::all_of(counts, [](const Mask mask) { return std::ranges::count(mask, 0) == 0; });
   Autocovariances covariances{};
   for (std::size_t lag = 0; lag <= order; ++lag) {
     double sum = 0.0;
     std::size_t pairs = 0;
     std::size_t counting = 0;
     for (std::size_t r = 0; r < residuals.size(); ++r) {
-      if (all_count) {
-        const std::size_t here = residuals[r].size() - std::min(lag, residuals[r].size());
-        sum += Dot(residuals[r].last(here), residuals[r].first(here));
-        pairs += here;
-        counting += here;
-        continue;
-      }
       for (std::size_t i = lag; i < residuals[r].size(); ++i) {
         ++pairs;
         if (counts[r][i] == 0 || counts[r][i - lag] == 0) continue;
@@ -280,7 +270,8 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
   if (count < 2 || pooled < degrees * kOnlyRounding * kOnlyRounding) return 1.0;
   const double statistic = degrees * std::log(pooled / degrees) - logarithms;
   const double correction = 1 + (reciprocals - 1 / degrees) / (3 * (count - 1));
-  return PValueOfChiSquared(statistic / correction, count - 1);
+  // Of records with one variance it is zero but for rounding.
+  return PValueOfChiSquared(std::max(statistic, 0.0) / correction, count - 1);
 }
 
 }  // namespace mindahl::identification

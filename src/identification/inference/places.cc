@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/normalized_response.h"
+#include "models/normalized_response.h"
 
 namespace mindahl::identification {
 namespace {
@@ -308,7 +308,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
   std::vector<double> complete(problem.size());
   std::vector<double> by_asymmetry(tells_asymmetry ? problem.size() : 0);
   ResponseColumns wanted;
-  wanted.asymmetry = by_asymmetry;
+  wanted[TermId::kAsymmetry] = by_asymmetry;
   response.Bind(problem);
   response.Differentiate(point, force, wanted);
   Predict(problem, theta, response, complete);

@@ -355,12 +355,12 @@ class Weighting {
   bool is_lost_ = false;
 };
 
-/// Writes the residuals of a solution under the weights that it implies.
-void FillResidual(const Problem& problem, Response& response, Solution& solution) {
-  solution.residual.resize(problem.size());
-  EvaluateResidual(problem, solution.theta, response, solution.residual);
+/// Writes the cost of a solution under the weights that it implies.
+void FillCost(const Problem& problem, Response& response, Solution& solution) {
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, solution.theta, response, residual);
   solution.sum_of_squares = problem.parameters.PriorCost(solution.theta);
-  for (const double r : solution.residual) solution.sum_of_squares += r * r;
+  for (const double r : residual) solution.sum_of_squares += r * r;
   solution.report.final_cost = solution.sum_of_squares / 2;
 }
 
@@ -426,12 +426,12 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     change = std::sqrt(squares / static_cast<double>(force.size()));
     const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) {
-      FillResidual(problem, response, solution);
+      FillCost(problem, response, solution);
       return true;
     }
     if (settled && first_huber) round = kHuberRounds - 1;
   }
-  FillResidual(problem, response, solution);
+  FillCost(problem, response, solution);
   return change < kHarmless * std::max(noise.force, kRoundingRms);
 }
 

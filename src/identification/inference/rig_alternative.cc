@@ -1,7 +1,6 @@
 #include "identification/inference/rig_alternative.h"
 
 #include <limits>
-#include <memory_resource>
 #include <utility>
 
 #include "identification/inference/noise.h"
@@ -26,12 +25,10 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlinShapeExponent;
   with_rig.start.clear();
-  Candidate sprung(*problem.data, with_rig, problem.state, std::pmr::get_default_resource());
-  Solution solution;
-  sprung.solution = &solution;
-  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
-               std::pmr::get_default_resource());
+  Candidate sprung(*problem.data, with_rig, problem.state);
+  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers);
   Descend(sprung, with_rig, buffers);
+  const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const auto samples = static_cast<double>(noise.samples);
   const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))

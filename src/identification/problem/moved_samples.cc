@@ -60,13 +60,6 @@ double LongestLag(double samples_a_cycle) {
   return std::clamp(kSamples / samples_a_cycle, TermOf(TermId::kLag).highest, kLongest);
 }
 
-bool MayHaveClocks(const ScaledRecords& data) {
-  const bool timed = !data.records.front().velocity.empty();
-  return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
-    return record.velocity.empty() != timed && GoesOn(record.time);
-  });
-}
-
 void SetClocks(ScaledRecords& data) {
   std::vector<std::size_t> samples;
   for (ScaledRecord& record : data.records) {
@@ -117,7 +110,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
 
 void MovedSamples::MoveTo(const ScaledRecord& record, double amount, models::Memory memory,
                           const models::InitialContact& initial) {
-  if (valid_ && amount == amount_ && initial.unloaded_displacement == unloaded_ &&
+  if (amount_ == amount && initial.unloaded_displacement == unloaded_ &&
       initial.asymmetry == path_.asymmetry) {
     return;
   }
@@ -125,7 +118,6 @@ void MovedSamples::MoveTo(const ScaledRecord& record, double amount, models::Mem
   models::MakeLoadingPath(displacement_, reversals_, memory, initial, path_);
   amount_ = amount;
   unloaded_ = initial.unloaded_displacement;
-  valid_ = true;
 }
 
 void MovedSamples::Clear(std::size_t most) {

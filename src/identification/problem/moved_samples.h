@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,12 +18,8 @@
 /// lag)) of a force that is read late, and those behind a gap.
 namespace mindahl::identification {
 
-/// True if all records have a time that increases, or none has a time.
-bool MayHaveClocks(const ScaledRecords& data);
-
 /// Gives every record a clock: its time, and where that stands still or steps back the time evenly
 /// between the last reading that went on and the next that does.
-/// @param data  MayHaveClocks()
 void SetClocks(ScaledRecords& data);
 
 /// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
@@ -89,8 +86,7 @@ class MovedSamples {
   models::LoadingPath path_;
 
  private:
-  bool valid_ = false;
-  double amount_ = 0.0;
+  std::optional<double> amount_;  // empty until they are moved
   double unloaded_ = 0.0;
 };
 

@@ -5,10 +5,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -21,31 +21,13 @@ namespace mindahl::identification {
 
 namespace {
 
-struct PlacedForce {
-  double position;
-  double force;
-};
-
-/// Takes the least-squares cubic over the position off.
-void TakeOffCubic(std::vector<PlacedForce>& forces) {
-  const auto size = static_cast<Eigen::Index>(forces.size());
-  Eigen::MatrixXd columns(size, 4);
-  Eigen::VectorXd values(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const PlacedForce& at = forces[static_cast<std::size_t>(i)];
-    const double square = at.position * at.position;
-    columns.row(i) << 1.0, at.position, square, square * at.position;
-    values[i] = at.force;
-  }
-  const Eigen::VectorXd left = LeftOver(columns, values);
-  for (Eigen::Index i = 0; i < size; ++i) forces[static_cast<std::size_t>(i)].force = left[i];
-}
-
-/// Forces of the strokes of one direction, of their second halves.
-std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
+/// Returns position and force of the samples in the second halves of the strokes of one direction,
+/// a row each; of the forces a cubic over the position is taken off.
+Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
   constexpr double kMayStick = 0.5;
-  constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
-  std::vector<PlacedForce> forces;
+  constexpr Eigen::Index kFewest = 12;  // for a cubic and a wave to be distinguished from noise
+  Eigen::MatrixXd forces(2 * static_cast<Eigen::Index>(data.samples()), 2);  // ends count twice
+  Eigen::Index count = 0;
   for (const ScaledRecord& record : data.records) {
     std::size_t begin = 0;
     for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
@@ -55,13 +37,16 @@ std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
       for (std::size_t i = begin; i <= end && (way > 0) == is_up; ++i) {
         const double position = record.displacement[i];
         if ((position - from) / way < kMayStick || record.counts[i] == 0) continue;
-        forces.push_back({position, record.force[i]});
+        forces.row(count++) << position, record.force[i];
       }
       begin = end;
     }
   }
-  if (forces.size() < kFewest) return {};
-  TakeOffCubic(forces);
+  if (count < kFewest) count = 0;
+  forces.conservativeResize(count, 2);
+  Eigen::MatrixXd powers = Eigen::MatrixXd::Ones(count, 4);
+  for (int k = 1; k < 4; ++k) powers.col(k) = powers.col(k - 1).cwiseProduct(forces.col(0));
+  if (count > 0) forces.col(1) = LeftOver(powers, forces.col(1));
   return forces;
 }
 
@@ -71,24 +56,21 @@ double StartingPeriod(const ScaledRecords& data) {
   constexpr double kLongest = 1.0;
   constexpr double kStep = 0.1;  // of the frequency: a fifth of what a stroke resolves
   constexpr int kSteps = 390;    // to a frequency of 40
-  constexpr std::size_t kMostSamples = 500;
-  const std::vector<PlacedForce> directions[] = {SlidingForces(data, true),
-                                                 SlidingForces(data, false)};
+  constexpr Eigen::Index kMostSamples = 500;
+  const std::array directions = {SlidingForces(data, true), SlidingForces(data, false)};
   double best = 0.0;
   double period = kLongest;
   for (int step = 0; step <= kSteps; ++step) {
     const double frequency = 1 / kLongest + kStep * step;
     double power = 0.0;
-    for (const std::vector<PlacedForce>& forces : directions) {
-      const std::size_t every = 1 + forces.size() / kMostSamples;
+    for (const Eigen::MatrixXd& forces : directions) {
+      const Eigen::Index every = 1 + forces.rows() / kMostSamples;
       std::complex<double> sum = 0.0;
-      for (std::size_t i = 0; i < forces.size(); i += every) {
-        sum += forces[i].force *
-               std::polar(1.0, 2 * std::numbers::pi * frequency * forces[i].position);
+      for (Eigen::Index i = 0; i < forces.rows(); i += every) {
+        sum += forces(i, 1) * std::polar(1.0, 2 * std::numbers::pi * frequency * forces(i, 0));
       }
-      if (!forces.empty()) {
-        power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.size());
-      }
+      if (forces.rows() == 0) continue;
+      power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.rows());
     }
     if (!(power > best)) continue;
     best = power;
@@ -152,12 +134,11 @@ void Hold(Parameter& parameter, double value) {
 
 /// True if a record begins where both zeros of its file are.
 bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
-  constexpr double kOfForce = 0.1;  // of its half range: noise of the first reading is less
   const double displacement =
       data.displacement.front() * data.units.length + data.units.displacement_reference;
   const double force = data.force.front() * data.units.force + data.units.force_reference;
   return std::abs(displacement) <= options.thresholds.starts_unloaded * data.units.length &&
-         std::abs(force) <= kOfForce * data.units.force;
+         std::abs(force) <= options.thresholds.starts_without_force * data.units.force;
 }
 
 /// A single loading curve looks the same from any reference position: where the contact is unloaded
@@ -177,7 +158,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   const ScaledRecord& data = all.records[record];
   Parameter parameter{.term = &term, .record = record};
   parameter.scale = term.scale(data.units);
-  if (term.reference != nullptr) parameter.reference = term.reference(data.units);
+  parameter.reference = term.reference(data.units);
   parameter.lower = term.positive ? std::log(term.lowest) : term.lowest;
   parameter.upper = term.positive ? std::log(term.highest) : term.highest;
   if (term.id == TermId::kLag) {
@@ -269,14 +250,8 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
-                       const RecordStates& state, std::pmr::memory_resource* memory)
-    : parameters_(memory),
-      free_(memory),
-      reported_(memory),
-      with_prior_(memory),
-      records_(data.records.size()),
-      origin_term_(OriginTerm(data.excitation)),
-      state_(state) {
+                       const RecordStates& state)
+    : records_(data.records.size()), origin_(OriginId(data.excitation)) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
   for (const Term& term : terms) {
@@ -294,12 +269,12 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     for (const Term& term : terms) {
       if (term.scope != Scope::kRecord) continue;
       Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.name == origin_term_ && state.Of(r) == models::InitialState::kSteady) {
+      if (term.id == origin_ && state.Of(r) == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
   }
-  ApplyOptions(options, data.prior_noise);
+  ApplyOptions(options, state, data.prior_noise);
   RequireShapedColumns();
   RequireNeededTerms();
   RequireOneMotion();
@@ -319,13 +294,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   Sort();
 }
 
-Parameters::Parameters(const Parameters& all, std::size_t record, std::pmr::memory_resource* memory)
-    : parameters_(memory),
-      free_(memory),
-      reported_(memory),
-      with_prior_(memory),
-      origin_term_(all.origin_term_),
-      state_(all.state_.Of(record)) {
+Parameters::Parameters(const Parameters& all, std::size_t record) : origin_(all.origin_) {
   for (const Parameter& parameter : all) {
     const bool is_own = parameter.term->scope == Scope::kRecord;
     if (is_own && parameter.record != record) continue;
@@ -334,15 +303,6 @@ Parameters::Parameters(const Parameters& all, std::size_t record, std::pmr::memo
   }
   Sort();
 }
-
-Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memory)
-    : parameters_(other.parameters_, memory),
-      free_(other.free_, memory),
-      reported_(other.reported_, memory),
-      with_prior_(other.with_prior_, memory),
-      records_(other.records_),
-      origin_term_(other.origin_term_),
-      state_(other.state_) {}
 
 bool Parameters::any_zero_is_known() const {
   return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
@@ -368,9 +328,8 @@ void Parameters::RequireShapedColumns() const {
 void Parameters::RequireNeededTerms() const {
   for (const Parameter& parameter : parameters_) {
     const Term& term = *parameter.term;
-    if (parameter.absent || term.needs.empty() || !parameters_[PositionOf(term.needs, 0)].absent) {
-      continue;
-    }
+    if (parameter.absent || term.needs.empty()) continue;
+    if (!parameters_[PositionOf(FindTerm(term.needs)->id)].absent) continue;
     throw InvalidArgument(fmt::format("{} needs {}: add it", term.name, term.needs));
   }
 }
@@ -387,7 +346,7 @@ void Parameters::RequireOneMotion() const {
 
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
-  Parameter& asymmetry = parameters_[PositionOf(TermId::kAsymmetry, 0)];
+  Parameter& asymmetry = parameters_[RowOf(TermId::kAsymmetry)];
   if (asymmetry.fixed || any_zero_is_known()) return;
   asymmetry.theta = 0.0;
   asymmetry.fixed = asymmetry.confounded = true;
@@ -416,8 +375,6 @@ void Parameters::Sort() {
   free_.clear();
   reported_.clear();
   with_prior_.clear();
-  free_.reserve(parameters_.size());
-  reported_.reserve(parameters_.size());
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (!parameters_[i].fixed) free_.push_back(i);
     if (!parameters_[i].absent) reported_.push_back(i);
@@ -434,15 +391,6 @@ std::size_t Parameters::PositionOf(TermId id, std::size_t record) const {
   return parameters_.size();
 }
 
-std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) const {
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const Parameter& parameter = parameters_[i];
-    if (parameter.term->name != term) continue;
-    if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
-  }
-  return parameters_.size();
-}
-
 std::size_t Parameters::PositionOfMotion() const {
   const auto moves = [](const Parameter& parameter) {
     return !parameter.absent && parameter.term->motion != ContactMotion::kMeasured;
@@ -451,25 +399,15 @@ std::size_t Parameters::PositionOfMotion() const {
 }
 
 std::size_t Parameters::PositionOfOrigin(std::size_t record) const {
-  return PositionOf(origin_term_, record);
-}
-
-void Parameters::NameOf(std::size_t i, std::string& name) const {
-  const Parameter& parameter = parameters_[i];
-  if (parameter.term->of_column) {
-    name = NameOfCovariate(parameter.column_name);
-    return;
-  }
-  name.assign(parameter.term->name);
-  if (parameter.term->scope == Scope::kRecord && records_ > 1) {
-    fmt::format_to(std::back_inserter(name), "_{}", parameter.record + 1);
-  }
+  return PositionOf(origin_, record);
 }
 
 std::string Parameters::NameOf(std::size_t i) const {
-  std::string name;
-  NameOf(i, name);
-  return name;
+  const Parameter& parameter = parameters_[i];
+  if (parameter.term->of_column) return NameOfCovariate(parameter.column_name);
+  const bool is_numbered = parameter.term->scope == Scope::kRecord && records_ > 1;
+  return is_numbered ? fmt::format("{}_{}", parameter.term->name, parameter.record + 1)
+                     : std::string(parameter.term->name);
 }
 
 std::string Parameters::UnitOf(std::size_t i, bool timed) const {
@@ -480,14 +418,9 @@ std::string Parameters::UnitOf(std::size_t i, bool timed) const {
   return std::string(timed || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
 }
 
-bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
-  if (!name.starts_with(parameters_[i].term->name)) return false;
-  return NameOf(i) == name;
-}
-
 Parameter& Parameters::Find(std::string_view name) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    if (!IsCalled(i, name)) continue;
+    if (NameOf(i) != name) continue;
     if (parameters_[i].absent && parameters_[i].term->presence == Presence::kLoadSeries) {
       throw InvalidArgument(fmt::format(
           "{} has no effect: the records are not under loads that are known and differ by more "
@@ -495,9 +428,9 @@ Parameter& Parameters::Find(std::string_view name) {
           name));
     }
     if (parameters_[i].term->presence == Presence::kNever) {
-      throw InvalidArgument(fmt::format(
-          "{} has no place in a fit of the {}", name,
-          origin_term_ == OriginTerm(loop::Channel::kForce) ? "displacement" : "force"));
+      throw InvalidArgument(
+          fmt::format("{} has no place in a fit of the {}", name,
+                      origin_ == OriginId(loop::Channel::kForce) ? "displacement" : "force"));
     }
     return parameters_[i];
   }
@@ -508,7 +441,8 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options, double prior_noise) {
+void Parameters::ApplyOptions(const FitOptions& options, const RecordStates& state,
+                              double prior_noise) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name, options.response());
     if (term == nullptr ||
@@ -542,7 +476,7 @@ void Parameters::ApplyOptions(const FitOptions& options, double prior_noise) {
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->name == origin_term_ && state_ == models::InitialState::kSteady) {
+    if (parameter.term->id == origin_ && state.AreAll(models::InitialState::kSteady)) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",
@@ -594,12 +528,11 @@ double Parameters::PriorCost(std::span<const double> theta) const {
 }
 
 bool Parameters::FindStart(const FitOptions& options, std::size_t i, double& theta) const {
-  for (const auto& [name, value] : options.start) {
-    if (!IsCalled(i, name)) continue;
-    theta = parameters_[i].ToTheta(value);
-    return true;
-  }
-  return false;
+  if (options.start.empty()) return false;
+  const auto start = options.start.find(NameOf(i));
+  if (start == options.start.end()) return false;
+  theta = parameters_[i].ToTheta(start->second);
+  return true;
 }
 
 void Parameters::Fix(std::size_t i, double theta) {
@@ -619,7 +552,7 @@ double Parameters::LoadExponentAt(std::span<const double> theta) const {
 }
 
 double Parameters::AsymmetryAt(std::span<const double> theta) const {
-  return theta[PositionOf(TermId::kAsymmetry, 0)];
+  return theta[RowOf(TermId::kAsymmetry)];
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

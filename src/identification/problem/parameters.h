@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory_resource>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,33 +16,26 @@
 
 namespace mindahl::identification {
 
-/// The initial state of each record of a fit: the same of all, or one a record. Of one state for
-/// all nothing is allocated.
+/// The initial state of each record of a fit: one of all, or one a record.
 class RecordStates {
  public:
-  RecordStates(models::InitialState all) : all_(all) {}
+  RecordStates(models::InitialState all) : states_{all} {}
   /// @param of_records  not empty
   explicit RecordStates(std::vector<models::InitialState> of_records)
-      : all_(of_records.front()), of_records_(std::move(of_records)) {
-    if (std::ranges::count(of_records_, all_) == std::ranges::ssize(of_records_)) {
-      of_records_.clear();
-    }
-  }
+      : states_(std::move(of_records)) {}
 
   [[nodiscard]] models::InitialState Of(std::size_t record) const {
-    return of_records_.empty() ? all_ : of_records_[record];
-  }
-  [[nodiscard]] bool AreAll(models::InitialState state) const {
-    return of_records_.empty() && all_ == state;
+    return states_.size() == 1 ? states_.front() : states_[record];
   }
   [[nodiscard]] bool Any(models::InitialState state) const {
-    return of_records_.empty() ? all_ == state : true;  // both are among states that differ
+    return std::ranges::find(states_, state) != states_.end();
   }
-  friend bool operator==(const RecordStates&, const RecordStates&) = default;
+  [[nodiscard]] bool AreAll(models::InitialState state) const {
+    return std::ranges::count(states_, state) == std::ranges::ssize(states_);
+  }
 
  private:
-  models::InitialState all_;
-  std::vector<models::InitialState> of_records_;  // empty where they are all the same
+  std::vector<models::InitialState> states_;
 };
 
 /// Returns the period, in units of the displacement, with which the forces of both directions vary
@@ -99,12 +91,13 @@ inline BoundSide SideOf(const Parameter& parameter, double theta) {
 /// user's, nor α = 0, which the theory has.
 bool IsSearchLimit(const Parameter& parameter, BoundSide side);
 
-/// Positions of the parameters of the law, the same in every fit.
-inline constexpr std::size_t kStiffness = 0;
-inline constexpr std::size_t kShape = 1;
-inline constexpr std::size_t kSlipForce = 2;
-inline constexpr std::size_t kRig = 3;
-inline constexpr std::size_t kLoadExponent = 4;
+/// Returns the position of a term of the contact that is not a covariate's, the same in every fit.
+constexpr std::size_t RowOf(TermId id) { return static_cast<std::size_t>(id); }
+inline constexpr std::size_t kStiffness = RowOf(TermId::kSigma);
+inline constexpr std::size_t kShape = RowOf(TermId::kAlpha);
+inline constexpr std::size_t kSlipForce = RowOf(TermId::kSlipForce);
+inline constexpr std::size_t kRig = RowOf(TermId::kRigStiffness);
+inline constexpr std::size_t kLoadExponent = RowOf(TermId::kLoadExponent);
 
 /// Highest α where the normal load varies: beyond it the displacement at gross slip exceeds a
 /// hundred times Tc/σ, and no record has such a law.
@@ -122,14 +115,10 @@ inline std::string_view OriginTerm(loop::Channel excitation) {
 class Parameters {
  public:
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
-  Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
-             std::pmr::memory_resource* memory);
+  Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state);
 
   /// Takes those of one record of several, and of the contact, as if it were the only one.
-  Parameters(const Parameters& all, std::size_t record, std::pmr::memory_resource* memory);
-
-  /// A copy in another memory.
-  Parameters(const Parameters& other, std::pmr::memory_resource* memory);
+  Parameters(const Parameters& all, std::size_t record);
 
   [[nodiscard]] std::size_t size() const { return parameters_.size(); }
   [[nodiscard]] const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
@@ -137,33 +126,33 @@ class Parameters {
   [[nodiscard]] auto end() const { return parameters_.end(); }
 
   /// Positions of the free ones.
-  [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
+  [[nodiscard]] const std::vector<std::size_t>& free() const { return free_; }
   /// Returns the place of a parameter among the free ones, their number where it is not free.
   [[nodiscard]] std::size_t PlaceAmongFree(std::size_t i) const {
     return static_cast<std::size_t>(std::ranges::find(free_, i) - free_.begin());
   }
   /// Positions of those with a prior, held ones included.
-  [[nodiscard]] const std::pmr::vector<std::size_t>& with_prior() const { return with_prior_; }
+  [[nodiscard]] const std::vector<std::size_t>& with_prior() const { return with_prior_; }
   /// Σ of the squared residuals of the priors.
   [[nodiscard]] double PriorCost(std::span<const double> theta) const;
   /// Positions of those that a result reports.
-  [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
+  [[nodiscard]] const std::vector<std::size_t>& reported() const { return reported_; }
   /// Returns the place of a record's reference position, in the imposed channel.
   [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const;
-  [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record) const;
-  /// Returns the place of a record's term; size() where there is no such term.
-  [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
+  /// Returns the place of the contact's term, or of a record's; size() of a covariate's where there
+  /// is none.
+  [[nodiscard]] std::size_t PositionOf(TermId id, std::size_t record = 0) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
   /// Returns the place of the term that moves the contact away from the displacement at the time of
   /// the force, of which there is one at most; size() where there is none.
   [[nodiscard]] std::size_t PositionOfMotion() const;
   [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
   [[nodiscard]] bool has_asymmetry() const {
-    return !parameters_[PositionOf(TermId::kAsymmetry, 0)].absent;
+    return !parameters_[RowOf(TermId::kAsymmetry)].absent;
   }
   /// True if it is held for being confounded with the force's offset in every record.
   [[nodiscard]] bool asymmetry_is_confounded() const {
-    return parameters_[PositionOf(TermId::kAsymmetry, 0)].confounded;
+    return parameters_[RowOf(TermId::kAsymmetry)].confounded;
   }
   /// True if the force's offset of a record is held.
   [[nodiscard]] bool any_zero_is_known() const;
@@ -172,7 +161,6 @@ class Parameters {
 
   /// Returns the name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
-  void NameOf(std::size_t i, std::string& name) const;
 
   /// Returns the unit of its value: by sample where `timed` is false, and a column's own.
   [[nodiscard]] std::string UnitOf(std::size_t i, bool timed) const;
@@ -193,7 +181,7 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyOptions(const FitOptions& options, double prior_noise);
+  void ApplyOptions(const FitOptions& options, const RecordStates& state, double prior_noise);
   void ApplyPriors(const FitOptions& options, double noise);
   void RequireShapedColumns() const;
   void RequireNeededTerms() const;
@@ -202,15 +190,13 @@ class Parameters {
   void KeepShapeBelowOne(const FitOptions& options);
   void Sort();
   [[nodiscard]] Parameter& Find(std::string_view name);
-  [[nodiscard]] bool IsCalled(std::size_t i, std::string_view name) const;
 
-  std::pmr::vector<Parameter> parameters_;
-  std::pmr::vector<std::size_t> free_;
-  std::pmr::vector<std::size_t> reported_;
-  std::pmr::vector<std::size_t> with_prior_;
+  std::vector<Parameter> parameters_;
+  std::vector<std::size_t> free_;
+  std::vector<std::size_t> reported_;
+  std::vector<std::size_t> with_prior_;
   std::size_t records_ = 1;
-  std::string_view origin_term_;
-  RecordStates state_;
+  TermId origin_;
 };
 
 }  // namespace mindahl::identification

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "identification/problem/moved_samples.h"
@@ -47,55 +47,39 @@ double LogScaleAt(const Problem& problem, std::span<const double> theta);
 models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
                                const ScaledRecord& record);
 
-/// Derivatives of t, a column each of all samples; an empty one is not wanted.
-struct ResponseColumns {
-  std::span<double> log_rate;
-  std::span<double> shape_exponent;
-  std::span<double> unloaded;  // where the contact is unloaded, in the channel that is imposed
-  std::span<double> log_spring_travel;
-  std::span<double> moved;      // by θ of the term that moves the contact; where there is one
-  std::span<double> asymmetry;  // likewise
-  std::span<double> slip_slope;
-  std::span<double> slip_curvature;
-  std::span<double> slip_speed;
-  std::span<double> slip_speed_exponent;
-  std::span<double> slip_trend;
-  std::span<double> drag_fraction;
-  std::span<double> drag_exponent;
-};
-inline constexpr std::array kResponseColumns = {
-    &ResponseColumns::log_rate,     &ResponseColumns::shape_exponent,
-    &ResponseColumns::unloaded,     &ResponseColumns::log_spring_travel,
-    &ResponseColumns::moved,        &ResponseColumns::asymmetry,
-    &ResponseColumns::slip_slope,   &ResponseColumns::slip_curvature,
-    &ResponseColumns::slip_speed,   &ResponseColumns::slip_speed_exponent,
-    &ResponseColumns::slip_trend,   &ResponseColumns::drag_fraction,
-    &ResponseColumns::drag_exponent};
+/// Derivatives of t, a column each of all samples, by term: an empty one is not wanted. That of σ
+/// is by ln(σ/Tc), that of a rig by ln(Tc/k), that of the origin by where the contact is unloaded.
+class ResponseColumns {
+ public:
+  [[nodiscard]] std::span<double>& operator[](TermId id) { return columns_[RowOf(id)]; }
+  [[nodiscard]] std::span<double> operator[](TermId id) const { return columns_[RowOf(id)]; }
+  [[nodiscard]] auto begin() { return columns_.begin(); }
+  [[nodiscard]] auto end() { return columns_.end(); }
+  /// Returns those that are wanted.
+  [[nodiscard]] std::vector<std::span<double>> Wanted() const;
+  /// Returns those of some samples.
+  [[nodiscard]] ResponseColumns Part(std::size_t begin, std::size_t count) const;
 
-/// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
+ private:
+  std::array<std::span<double>, RowOf(TermId::kDisplacementDrift) + 1> columns_;
+};
+
+/// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where none stands for t itself.
 struct Sensitivity {
-  std::span<double> ResponseColumns::*column = nullptr;
+  std::optional<TermId> column = {};
   double factor = 1.0;
   bool by_log_load = false;  // times ln(N/N₀) of the record
 };
 
-/// How the response depends on a parameter that is not linear: the summands of ∂(scale·t)/∂θ over
-/// the scale, and how far a search may move θ in one step. A parameter of the law or the path is a
-/// row of the table in problem.cc.
-struct LawSensitivity {
-  std::array<Sensitivity, 3> summands;
-  std::size_t count = 0;
-  double longest_step = 1.5;           // of θ
-  bool step_grows_with_theta = false;  // times θ, where that is beyond 1
-
-  [[nodiscard]] std::span<const Sensitivity> all() const {
-    return std::span(summands).first(count);
-  }
+/// A parameter, or a coordinate in its place, and how scale·t depends on it.
+struct Dependence {
+  std::size_t parameter = 0;
+  std::vector<Sensitivity> summands = {};  // none where t does not depend on it
 };
 
-/// Returns the sensitivity to a parameter; it is empty for one that is linear, and for one that the
-/// problem does not have.
-LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter);
+/// Returns how the response depends on a parameter; without summands for one that is linear, and
+/// for one that the problem does not have.
+Dependence DependenceOn(const Problem& problem, std::size_t parameter);
 
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
 /// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of
@@ -114,7 +98,9 @@ class Response {
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
   /// Returns the slip force over Tc at a sample of the problem that is bound.
   [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
-                                  std::size_t sample) const;
+                                  std::size_t sample) const {
+    return SlipAt(record, at, sample).factor;
+  }
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
     if (scratch_.size() < size) scratch_.resize(size);
@@ -122,56 +108,49 @@ class Response {
   }
 
  private:
-  void DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
+  /// The slip force over Tc at a sample, and how it depends on the speed there.
+  struct Slip {
+    double factor = 1.0;
+    double log_speed = 0.0;  // ln(v/v₀); far below zero, and finite, where it does not move
+    double change = 0.0;     // (v/v₀)^m − 1
+  };
+  [[nodiscard]] Slip SlipAt(const ScaledRecord& record, const LawPoint& at,
+                            std::size_t sample) const;
+  /// Differentiates the response of one record by its path, over the slip force of the path.
+  void DifferentiatePath(const LawPoint& at, std::size_t record, std::span<double> t,
+                         const ResponseColumns& columns);
+  void DifferentiateForced(const LawPoint& at, std::size_t record, std::span<double> t,
                            const ResponseColumns& columns);
-  [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
-                                                 std::span<const double> theta) const;
-  /// Multiplies t and its derivatives by SlipFactor() at each sample.
+  void DifferentiateMoved(const LawPoint& at, std::size_t record, std::span<double> t,
+                          const ResponseColumns& columns);
+  /// Multiplies t and its derivatives by the slip force at each sample, and adds the drag.
   void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> t,
                         const ResponseColumns& columns) const;
-  void ScaleSensitivity(std::size_t record, const LawPoint& at,
-                        models::OriginSensitivity& sensitivity) const;
+  [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
+  [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
+                                                 std::span<const double> theta) const;
   /// Returns the unit of the amount by which a record's samples are moved.
   [[nodiscard]] double UnitOfAmount(std::size_t record) const;
   MovedSamples& MovedOf(std::size_t record, std::span<const double> theta);
   /// Returns them as they are under the forces at this point.
   MovedSamples& MovedUnderForces(const LawPoint& at, std::size_t record);
-  /// Returns a buffer of a value for each place.
-  std::span<double> PlacesOf(const MovedSamples& moved, std::size_t column);
-  void DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
-                           const ResponseColumns& columns);
-  void DifferentiateMoved(const LawPoint& at, std::size_t record, std::span<double> t,
-                          const ResponseColumns& columns);
+  [[nodiscard]] bool Has(TermId id) const { return !problem_->parameters[RowOf(id)].absent; }
 
   struct CachedPath {
     models::LoadingPath path;
-    double unloaded = 0.0;
-    double asymmetry = 0.0;
-    bool valid = false;
+    std::optional<double> unloaded;  // empty until the path is made
   };
 
   const Problem* problem_ = nullptr;
   std::vector<CachedPath> paths_;
-  std::vector<std::size_t> unloaded_;  // position of each record's origin
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   std::vector<double> scratch_;
-  std::size_t asymmetry_ = 0;   // position of the parameter
-  std::size_t slip_slope_ = 0;  // likewise
-  std::size_t slip_curvature_ = 0;
-  std::size_t slip_speed_ = 0;
-  std::size_t slip_speed_exponent_ = 0;
-  std::size_t slip_trend_ = 0;
-  std::size_t drag_fraction_ = 0;
-  std::size_t drag_exponent_ = 0;
   bool slip_varies_ = false;  // over positions, speeds or time
-  bool slip_goes_by_speed_ = false;
-  bool has_drag_ = false;
   // For a problem with a term that moves the contact:
   std::size_t moves_ = 0;  // its position
   bool has_moved_ = false;
   std::vector<std::unique_ptr<MovedSamples>> motions_;  // of each record
-  std::vector<double> moved_;                           // columns of all places of one
   models::OriginSensitivity sensitivity_;
   std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
   models::NormalizedLoadedResponse loaded_response_;
@@ -198,11 +177,18 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record
 /// True if columns of linear parameters depend on this one.
 bool ShapesColumns(const Problem& problem, std::size_t parameter);
 
-/// Adds a multiple of ∂(Σ θ_q·column_q)/∂θ by a parameter that shapes columns, without weights.
+/// Adds a multiple of ∂(Σ θ_q·column_q)/∂θ by a parameter, without weights: its own column where it
+/// is linear, else those of the columns that it shapes.
 /// @param theta  of all parameters, the linear ones included
 /// @param to     of the record's samples
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t record,
                             std::span<const double> theta, double factor, std::span<double> to);
+
+/// Computes t and the derivatives of scale·t over the scale, of all samples, without weights.
+/// @param columns  column-major, size() × dependences.size()
+void DifferentiateResponse(const Problem& problem, const LawPoint& at, Response& response,
+                           std::span<const Dependence> dependences, std::span<double> t,
+                           std::span<double> columns);
 
 /// Computes the weighted residuals, model − measured, and their derivatives by the parameters at
 /// `columns`. The response is bound to the problem.

@@ -119,7 +119,6 @@ void RequireOptions(const FitOptions& options) {
   if (options.max_iterations < 1) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
-  if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
 }
 
 void RequireInitialStates(const FitOptions& options, std::size_t records) {

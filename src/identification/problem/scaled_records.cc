@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/extremes.h"
 #include "identification/problem/moved_samples.h"
@@ -61,46 +62,23 @@ void RequireScale(std::string_view quantity, double half_range) {
   }
 }
 
-/// Central differences, one-sided at the ends and where time stands still.
-/// @param unit  of time [s], the same for all records: their velocities have one factor
-void FillVelocity(ScaledRecord& record, double unit) {
+/// Central differences by time, one-sided at the ends and where time stands still.
+/// @param unit  of time [s], the same for all records: their derivatives have one factor
+std::vector<double> DerivativeOf(const std::vector<double>& values, const ScaledRecord& record,
+                                 double unit) {
   const double units = record.units.half_duration / unit;
   const std::size_t last = record.size() - 1;
-  record.velocity.resize(record.size());
-  const auto fill = [&, x = std::span<const double>(record.displacement),
-                     time = std::span<const double>(record.time)](std::size_t i, std::size_t before,
-                                                                  std::size_t after) {
-    const double duration = units * (time[after] - time[before]);
-    record.velocity[i] = duration > 0 ? (x[after] - x[before]) / duration : 0.0;
-  };
-  // In order of time, as nearly always.
-  const auto stands = [](double one, double other) { return !(other > one); };
-  if (std::ranges::adjacent_find(record.time, stands) == record.time.end()) {
-    for (std::size_t i = 1; i < last; ++i) fill(i, i - 1, i + 1);
-    fill(0, 0, std::min<std::size_t>(1, last));
-    fill(last, std::max<std::size_t>(last, 1) - 1, last);
-    return;
-  }
+  const std::vector<double>& time = record.time;
+  std::vector<double> derivative(record.size());
   for (std::size_t i = 0; i <= last; ++i) {
     std::size_t before = i == 0 ? 0 : i - 1;
     std::size_t after = std::min(i + 1, last);
-    while (before > 0 && !(record.time[after] > record.time[before])) --before;
-    while (after < last && !(record.time[after] > record.time[before])) ++after;
-    fill(i, before, after);
+    while (before > 0 && !(time[after] > time[before])) --before;
+    while (after < last && !(time[after] > time[before])) ++after;
+    const double duration = units * (time[after] - time[before]);
+    derivative[i] = duration > 0 ? (values[after] - values[before]) / duration : 0.0;
   }
-}
-
-/// Central differences of the velocity, one-sided at the ends; 0 where time stands still.
-void FillAcceleration(ScaledRecord& record, double unit) {
-  const double units = record.units.half_duration / unit;
-  record.acceleration.resize(record.size());
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const std::size_t before = i == 0 ? 0 : i - 1;
-    const std::size_t after = std::min(i + 1, record.size() - 1);
-    const double duration = units * (record.time[after] - record.time[before]);
-    record.acceleration[i] =
-        duration > 0 ? (record.velocity[after] - record.velocity[before]) / duration : 0.0;
-  }
+  return derivative;
 }
 
 /// ln of the speeds with their resolution; far below any speed, and finite, where there is none.
@@ -203,11 +181,7 @@ void TakeVaryingLoad(ScaledRecord& target, const loop::PreparedRecord& record,
                      const MeasuredLoad& measured, bool is_known, bool has_sign) {
   for (const double load : record.record.normal_load) {
     const double ratio = (has_sign ? load : std::max(load, 0.0)) / measured.mean;
-    if (is_known) {
-      target.load_ratio.push_back(ratio);
-    } else {
-      target.load_change.push_back(ratio - 1);
-    }
+    (is_known ? target.load_ratio : target.load_change).push_back(is_known ? ratio : ratio - 1);
   }
 }
 
@@ -277,76 +251,32 @@ double CovariateScale(std::string_view name, const loop::PreparedRecords& record
   return scale;
 }
 
-/// Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
-constexpr std::size_t kKeptOfAStroke = 8;
-/// Strokes that are thinned so: more are thinned to their ends and one sample in between.
-constexpr std::size_t kDenseStrokes = 16;
-
-/// Every column of values a sample, of one record with that of the other.
-template <typename Visit>
-void ForEachColumn(ScaledRecord& to, const ScaledRecord& from, Visit visit) {
-  visit(to.displacement, from.displacement);
-  visit(to.force, from.force);
-  visit(to.time, from.time);
-  visit(to.velocity, from.velocity);
-  visit(to.acceleration, from.acceleration);
-  visit(to.direction, from.direction);
-  visit(to.log_speed, from.log_speed);
-  visit(to.load_ratio, from.load_ratio);
-  visit(to.load_change, from.load_change);
-  visit(to.root_weight, from.root_weight);
-  visit(to.counts, from.counts);
-  visit(to.clock, from.clock);
-  for (std::size_t c = 0; c < from.covariates.size(); ++c) {
-    visit(to.covariates[c], from.covariates[c]);
-  }
-}
-
 }  // namespace
 
-ScaledRecord ScaledRecord::WithoutSamples(std::pmr::memory_resource* memory) const {
-  ScaledRecord record(memory);
-  record.imposed = imposed;
-  record.units = units;
-  record.load = load;
-  record.log_load = log_load;
-  record.covariates.resize(covariates.size());
-  return record;
-}
-
-void ScaledRecord::Reserve(const ScaledRecord& from, std::size_t samples) {
-  ForEachColumn(*this, from, [samples](auto& to, const auto& column) {
-    if (!column.empty()) to.reserve(samples);
-  });
-}
-
-void ScaledRecord::Append(const ScaledRecord& from, std::size_t begin, std::size_t end) {
-  ForEachColumn(*this, from, [begin, end](auto& to, const auto& column) {
-    if (column.empty()) return;
-    const auto first = column.begin();
-    to.insert(to.end(), first + static_cast<std::ptrdiff_t>(begin),
-              first + static_cast<std::ptrdiff_t>(end));
-  });
+ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
+  ScaledRecord some = *this;
+  const auto take = [&](auto& column, const auto& all) {
+    if (all.empty()) return;
+    column.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) column[i] = all[samples[i]];
+  };
+  for (const auto column :
+       {&ScaledRecord::displacement, &ScaledRecord::force, &ScaledRecord::time,
+        &ScaledRecord::velocity, &ScaledRecord::acceleration, &ScaledRecord::direction,
+        &ScaledRecord::log_speed, &ScaledRecord::load_ratio, &ScaledRecord::load_change,
+        &ScaledRecord::root_weight, &ScaledRecord::clock}) {
+    take(some.*column, this->*column);
+  }
+  take(some.counts, counts);
+  take(some.inserted, inserted);
+  for (std::size_t c = 0; c < covariates.size(); ++c) take(some.covariates[c], covariates[c]);
+  return some;
 }
 
 std::size_t ScaledRecords::samples() const {
   std::size_t count = 0;
   for (const ScaledRecord& record : records) count += record.size();
   return count;
-}
-
-ScaledRecords ScaledRecords::WithoutRecords(std::pmr::memory_resource* memory) const {
-  ScaledRecords scaled(memory);
-  scaled.covariates.assign(covariates.begin(), covariates.end());
-  scaled.length = length;
-  scaled.force = force;
-  scaled.excitation = excitation;
-  scaled.sense = sense;
-  scaled.mean_load.assign(mean_load.begin(), mean_load.end());
-  scaled.reference_load = reference_load;
-  scaled.is_load_series = is_load_series;
-  scaled.load_varies = load_varies;
-  return scaled;
 }
 
 std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t covariate) const {
@@ -378,24 +308,16 @@ double MeanCycleDuration(std::span<const double> time, std::size_t samples, std:
   return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
 }
 
-ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options,
-                    std::pmr::memory_resource* memory) {
-  ScaledRecords scaled(memory);
+ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options) {
+  ScaledRecords scaled;
   scaled.sense = records.force_sense;
   scaled.excitation = records.excitation;
   scaled.length = 0.0;
   scaled.force = 0.0;
   scaled.counted = records.counted();
-  struct Ranges {
-    ColumnRange displacement;
-    ColumnRange force;
-  };
-  std::pmr::vector<Ranges> ranges(memory);
-  ranges.reserve(records.records.size());
   for (const loop::PreparedRecord& record : records.records) {
-    const Ranges& of = ranges.emplace_back(RangeOf(record.displacement()), RangeOf(record.force()));
-    scaled.length = std::max(scaled.length, of.displacement.half);
-    scaled.force = std::max(scaled.force, of.force.half);
+    scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
+    scaled.force = std::max(scaled.force, RangeOf(record.force()).half);
   }
   if (!(scaled.length > 0)) {
     throw InvalidArgument("the displacement never changes: a fit needs a moving contact");
@@ -412,10 +334,9 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::span<const double> force = prepared.force();
     const std::span<const double> time = prepared.record.time;
     const std::size_t size = prepared.size();
-    const Ranges& of = ranges[scaled.records.size()];
-    ScaledRecord& target = scaled.records.emplace_back(memory);
+    ScaledRecord& target = scaled.records.emplace_back();
     target.imposed = records.excitation;
-    target.reversals = prepared.reversals;
+    target.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
     if (!time.empty() && last > first) RequireScale("half duration [s]", last / 2 - first / 2);
@@ -424,88 +345,82 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
                     .half_duration = last > first ? (last - first) / 2 : 1.0,
                     .cycle = MeanCycleDuration(time, size, prepared.reversals.size()),
                     .force_sense = sense,
-                    .force_reference = sense * of.force.middle,
-                    .displacement_reference = of.displacement.middle};
+                    .force_reference = sense * RangeOf(force).middle,
+                    .displacement_reference = RangeOf(displacement).middle};
     for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
       column->resize(size);
     }
-    // One column after the other: each is a vector's work.
     const TermUnits units = target.units;
     for (std::size_t i = 0; i < size; ++i) {
-      target.displacement[i] = (displacement[i] - units.displacement_reference) / units.length;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      target.force[i] = (sense * force[i] - units.force_reference) / units.force;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
       const double at = time.empty() ? static_cast<double>(i) : time[i];
+      target.displacement[i] = (displacement[i] - units.displacement_reference) / units.length;
+      target.force[i] = (sense * force[i] - units.force_reference) / units.force;
       target.time[i] = (at - first) / units.half_duration - 1;
-    }
-    for (std::size_t i = 0; i < size; ++i) {
       target.root_weight[i] = prepared.counts[i] != 0 ? 1.0 : 0.0;
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
     if (time.empty()) continue;
     const double unit = scaled.records.front().units.half_duration;
-    FillVelocity(target, unit);
+    target.velocity = DerivativeOf(target.displacement, target, unit);
     target.units.speed = target.units.length / unit;
   }
   TakeLoads(scaled, records, options);
   return scaled;
 }
 
-std::vector<double> DirectionsOf(std::span<const double> displacement,
+std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals) {
-  std::vector<double> directions(displacement.size());
+  std::vector<double> directions(excitation.size());
   std::size_t begin = 0;
   for (std::size_t s = 0; s <= reversals.size(); ++s) {
-    const std::size_t end = s < reversals.size() ? reversals[s] : displacement.size() - 1;
-    const double direction = displacement[end] >= displacement[begin] ? 1.0 : -1.0;
+    const std::size_t end = s < reversals.size() ? reversals[s] : excitation.size() - 1;
+    const double direction = excitation[end] >= excitation[begin] ? 1.0 : -1.0;
     for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) directions[i] = direction;
     begin = end;
   }
   return directions;
 }
 
+namespace {
+
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
   const bool asks_slip_speed =
       HasTerm(options, TermId::kSlipSpeedExponent) || HasTerm(options, TermId::kDragExponent);
   const bool asks_power = HasTerm(options, TermId::kSpeedExponent) || asks_slip_speed;
-  const bool asks_acceleration = HasTerm(options, TermId::kInertia);
-  const auto is_ripple = [](std::string_view name) {
-    const Term* const term = FindTerm(name);
-    return term != nullptr && term->id >= TermId::kRipplePeriod &&
-           term->id <= TermId::kRippleSineDown;
-  };
-  const bool asks_direction =
-      std::ranges::any_of(options.terms, is_ripple) ||
-      std::ranges::any_of(options.fixed, [&](const auto& fixed) { return is_ripple(fixed.first); });
+  const bool asks_direction = std::ranges::any_of(Terms(), [&](const Term& term) {
+    return term.id >= TermId::kRipplePeriod && term.id <= TermId::kRippleSineDown &&
+           HasTerm(options, term.name);
+  });
   const double unit = data.records.front().units.half_duration;
   for (ScaledRecord& record : data.records) {
     if (asks_power && !record.velocity.empty()) {
       record.units.speed_resolution = loop::NoiseByDifferences(record.velocity, 4);
       FillLogSpeed(record);
     }
-    if (asks_acceleration && !record.velocity.empty()) FillAcceleration(record, unit);
-    if (asks_direction) {
-      const std::vector<double> directions = DirectionsOf(record.displacement, record.reversals);
-      record.direction.assign(directions.begin(), directions.end());
+    if (HasTerm(options, TermId::kInertia) && !record.velocity.empty()) {
+      record.acceleration = DerivativeOf(record.velocity, record, unit);
     }
+    if (asks_direction) record.direction = DirectionsOf(record.displacement, record.reversals);
   }
+  if (HasTerm(options, TermId::kLag)) SetClocks(data);
   if (!asks_slip_speed) return;
   const double reference = SpeedInTheMiddle(data);
   for (ScaledRecord& record : data.records) record.units.reference_speed = reference;
 }
 
-void AddCovariates(std::span<const std::string> fitted, bool with_others,
-                   const loop::PreparedRecords& records, bool offsets, ScaledRecords& data) {
+}  // namespace
+
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
+                ScaledRecords& data) {
+  AddColumnsOfTerms(options, data);
+  const std::vector<std::string>& fitted = options.covariates;
   const loop::RecordView& first = records.records.front().record;
   const auto add = [&](std::string_view name, double scale) {
-    data.covariates.push_back(
-        {.name = name, .unit = FindCovariate(first, name)->unit, .scale = scale});
+    const loop::Covariate& covariate = *FindCovariate(first, name);
+    data.covariates.push_back({.name = covariate.name, .unit = covariate.unit, .scale = scale});
     for (std::size_t r = 0; r < data.records.size(); ++r) {
       const std::vector<double>& values = FindCovariate(records.records[r].record, name)->values;
-      const double reference = offsets ? RangeOf(values).middle : 0.0;
+      const double reference = options.offsets ? RangeOf(values).middle : 0.0;
       auto& column = data.records[r].covariates.emplace_back();
       column.reserve(values.size());
       for (const double value : values) column.push_back((value - reference) / scale);
@@ -537,31 +452,24 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
 }
 
 const ScaledRecords& ThinnedRecords::Get() {
-  if (!thin_) Make();
-  return *thin_;
-}
-
-void ThinnedRecords::Make() {
-  ScaledRecords& thin = thin_.emplace(data_.WithoutRecords(memory_));
-  thin.records.reserve(data_.records.size());
-  reversals_.reserve(data_.records.size());
-  for (const ScaledRecord& record : data_.records) {
-    ScaledRecord& target = thin.records.emplace_back(record.WithoutSamples(memory_));
-    std::pmr::vector<std::size_t>& turns = reversals_.emplace_back();
-    turns.reserve(record.reversals.size());
-    if (!record.clock.empty()) target.whole = &record;
+  if (thin_) return *thin_;
+  // Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
+  constexpr std::size_t kKeptOfAStroke = 8;
+  // Strokes that are thinned so: more are thinned to their ends and one sample in between.
+  constexpr std::size_t kDenseStrokes = 16;
+  thin_ = data_;
+  thin_->counted = 0;
+  for (std::size_t r = 0; r < data_.records.size(); ++r) {
+    const ScaledRecord& record = data_.records[r];
     const std::size_t strokes = record.reversals.size() + 1;
     // Under a load that varies the path between samples is part of the history.
     const bool is_dense = strokes <= kDenseStrokes || !record.load_ratio.empty();
     const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
-    const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);
-    target.Reserve(record, most);
-    const auto keep = [&](std::size_t i) {
-      target.Append(record, i);
-      thin.counted += record.counts[i];
-    };
+    std::vector<std::size_t> samples = {0};
+    samples.reserve(std::min(record.size(), strokes * (kept + 1) + 1));
+    std::vector<std::size_t> turns;
+    turns.reserve(record.reversals.size());
     std::size_t begin = 0;
-    keep(0);
     for (std::size_t stroke = 0; stroke < strokes; ++stroke) {
       const bool turns_at_end = stroke < record.reversals.size();
       const std::size_t end = turns_at_end ? record.reversals[stroke] : record.size() - 1;
@@ -571,19 +479,22 @@ void ThinnedRecords::Make() {
         const double share = (record.displacement[i] - record.displacement[begin]) / way;
         const double wanted = static_cast<double>(next * next) / static_cast<double>(kept * kept);
         if (!(share >= wanted)) continue;
-        keep(i);
+        samples.push_back(i);
         while (next < kept &&
                share * static_cast<double>(kept * kept) >= static_cast<double>(next * next)) {
           ++next;
         }
       }
-      if (end > begin) keep(end);
-      if (turns_at_end) turns.push_back(target.size() - 1);
+      if (end > begin) samples.push_back(end);
+      if (turns_at_end) turns.push_back(samples.size() - 1);
       begin = end;
     }
+    ScaledRecord& thin = thin_->records[r] = record.At(samples);
+    thin.reversals = std::move(turns);
+    if (!record.clock.empty()) thin.whole = &record;
+    for (const unsigned char counts : thin.counts) thin_->counted += counts;
   }
-  // Turns are complete: their memory moves no more.
-  for (std::size_t r = 0; r < thin.records.size(); ++r) thin.records[r].reversals = reversals_[r];
+  return *thin_;
 }
 
 }  // namespace mindahl::identification

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory_resource>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,46 +15,30 @@ namespace mindahl::identification {
 
 /// Holds a record in units of the data, with the force's sign that of the displacement.
 struct ScaledRecord {
-  explicit ScaledRecord(std::pmr::memory_resource* memory)
-      : displacement(memory),
-        force(memory),
-        time(memory),
-        velocity(memory),
-        acceleration(memory),
-        direction(memory),
-        log_speed(memory),
-        load_ratio(memory),
-        load_change(memory),
-        root_weight(memory),
-        counts(memory),
-        inserted(memory),
-        clock(memory),
-        covariates(memory) {}
-
-  std::pmr::vector<double> displacement;  // (δ − displacement_reference)/length
-  std::pmr::vector<double> force;         // (sign·T − force_reference)/force unit
-  std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
-  std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
-  std::pmr::vector<double> acceleration;  // likewise; empty unless a term asks for it
+  std::vector<double> displacement;  // (δ − displacement_reference)/length
+  std::vector<double> force;         // (sign·T − force_reference)/force unit
+  std::vector<double> time;          // −1 … 1 over the record; by sample where it has no time
+  std::vector<double> velocity;      // in the first record's time; empty where there is none
+  std::vector<double> acceleration;  // likewise; empty unless a term asks for it
   /// +1 in strokes of growing displacement, −1 in others; empty unless a term asks for it.
-  std::pmr::vector<double> direction;
+  std::vector<double> direction;
   /// ln of the speed, in units of `velocity`, with its resolution; empty unless a term asks for it.
-  std::pmr::vector<double> log_speed;
+  std::vector<double> log_speed;
   /// N over its mean, where the law knows that it varies: empty where it is taken as constant.
-  std::pmr::vector<double> load_ratio;
-  std::pmr::vector<double> load_change;  // N over its mean less 1, where it varies and is not known
-  std::pmr::vector<double> root_weight;  // of each residual; 0 where the sample does not count
-  std::pmr::vector<unsigned char> counts;  // 1 where the sample counts, else 0
+  std::vector<double> load_ratio;
+  std::vector<double> load_change;    // N over its mean less 1, where it varies and is not known
+  std::vector<double> root_weight;    // of each residual; 0 where the sample does not count
+  std::vector<unsigned char> counts;  // 1 where the sample counts, else 0
   /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
   /// where there are none (turning_points.h).
-  std::pmr::vector<unsigned char> inserted;
+  std::vector<unsigned char> inserted;
   /// Time that always goes on, in which a lag is counted; empty where no lag is asked for.
-  std::pmr::vector<double> clock;
+  std::vector<double> clock;
   /// Those of ScaledRecords::covariates, over half their range; empty where there are none.
-  std::pmr::vector<std::pmr::vector<double>> covariates;
+  std::vector<std::vector<double>> covariates;
   /// The channel that is imposed, of those two; the other one answers, and is fitted.
   loop::Channel imposed = loop::Channel::kDisplacement;
-  std::span<const std::size_t> reversals;  // samples
+  std::vector<std::size_t> reversals;  // samples
   /// The record that this one has some samples of, where a lag needs its motion; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;
@@ -67,15 +50,8 @@ struct ScaledRecord {
     return load_ratio.empty() ? load : load * load_ratio[i];
   }
 
-  /// Returns a copy without samples, for a record that has others.
-  [[nodiscard]] ScaledRecord WithoutSamples(std::pmr::memory_resource* memory) const;
-  /// Reserves memory for so many samples of another record.
-  void Reserve(const ScaledRecord& from, std::size_t samples);
-  /// Appends a sample of another record, in all of the columns that it has; `inserted` is for those
-  /// who put samples in.
-  void Append(const ScaledRecord& from, std::size_t i) { Append(from, i, i + 1); }
-  /// Appends them from `begin` to before `end`.
-  void Append(const ScaledRecord& from, std::size_t begin, std::size_t end);
+  /// Returns the record with these of its samples, in all of its columns; `reversals` as they were.
+  [[nodiscard]] ScaledRecord At(std::span<const std::size_t> samples) const;
 
   [[nodiscard]] std::span<const double> excitation() const {
     return imposed == loop::Channel::kForce ? force : displacement;
@@ -107,29 +83,24 @@ struct CovariateColumn {
 
 /// All records in common units: what makes a fit independent of the units of its files.
 struct ScaledRecords {
-  explicit ScaledRecords(std::pmr::memory_resource* memory)
-      : records(memory), covariates(memory), mean_load(memory) {}
-
-  std::pmr::vector<ScaledRecord> records;
-  std::pmr::vector<CovariateColumn> covariates;  // first those that are fitted
-  double length = 1.0;                           // [m]: largest half range of displacement
-  double force = 1.0;                            // [N]: largest half range of force
+  std::vector<ScaledRecord> records;
+  std::vector<CovariateColumn> covariates;  // first those that are fitted
+  double length = 1.0;                      // [m]: largest half range of displacement
+  double force = 1.0;                       // [N]: largest half range of force
   loop::Channel excitation = loop::Channel::kDisplacement;
   int sense = 1;
-  std::size_t counted = 0;             // samples that count
-  std::pmr::vector<double> mean_load;  // [N] of each record; empty unless all are known
-  double reference_load = 0.0;         // [N]: the mean of these; 0 where they are not known
-  bool is_load_series = false;         // do these differ?
-  bool load_varies = false;            // within a record, and the law knows it
-  double prior_noise = 0.0;            // noise against which priors weigh, in response units
+  std::size_t counted = 0;        // samples that count
+  std::vector<double> mean_load;  // [N] of each record; empty unless all are known
+  double reference_load = 0.0;    // [N]: the mean of these; 0 where they are not known
+  bool is_load_series = false;    // do these differ?
+  bool load_varies = false;       // within a record, and the law knows it
+  double prior_noise = 0.0;       // noise against which priors weigh, in response units
 
   /// True if the force is imposed, and the displacement fitted.
   [[nodiscard]] bool is_forced() const { return excitation == loop::Channel::kForce; }
   /// Returns the unit of the channel that is fitted [N or m].
   [[nodiscard]] double response_unit() const { return is_forced() ? length : force; }
   [[nodiscard]] std::size_t samples() const;
-  /// Units, loads and covariates without records, and none that counts.
-  [[nodiscard]] ScaledRecords WithoutRecords(std::pmr::memory_resource* memory) const;
 };
 
 /// Every sample that counts does so alike.
@@ -139,26 +110,22 @@ struct ScaledRecords {
 /// without an account of it: Dahl's own, or one behind a rig. A reading below 0 is lift-off.
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 ///   more than 1e100, and for loads that are not one for all or one a record, and positive
-ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options,
-                    std::pmr::memory_resource* memory);
+ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options);
 
-/// Adds columns to displacement and force, each less the middle of its range in the record, so
-/// that the offset of the force keeps its meaning; literally where there are no offsets.
-/// @param fitted       names of those that a term is fitted to; they come first
-/// @param with_others  also those that change and that all records have
-/// @throws InvalidArgument where a record has no column that is fitted, or it never changes, or two
-///   of them are one channel
-void AddCovariates(std::span<const std::string> fitted, bool with_others,
-                   const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
+/// Adds the columns that the options' terms need beyond those of every fit (accelerations,
+/// directions of strokes, speeds, clocks), and covariates: each less the middle of its range in the
+/// record, so that the offset of the force keeps its meaning; literally where there are no offsets.
+/// @param with_others  also the covariates that no term is fitted to, where they change and all
+///   records have them
+/// @throws InvalidArgument where a record has no covariate that is fitted, or it never changes, or
+///   two of them are one channel
+void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
+                ScaledRecords& data);
 
-/// Returns +1 for samples of strokes of growing displacement, −1 for others: of the stroke that
-/// ends at a reversal, or begins at the last one.
-std::vector<double> DirectionsOf(std::span<const double> displacement,
+/// Returns +1 for samples of strokes of growing excitation, −1 for others: of the stroke that ends
+/// at a reversal, or begins at the last one.
+std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals);
-
-/// Adds what terms need beyond the columns of every fit: accelerations, directions of strokes, and
-/// the resolution of the velocity.
-void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data);
 
 /// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
 /// same history for a law that knows no rate, at a fraction of the cost. They are made when they
@@ -166,19 +133,12 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data);
 class ThinnedRecords {
  public:
   /// @param data  must outlive this
-  ThinnedRecords(const ScaledRecords& data, std::pmr::memory_resource* memory)
-      : data_(data), memory_(memory), reversals_(memory) {}
-  ThinnedRecords(const ThinnedRecords&) = delete;
-  ThinnedRecords& operator=(const ThinnedRecords&) = delete;
+  explicit ThinnedRecords(const ScaledRecords& data) : data_(data) {}
 
   const ScaledRecords& Get();
 
  private:
-  void Make();
-
   const ScaledRecords& data_;
-  std::pmr::memory_resource* memory_;
-  std::pmr::vector<std::pmr::vector<std::size_t>> reversals_;  // by the samples that are left
   std::optional<ScaledRecords> thin_;
 };
 

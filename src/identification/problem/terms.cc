@@ -42,13 +42,10 @@ constexpr double kWidestGap = 1.0;
 // large as the contact's, as branches of a contact are that was cycled.
 constexpr double kLargestAsymmetry = 0.8;
 
-double Force(const TermUnits& units) { return units.force; }
-double Length(const TermUnits& units) { return units.length; }
-double Stiffness(const TermUnits& units) { return units.force / units.length; }
-double ForceOfTheFile(const TermUnits& units) { return units.force_sense * units.force; }
-double ForceRateOfTheFile(const TermUnits& units) {
-  return units.force_sense * units.force / units.half_duration;
-}
+constexpr TermScale kForceUnit{.force = 1};
+constexpr TermScale kLengthUnit{.length = 1};
+constexpr TermScale kStiffnessUnit{.force = 1, .length = -1};
+constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
 /// Makes one of the four factors of a ripple, which differ in their column.
 constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, Regressor column) {
@@ -58,7 +55,7 @@ constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, R
           .entry = Entry::kLinear,
           .lowest = -kWidest,
           .highest = kWidest,
-          .scale = Force,
+          .powers = kForceUnit,
           .column = column};
 }
 
@@ -70,12 +67,13 @@ constexpr std::array kTermRows = {
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
-         .scale = Stiffness},
+         .powers = kStiffnessUnit},
     Term{.name = "alpha",
          .meaning = "α, shape exponent",
          .presence = Presence::kAlways,
          .lowest = 0.0,
          .highest = kHighestShapeExponent,
+         .longest_step = 1.0,
          .theory_bound = TheoryBound::kLower},
     Term{.name = "slip_force",
          .unit = "N",
@@ -85,14 +83,14 @@ constexpr std::array kTermRows = {
          .positive = true,
          .lowest = kLowestSlipForce,
          .highest = kHighestSlipForce,
-         .scale = Force},
+         .powers = kForceUnit},
     Term{.name = "rig_stiffness",
          .unit = "N/m",
          .meaning = "k of a spring in series, δ = x + T/k",
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
-         .scale = Stiffness,
+         .powers = kStiffnessUnit,
          .is_planned = true,
          .group = "rig_stiffness"},
     Term{.name = "load_exponent",
@@ -105,6 +103,7 @@ constexpr std::array kTermRows = {
                     "it falls; slip_force is their mean",
          .lowest = -kLargestAsymmetry,
          .highest = kLargestAsymmetry,
+         .longest_step = 0.25,
          .group = "asymmetry"},
     Term{.name = "plateau_slope",
          .unit = "N/m",
@@ -112,30 +111,29 @@ constexpr std::array kTermRows = {
          .entry = Entry::kLinear,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale = Stiffness,
+         .powers = kStiffnessUnit,
          .column = Regressor::kDisplacement,
          .is_planned = true,
          .group = "plateau_slope"},
-    Term{
-        .name = "viscous",
-        .unit = "N s/m",
-        .meaning = "C of an additional force C·dδ/dt",
-        .entry = Entry::kLinear,
-        .lowest = -kWidest,
-        .highest = kWidest,
-        .scale =
-            [](const TermUnits& units) { return units.force * units.half_duration / units.length; },
-        .column = Regressor::kVelocity,
-        .needs_time = true,
-        .is_never_negative = true,
-        .is_planned = true,
-        .group = "viscous"},
+    Term{.name = "viscous",
+         .unit = "N s/m",
+         .meaning = "C of an additional force C·dδ/dt",
+         .entry = Entry::kLinear,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .powers = {.force = 1, .length = -1, .time = 1},
+         .column = Regressor::kVelocity,
+         .needs_time = true,
+         .is_never_negative = true,
+         .is_planned = true,
+         .group = "viscous"},
     Term{.name = "speed_exponent",
          .meaning =
              "m of a force C·v^m along the motion, v the speed in m/s and C viscous, in place of "
              "the viscous force",
          .lowest = kLeastSpeedExponent,
          .highest = 1.0,
+         .longest_step = 0.2,
          .needs_time = true,
          .has_start = true,
          .start = 0.5,
@@ -147,10 +145,7 @@ constexpr std::array kTermRows = {
          .entry = Entry::kLinear,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale =
-             [](const TermUnits& units) {
-               return units.force * units.half_duration * units.half_duration / units.length;
-             },
+         .powers = {.force = 1, .length = -1, .time = 2},
          .column = Regressor::kAcceleration,
          .needs_time = true,
          .is_never_negative = true,
@@ -160,18 +155,21 @@ constexpr std::array kTermRows = {
                     "widest stroke",
          .lowest = -kLargestSlipChange,
          .highest = kLargestSlipChange,
+         .longest_step = 0.25,
          .has_start = true,
          .group = "slip_position"},
     Term{.name = "slip_curvature",
          .meaning = "m₂, likewise",
          .lowest = -kLargestSlipChange,
          .highest = kLargestSlipChange,
+         .longest_step = 0.25,
          .has_start = true},
     Term{.name = "slip_speed",
          .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
                     "third of the strokes, at which Tc is that of the fit",
          .lowest = -kLargestSlipBySpeed,
          .highest = kLargestSlipBySpeed,
+         .longest_step = 0.25,
          .needs_time = true,
          .has_start = true,
          .start = 0.3,
@@ -181,6 +179,7 @@ constexpr std::array kTermRows = {
          .meaning = "m, likewise",
          .lowest = kLeastSlipSpeedExponent,
          .highest = 1.0,
+         .longest_step = 0.25,
          .needs_time = true,
          .has_start = true,
          .start = 0.5,
@@ -192,6 +191,7 @@ constexpr std::array kTermRows = {
                     "at its end; the sample's number where there is no time",
          .lowest = -kLargestSlipChange,
          .highest = kLargestSlipChange,
+         .longest_step = 0.25,
          .has_start = true,
          .group = "slip_trend"},
     Term{.name = "drag_fraction",
@@ -199,6 +199,7 @@ constexpr std::array kTermRows = {
                     "has no memory, t the contact's force over Tc, v₀ as for slip_speed",
          .lowest = 0.0,
          .highest = 1.0,
+         .longest_step = 0.25,
          .needs_time = true,
          .has_start = true,
          .start = 0.3,
@@ -208,28 +209,29 @@ constexpr std::array kTermRows = {
          .meaning = "m, likewise",
          .lowest = kLeastSpeedExponent,
          .highest = 1.0,
+         .longest_step = 0.25,
          .needs_time = true,
          .has_start = true,
          .start = 0.5,
          .needs = "drag_fraction",
          .theory_bound = TheoryBound::kBoth},
-    Term{
-        .name = "plateau_curvature",
-        .unit = "N/m²",
-        .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
-                   "stroke",
-        .entry = Entry::kLinear,
-        .lowest = -kWidest,
-        .highest = kWidest,
-        .scale = [](const TermUnits& units) { return units.force / (units.length * units.length); },
-        .column = Regressor::kDisplacementSquared},
+    Term{.name = "plateau_curvature",
+         .unit = "N/m²",
+         .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
+                    "stroke",
+         .entry = Entry::kLinear,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .powers = {.force = 1, .length = -2},
+         .column = Regressor::kDisplacementSquared},
     Term{.name = "ripple_period",
          .unit = "m",
          .meaning = "λ of a periodic force A±cos(2πδ/λ + φ±), one phase for each direction",
          .positive = true,
          .lowest = kShortestPeriod,
          .highest = kLongestPeriod,
-         .scale = Length,
+         .longest_step = 0.2,
+         .powers = kLengthUnit,
          .has_start = true,
          .shapes = "ripple_",
          .group = "ripple"},
@@ -248,7 +250,8 @@ constexpr std::array kTermRows = {
                     "in samples where the record has no time",
          .lowest = -kLongestLag,
          .highest = kLongestLag,
-         .scale = [](const TermUnits& units) { return units.cycle; },
+         .longest_step = 0.02,
+         .powers = {.cycle = 1},
          .motion = ContactMotion::kLate,
          .unit_by_sample = "samples",
          .group = "lag"},
@@ -258,7 +261,8 @@ constexpr std::array kTermRows = {
         .meaning = "g, width of a gap before the contact, which bears no force while it is crossed",
         .lowest = 0.0,
         .highest = kWidestGap,
-        .scale = Length,
+        .longest_step = 0.1,
+        .powers = kLengthUnit,
         .motion = ContactMotion::kBehindGap,
         .theory_bound = TheoryBound::kLower,
         .group = "backlash"},
@@ -271,10 +275,7 @@ constexpr std::array kTermRows = {
          .entry = Entry::kLinear,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale =
-             [](const TermUnits& units) {
-               return units.force_sense * units.force / units.covariate;
-             },
+         .powers = kFileForceUnit,
          .column = Regressor::kCovariate,
          .of_column = true,
          .group = "covariate"},
@@ -286,20 +287,20 @@ constexpr std::array kTermRows = {
          .presence = Presence::kOffsets,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale = ForceOfTheFile,
-         .reference =
-             [](const TermUnits& units) { return units.force_sense * units.force_reference; },
+         .powers = kFileForceUnit,
          .column = Regressor::kOne},
-    Term{.name = "displacement_offset",
-         .unit = "m",
-         .meaning = "position at which a virgin contact is unloaded; for a steady loop its centre, "
-                    "taken from the data",
-         .scope = Scope::kRecord,
-         .presence = Presence::kOffsets,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Length,
-         .reference = [](const TermUnits& units) { return units.displacement_reference; }},
+    Term{
+        .name = "displacement_offset",
+        .unit = "m",
+        .meaning = "position at which a virgin contact is unloaded; for a steady loop its centre, "
+                   "taken from the data",
+        .scope = Scope::kRecord,
+        .presence = Presence::kOffsets,
+        .lowest = -kWidest,
+        .highest = kWidest,
+        .longest_step = 0.5,
+        .powers = kLengthUnit,
+    },
     Term{.name = "force_drift",
          .unit = "N/s",
          .meaning = "rate of a force linear in time; in N a sample where the record has no time",
@@ -308,7 +309,7 @@ constexpr std::array kTermRows = {
          .presence = Presence::kReported,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale = ForceRateOfTheFile,
+         .powers = {.force = 1, .time = -1, .of_file = true},
          .column = Regressor::kTime,
          .is_planned = true,
          .group = "force_drift"},
@@ -321,7 +322,7 @@ constexpr std::array kTermRows = {
          .presence = Presence::kNever,
          .lowest = -kWidest,
          .highest = kWidest,
-         .scale = [](const TermUnits& units) { return units.length / units.half_duration; },
+         .powers = {.length = 1, .time = -1},
          .column = Regressor::kTime,
          .unit_by_sample = "m/sample"},
 };
@@ -344,9 +345,11 @@ constexpr auto kTermsOfDisplacement = [] {
     } else if (term.id == TermId::kForceOffset) {
       term.entry = Entry::kLaw;
       term.column = Regressor::kNone;
+      term.longest_step = 0.5;
     } else if (term.id == TermId::kDisplacementOffset) {
       term.entry = Entry::kLinear;
       term.column = Regressor::kOne;
+      term.longest_step = 1.5;
     } else if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
     } else if (term.id != TermId::kAlpha && term.id != TermId::kLoadExponent) {
@@ -357,6 +360,25 @@ constexpr auto kTermsOfDisplacement = [] {
 }();
 
 }  // namespace
+
+double Term::scale(const TermUnits& units) const {
+  double product = powers.of_file ? units.force_sense : 1.0;
+  const auto times = [&product](double by, int power) {
+    for (; power > 0; --power) product *= by;
+    for (; power < 0; ++power) product /= by;
+  };
+  times(units.force, powers.force);
+  times(units.half_duration, powers.time);
+  times(units.cycle, powers.cycle);
+  times(units.length, powers.length);
+  if (of_column) product /= units.covariate;
+  return product;
+}
+
+double Term::reference(const TermUnits& units) const {
+  if (id == TermId::kForceOffset) return units.force_sense * units.force_reference;
+  return id == TermId::kDisplacementOffset ? units.displacement_reference : 0.0;
+}
 
 std::span<const Term> Terms(loop::Channel response) {
   if (response == loop::Channel::kForce) return kTerms;

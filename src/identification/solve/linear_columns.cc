@@ -1,168 +1,117 @@
 #include "identification/solve/linear_columns.h"
 
-#include <algorithm>
-#include <limits>
-#include <utility>
-
-#include "identification/dense.h"
-#include "identification/solve/sums.h"
+#include <Eigen/QR>
+#include <cmath>
+#include <numeric>
 
 namespace mindahl::identification {
 
-namespace {
-
-/// A column whose part orthogonal to those before it is below this fraction of it depends on them.
-constexpr double kDependent = 1e-12;
-
-std::span<double> ColumnSpan(Eigen::MatrixXd& matrix, Eigen::Index j) {
-  return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
-}
-
-}  // namespace
-
 void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned char> held,
-                              std::span<const double> theta, std::span<const double> weight,
-                              std::span<double> measured) {
-  const ScaledRecords& data = *problem.data;
+                              std::span<const double> theta, const Eigen::VectorXd& weight) {
   const Parameters& parameters = problem.parameters;
   parameters_.clear();
   independent_.clear();
   blocks_.clear();
-  basis_.clear();
   triangle_.resize(0, 0);
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const Parameter& parameter = parameters[p];
-    if (parameter.term->column == Regressor::kNone || theta[p] == 0) continue;
-    if (!parameter.fixed && held[p] == 0) continue;
-    std::size_t row = 0;
-    for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const std::size_t size = data.records[r].size();
-      AddColumn(problem, p, r, theta, -theta[p], measured.subspan(row, size));
-      row += size;
-    }
-  }
-  Weigh(measured, 1.0, weight);
-  const auto is_free = [&](std::size_t p) {
-    return parameters[p].term->column != Regressor::kNone && !parameters[p].fixed && held[p] == 0;
-  };
-  std::size_t row = 0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const std::size_t size = data.records[r].size();
-    members_.clear();
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
+  const auto members_of = [&](auto&& belongs) {
+    std::vector<std::size_t> members;
+    for (const std::size_t p : parameters.free()) {
       const Parameter& parameter = parameters[p];
-      const bool is_own = parameter.term->scope == Scope::kRecord && parameter.record == r;
-      if (is_own && is_free(p)) members_.push_back(p);
+      if (parameter.term->column == Regressor::kNone || held[p] != 0) continue;
+      if (belongs(parameter)) members.push_back(p);
     }
-    AddBlock(problem, row, size, theta, weight);
+    return members;
+  };
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const auto size = static_cast<Eigen::Index>(problem.data->records[r].size());
+    AddBlock(problem, members_of([r](const Parameter& parameter) {
+               return parameter.term->scope == Scope::kRecord && parameter.record == r;
+             }),
+             row, size, theta, weight);
     row += size;
   }
-  members_.clear();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].term->scope == Scope::kContact && is_free(p)) members_.push_back(p);
-  }
-  AddBlock(problem, 0, problem.size(), theta, weight);
-  const auto count = static_cast<Eigen::Index>(independent_.size());
-  measured_projections_.resize(count);
-  response_projections_.setZero(count);
-  for (const Block& block : blocks_) {
-    const std::span<double> rows = measured.subspan(block.first_row, block.rows);
-    for (std::size_t k = 0; k < block.columns; ++k) {
-      measured_projections_[static_cast<Eigen::Index>(block.first_column + k)] =
-          TakeOut(rows, Basis(block, k));
-    }
-  }
+  AddBlock(problem, members_of([](const Parameter& parameter) {
+             return parameter.term->scope == Scope::kContact;
+           }),
+           0, row, theta, weight);
 }
 
-void LinearColumns::AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
-                             std::span<const double> theta, std::span<const double> weight) {
-  std::vector<std::size_t>& kept = members_;
-  if (kept.empty()) return;
-  parameters_.insert(parameters_.end(), kept.begin(), kept.end());
-  const std::size_t before = independent_.size();
-  Eigen::MatrixXd coupling;  // Qᵀ of the blocks before, by this block's columns
+void LinearColumns::AddBlock(const Problem& problem, const std::vector<std::size_t>& members,
+                             Eigen::Index first_row, Eigen::Index rows,
+                             std::span<const double> theta, const Eigen::VectorXd& weight) {
+  // A column whose part orthogonal to those before it is below this fraction of it depends on them.
+  constexpr double kDependent = 1e-12;
+  const auto size = static_cast<Eigen::Index>(members.size());
+  const auto before = static_cast<Eigen::Index>(independent_.size());
+  parameters_.insert(parameters_.end(), members.begin(), members.end());
+  Eigen::MatrixXd columns(rows, size);
+  Eigen::MatrixXd coupling(before, size);  // products with the blocks before
+  Eigen::VectorXd norms(size);
+  Eigen::VectorXd whole(weight.size());
+  for (Eigen::Index j = 0; j < size; ++j) {
+    whole.setZero();
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+      const std::size_t count = problem.data->records[r].size();
+      AddColumn(problem, members[static_cast<std::size_t>(j)], r, theta, 1.0,
+                std::span(whole.data() + row, count));
+      row += count;
+    }
+    whole.array() *= weight.array();
+    norms[j] = whole.norm();
+    // Twice, as what the first projection leaves of a column that nearly depends on the others is
+    // not orthogonal to them.
+    coupling.col(j) = ProjectOut(whole);
+    coupling.col(j) += ProjectOut(whole);
+    columns.col(j) = whole.segment(first_row, rows);
+  }
+  std::vector<Eigen::Index> kept(members.size());  // those that are independent
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  Eigen::HouseholderQR<Eigen::MatrixXd> qr;
   while (!kept.empty()) {
-    const auto count = static_cast<Eigen::Index>(kept.size());
-    columns_.setZero(static_cast<Eigen::Index>(rows), count);
-    coupling.setZero(static_cast<Eigen::Index>(before), count);
-    Eigen::VectorXd norms(count);
-    for (Eigen::Index j = 0; j < count; ++j) {
-      const std::span<double> column = ColumnSpan(columns_, j);
-      std::size_t row = 0;
-      for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-        const std::size_t size = problem.data->records[r].size();
-        if (row >= first_row && row + size <= first_row + rows) {
-          AddColumn(problem, kept[static_cast<std::size_t>(j)], r, theta, 1.0,
-                    column.subspan(row - first_row, size));
-        }
-        row += size;
-      }
-      Weigh(column, 1.0, weight.subspan(first_row, rows));
-      norms[j] = columns_.col(j).norm();
-      // Twice, as what the first projection leaves of a column that nearly depends on the others
-      // is not orthogonal to them.
-      for (int round = 0; round < 2 && before > 0; ++round) {
-        for (const Block& block : blocks_) {
-          if (block.first_row < first_row || block.first_row + block.rows > first_row + rows) {
-            continue;
-          }
-          for (std::size_t k = 0; k < block.columns; ++k) {
-            coupling(static_cast<Eigen::Index>(block.first_column + k), j) +=
-                TakeOut(column.subspan(block.first_row - first_row, block.rows), Basis(block, k));
-          }
-        }
-      }
-    }
-    qr_.compute(columns_);
-    Eigen::Index dependent = 0;
-    while (dependent < count && dependent < columns_.rows() &&
-           std::abs(qr_.matrixQR()(dependent, dependent)) > kDependent * norms[dependent]) {
-      ++dependent;
-    }
-    if (dependent == count) break;
-    kept.erase(kept.begin() + dependent);
+    qr.compute(columns(Eigen::all, kept));
+    const auto is_independent = [&](Eigen::Index k) {
+      return k < rows &&
+             std::abs(qr.matrixQR()(k, k)) > kDependent * norms[kept[static_cast<std::size_t>(k)]];
+    };
+    Eigen::Index first = 0;
+    while (first < std::ssize(kept) && is_independent(first)) ++first;
+    if (first == std::ssize(kept)) break;
+    kept.erase(kept.begin() + first);
   }
   if (kept.empty()) return;
-  const auto count = static_cast<Eigen::Index>(kept.size());
-  const auto first = static_cast<Eigen::Index>(before);
-  thin_.setIdentity(static_cast<Eigen::Index>(rows), count);
-  thin_.applyOnTheLeft(qr_.householderQ());
-  triangle_.conservativeResize(first + count, first + count);
+  const Eigen::Index count = std::ssize(kept);
+  triangle_.conservativeResize(before + count, before + count);
   triangle_.bottomRows(count).setZero();
-  triangle_.topRightCorner(first, count) = coupling;
+  triangle_.topRightCorner(before, count) = coupling(Eigen::all, kept);
   triangle_.bottomRightCorner(count, count) =
-      qr_.matrixQR().topRows(count).triangularView<Eigen::Upper>();
+      qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
   blocks_.push_back({.first_row = first_row,
-                     .rows = rows,
                      .first_column = before,
-                     .columns = kept.size(),
-                     .offset = basis_.size()});
-  basis_.insert(basis_.end(), thin_.data(), thin_.data() + thin_.size());
-  independent_.insert(independent_.end(), kept.begin(), kept.end());
-}
-
-void LinearColumns::ProjectOut(std::span<double> column) const {
-  for (const Block& block : blocks_) {
-    const std::span<double> rows = column.subspan(block.first_row, block.rows);
-    for (std::size_t k = 0; k < block.columns; ++k) TakeOut(rows, Basis(block, k));
+                     .basis = qr.householderQ() * Eigen::MatrixXd::Identity(rows, count)});
+  for (const Eigen::Index j : kept) {
+    independent_.push_back(members[static_cast<std::size_t>(j)]);
   }
 }
 
-void LinearColumns::ProjectResponse(std::span<double> response) {
+Eigen::VectorXd LinearColumns::ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const {
+  Eigen::VectorXd products(std::ssize(independent_));
   for (const Block& block : blocks_) {
-    const std::span<double> rows = response.subspan(block.first_row, block.rows);
-    for (std::size_t k = 0; k < block.columns; ++k) {
-      response_projections_[static_cast<Eigen::Index>(block.first_column + k)] =
-          TakeOut(rows, Basis(block, k));
+    auto rows = column.segment(block.first_row, block.basis.rows());
+    for (Eigen::Index k = 0; k < block.basis.cols(); ++k) {
+      const double product = block.basis.col(k).dot(rows);
+      products[block.first_column + k] = product;
+      rows -= product * block.basis.col(k);
     }
   }
+  return products;
 }
 
-void LinearColumns::Solve(double scale, std::span<double> theta) const {
+void LinearColumns::Solve(const Eigen::VectorXd& products, std::span<double> theta) const {
   for (const std::size_t p : parameters_) theta[p] = 0.0;
   if (independent_.empty()) return;
-  const Eigen::VectorXd values = triangle_.triangularView<Eigen::Upper>().solve(
-      measured_projections_ - scale * response_projections_);
+  const Eigen::VectorXd values = triangle_.triangularView<Eigen::Upper>().solve(products);
   for (std::size_t k = 0; k < independent_.size(); ++k) {
     theta[independent_[k]] = values[static_cast<Eigen::Index>(k)];
   }

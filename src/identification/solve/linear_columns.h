@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,55 +16,39 @@ namespace mindahl::identification {
 class LinearColumns {
  public:
   /// Factorises the columns of the linear parameters that are neither fixed nor held.
-  /// @param held      1 for a linear parameter that is held at a bound
-  /// @param theta     θ of all parameters; those of fixed and held ones are used
-  /// @param weight    root weight of every sample
-  /// @param measured  in: the measured response; out: less what is held, weighted, and orthogonal
-  ///                  to the columns
+  /// @param held    1 for a linear parameter that is held at a bound
+  /// @param theta   θ of all parameters; of those that shape columns it is used
+  /// @param weight  root weight of every sample
   void Factorise(const Problem& problem, std::span<const unsigned char> held,
-                 std::span<const double> theta, std::span<const double> weight,
-                 std::span<double> measured);
+                 std::span<const double> theta, const Eigen::VectorXd& weight);
 
   /// Makes a column orthogonal to the basis.
-  void ProjectOut(std::span<double> column) const;
+  /// @returns its products with the basis
+  Eigen::VectorXd ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
 
-  /// Makes the model's response orthogonal to the basis and keeps its projections for Solve().
-  void ProjectResponse(std::span<double> response);
-
-  /// Writes the least-squares values of the free linear parameters for scale·response into θ, and
-  /// 0 for those whose column depends linearly on the others.
-  void Solve(double scale, std::span<double> theta) const;
+  /// Writes the values of the parameters whose columns have these products with the basis into θ,
+  /// and 0 for those whose column depends linearly on the others.
+  void Solve(const Eigen::VectorXd& products, std::span<double> theta) const;
 
   /// Positions of the free linear parameters, dependent ones included.
   [[nodiscard]] std::span<const std::size_t> parameters() const { return parameters_; }
 
  private:
   struct Block {  // of columns with the same rows
-    std::size_t first_row;
-    std::size_t rows;
-    std::size_t first_column;
-    std::size_t columns;
-    std::size_t offset;  // of its basis in basis_
+    Eigen::Index first_row;
+    Eigen::Index first_column;
+    Eigen::MatrixXd basis;
   };
 
-  /// Factorises the columns of members_ over some rows, and leaves the independent ones there.
-  void AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
-                std::span<const double> theta, std::span<const double> weight);
-  [[nodiscard]] std::span<const double> Basis(const Block& block, std::size_t k) const {
-    return {basis_.data() + block.offset + k * block.rows, block.rows};
-  }
+  /// Factorises the columns of some parameters over some rows, as far as they are independent.
+  void AddBlock(const Problem& problem, const std::vector<std::size_t>& members,
+                Eigen::Index first_row, Eigen::Index rows, std::span<const double> theta,
+                const Eigen::VectorXd& weight);
 
   std::vector<std::size_t> parameters_;
   std::vector<std::size_t> independent_;  // of these, in the order of the basis
-  std::vector<std::size_t> members_;      // of the block that is being made
   std::vector<Block> blocks_;
-  std::vector<double> basis_;
   Eigen::MatrixXd triangle_;  // R of the independent columns
-  Eigen::VectorXd measured_projections_;
-  Eigen::VectorXd response_projections_;
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr_;
-  Eigen::MatrixXd columns_;
-  Eigen::MatrixXd thin_;
 };
 
 }  // namespace mindahl::identification

@@ -17,14 +17,7 @@ inline constexpr double kRefused = 1e150;
 /// n residuals of P coordinates as P + 1 with the same sum of squares, the same JᵀJ and the same
 /// Jᵀr: what a least-squares solver learns of them, at a cost that does not grow with n. The first
 /// P rows are what the Jacobian's columns explain of the residual, the last is what they do not.
-/// @tparam P  number of coordinates; Eigen::Dynamic: any
-template <int P>
-class CompressedResidual {
- public:
-  static constexpr int kRows = P == Eigen::Dynamic ? Eigen::Dynamic : P + 1;
-  using Residual = Eigen::Matrix<double, kRows, 1>;
-  using Jacobian = Eigen::Matrix<double, kRows, P>;
-
+struct CompressedResidual {
   CompressedResidual() = default;
 
   /// @param normal    JᵀJ, from which a rank below P shows as rows of zeros
@@ -34,23 +27,14 @@ class CompressedResidual {
   CompressedResidual(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost,
                      std::span<const unsigned char> frozen);
 
-  [[nodiscard]] const Residual& residual() const { return residual_; }
-  [[nodiscard]] const Jacobian& jacobian() const { return jacobian_; }
   /// Returns by how much a Gauss–Newton step lowers the linearised sum of squares.
   [[nodiscard]] double Explained() const {
-    return residual_.head(residual_.size() - 1).squaredNorm();
+    return residual.head(residual.size() - 1).squaredNorm();
   }
 
- private:
-  Residual residual_;
-  Jacobian jacobian_;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
 };
-
-// Those that a search in small matrices of a known size is made for (tiny_search.cc), and any.
-extern template class CompressedResidual<1>;
-extern template class CompressedResidual<2>;
-extern template class CompressedResidual<3>;
-extern template class CompressedResidual<Eigen::Dynamic>;
 
 /// A coordinate of the search: a parameter's θ, or where Tc is eliminated ln(σ/Tc) or ln(Tc/k).
 struct SearchedParameter {
@@ -58,7 +42,6 @@ struct SearchedParameter {
   double lower;  // of the coordinate
   double upper;
   double LawPoint::*eliminated = nullptr;  // the coordinate of the law; null: θ itself
-  LawSensitivity sensitivity = {};         // of the residual over the scale
 };
 
 /// The residual of a problem after variable projection (Golub & Pereyra 2003): the scale of the
@@ -106,8 +89,6 @@ class ProjectedResidual {
   /// JᵀJ and Jᵀr of the last Linearise().
   [[nodiscard]] const Eigen::MatrixXd& normal() const { return normal_; }
   [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
-  /// Weighted, model − measured, of the last evaluation.
-  [[nodiscard]] std::span<const double> residual() const { return residual_; }
 
   /// Evaluates with the scale eliminated whatever is held, for looks at the plane of σ/Tc, or of a
   /// displacement of Tc, and α.
@@ -120,33 +101,34 @@ class ProjectedResidual {
  private:
   void ChooseSearched();
   void FactoriseColumns();
+  /// True if the columns of linear parameters, or what is taken off, depend on the parameter.
+  [[nodiscard]] bool MovesColumns(std::size_t parameter) const;
   [[nodiscard]] LawPoint PointOf(std::span<const double> u);
   [[nodiscard]] std::pair<double, double> BoundsOfScale(double log_rate) const;
   double Regress(double log_rate, bool is_free, double held_scale);
-  void DifferentiateResponse(const LawPoint& point);
   void DifferentiateColumns();
-  [[nodiscard]] std::span<double> Derivative(std::size_t k) {
-    return {derivatives_.data() + k * samples_, samples_};
+  /// Returns the products of scale·response and what is measured with the linear columns.
+  [[nodiscard]] Eigen::VectorXd LinearProducts() const {
+    return measured_products_ - scale_ * response_products_;
   }
   [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
   Response* response_ = nullptr;
-  std::size_t samples_ = 0;
   std::vector<SearchedParameter> searched_;
-  std::vector<std::span<double> ResponseColumns::*> bases_;  // derivatives of t that are needed
-  std::vector<std::size_t> place_of_base_;                   // among the derivatives
-  std::vector<unsigned char> held_;                          // linear parameters held at a bound
-  std::vector<double> theta_;  // θ at the last evaluation of what is not eliminated
+  std::vector<Dependence> dependences_;  // on these
+  std::vector<unsigned char> held_;      // linear parameters held at a bound
+  std::vector<double> theta_;            // θ at the last evaluation of what is not eliminated
   LinearColumns columns_;
-  std::vector<double> derivatives_;  // of the residual by what is searched, and of t
-  std::vector<double> of_samples_;   // holds the next four
-  std::span<double> measured_;       // weighted, projected
-  std::span<double> weight_;
-  std::span<double> response_values_;  // t, weighted, projected
-  std::span<double> residual_;
-  double scale_ = 0.0;          // of t: Tc, or Tc/σ of a displacement
-  bool scale_is_free_ = false;  // not clamped to its bounds
+  Eigen::VectorXd weight_;
+  Eigen::VectorXd measured_;         // weighted, projected
+  Eigen::VectorXd response_values_;  // t, weighted, projected
+  Eigen::VectorXd measured_products_;
+  Eigen::VectorXd response_products_;
+  Eigen::VectorXd residual_;
+  Eigen::MatrixXd derivatives_;  // of the residual by what is searched
+  double scale_ = 0.0;           // of t: Tc, or Tc/σ of a displacement
+  bool scale_is_free_ = false;   // not clamped to its bounds
   bool scale_is_linear_ = false;
   Eigen::MatrixXd normal_;
   Eigen::VectorXd gradient_;

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/solve/ceres_options.h"
 #include "identification/solve/unprojected_record.h"
 
 namespace mindahl::identification {
@@ -20,16 +19,14 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
   // A full step from there is the last: it leaves far less than it gains.
   constexpr double kLastStep = 100.0;  // function tolerances
   return {.function_tolerance = options.function_tolerance,
-          .parameter_tolerance = options.parameter_tolerance,
           .max_iterations = options.max_iterations,
           .last_step = kLastStep * options.function_tolerance};
 }
 
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
-                    double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
-  if (auto given = GivenStart(candidate.problem.parameters, options, memory)) {
-    candidate.starts.clear();
-    candidate.starts.push_back(std::move(*given));
+                    double rival, SearchBuffers& buffers) {
+  if (auto given = GivenStart(candidate.problem.parameters, options)) {
+    candidate.starts = {std::move(*given)};
     return 0.0;
   }
   const ScaledRecords& thin = thinned.Get();
@@ -45,9 +42,9 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
   const ScaledRecords& looked_at =
       is_enough && !has_covariate && !has_kinks ? thin : *candidate.problem.data;
   const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
-                        Parameters(candidate.problem.parameters, memory)};
-  candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,
-                                buffers.scratch, memory);
+                        candidate.problem.parameters};
+  candidate.starts =
+      FindStarts(problem, options, rival, buffers.solver, buffers.response, buffers.scratch);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
 }
@@ -62,34 +59,30 @@ double NeutralTheta(const Parameters& parameters, std::size_t p) {
 }  // namespace
 
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
-                              const FitOptions& options, SearchBuffers& buffers,
-                              std::pmr::memory_resource* memory) {
-  constexpr std::size_t kMostNested = std::tuple_size_v<decltype(SearchBuffers::smaller)>;
+                              const FitOptions& options, SearchBuffers& buffers) {
+  constexpr std::size_t kMostNested = 3;
   if (!options.start.empty()) return;
   const Parameters& parameters = candidate.problem.parameters;
-  std::pmr::vector<std::size_t> terms(memory);
+  std::vector<std::size_t> terms;
   for (const std::size_t p : parameters.free()) {
     // Only terms that lead a group; its further coefficients stay with them.
     const Term& term = *parameters[p].term;
     const bool is_on_demand = term.presence == Presence::kOnDemand && !term.group.empty();
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
-  if (terms.empty()) return;
-  Solution& solution = buffers.smaller[std::min(terms.size(), kMostNested) - 1];
   for (const std::size_t p : terms) {
     const double neutral = NeutralTheta(parameters, p);
     if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;
-    Candidate smaller(candidate, p, neutral, memory);
-    smaller.solution = &solution;
-    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), buffers,
-                 memory);
+    Candidate smaller = candidate;
+    smaller.problem.parameters.Fix(p, neutral);
+    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), buffers);
     if (terms.size() <= kMostNested) {
-      AddStartsOfSmallerModels(smaller, thinned, options, buffers, memory);
+      AddStartsOfSmallerModels(smaller, thinned, options, buffers);
     }
     Descend(smaller, options, buffers);
+    const Solution& solution = smaller.solution;
     if (!std::isfinite(solution.sum_of_squares)) continue;
-    candidate.starts.push_back({.theta = {solution.theta.begin(), solution.theta.end(), memory},
-                                .cost = solution.sum_of_squares});
+    candidate.starts.push_back({.theta = solution.theta, .cost = solution.sum_of_squares});
   }
 }
 
@@ -102,29 +95,22 @@ bool IsAmongKinks(const Parameters& parameters, const Solution& solution) {
 }
 
 /// Searches of one problem, of which the lowest end is kept.
-class Rivals {
- public:
-  Rivals(const FitOptions& options, SearchBuffers& buffers, Solution& best)
-      : options_(options), buffers_(buffers), best_(best) {}
-
+struct Rivals {
   void From(std::span<const double> theta) {
-    Solution& scratch = buffers_.scratch;
-    buffers_.solver.Solve(theta, SolverOptionsOf(options_), scratch);
-    if (scratch.sum_of_squares < best_.sum_of_squares) std::swap(best_, scratch);
+    Solution& scratch = buffers.scratch;
+    buffers.solver.Solve(theta, SolverOptionsOf(options), scratch);
+    if (scratch.sum_of_squares < best.sum_of_squares) std::swap(best, scratch);
   }
 
-  [[nodiscard]] const Solution& best() const { return best_; }
-
- private:
-  const FitOptions& options_;
-  SearchBuffers& buffers_;
-  Solution& best_;
+  const FitOptions& options;
+  SearchBuffers& buffers;
+  Solution& best;
 };
 
 /// Searches from next to a minimum: with slip that begins sooner or later, and with a smoother law.
 void SearchAcrossKinks(const Problem& problem, Rivals& rivals) {
   constexpr double kSmoother = 0.1;
-  const std::vector<double> from = rivals.best().theta;
+  const std::vector<double> from = rivals.best.theta;
   std::vector<double> theta = from;
   theta[kShape] += kSmoother;
   rivals.From(theta);
@@ -137,7 +123,7 @@ void SearchAcrossKinks(const Problem& problem, Rivals& rivals) {
     const std::size_t origin = problem.parameters.PositionOfOrigin(r);
     if (problem.parameters[origin].fixed) continue;
     for (const double step : {-0.05, 0.05}) {
-      theta = rivals.best().theta;
+      theta = rivals.best.theta;
       theta[origin] += step;
       rivals.From(theta);
     }
@@ -147,7 +133,7 @@ void SearchAcrossKinks(const Problem& problem, Rivals& rivals) {
 /// Searches with other parts of the compliance in the rig: a sharp knee behind a soft rig resembles
 /// a round one.
 void SearchOtherRigs(Rivals& rivals) {
-  const std::vector<double> from = rivals.best().theta;
+  const std::vector<double> from = rivals.best.theta;
   const double compliance = std::exp(-from[kStiffness]) + std::exp(-from[kRig]);
   for (const double share : {0.2, 0.5, 0.8}) {
     for (const double shape : {0.02, 1.0 / 3}) {
@@ -165,21 +151,19 @@ void SearchOtherRigs(Rivals& rivals) {
 }  // namespace
 
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
-  Solution& best = *candidate.solution;
-  best.sum_of_squares = std::numeric_limits<double>::infinity();
-  best.converged = false;
-  best.report = {};
+  Solution& best = candidate.solution;
+  best = {.sum_of_squares = std::numeric_limits<double>::infinity()};
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
-  Rivals rivals(options, buffers, best);
+  Rivals rivals{options, buffers, best};
   for (const StartingPoint& start : candidate.starts) rivals.From(start.theta);
 }
 
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
-  Solution& best = *candidate.solution;
+  Solution& best = candidate.solution;
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
-  Rivals rivals(options, buffers, best);
+  Rivals rivals{options, buffers, best};
   const Parameters& parameters = candidate.problem.parameters;
   const Parameter& rig = parameters[kRig];
   if (!rig.absent && !rig.fixed && !rig.has_prior()) SearchOtherRigs(rivals);
@@ -215,11 +199,7 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
     const auto record = std::make_shared<UnprojectedRecord>(problem, r, scale);
     std::vector<double*> blocks;
     for (const std::size_t p : record->blocks()) blocks.push_back(&theta[p]);
-    for (std::size_t i = 0; i < record->samples(); ++i) {
-      if (!record->Counts(i)) continue;
-      ceres_problem.AddResidualBlock(CostOfSample(record, i).release(), loss_function.get(),
-                                     blocks);
-    }
+    AddRecord(record, blocks, loss_function.get(), ceres_problem);
   }
   for (const std::size_t p : problem.parameters.with_prior()) {
     const Parameter& parameter = problem.parameters[p];
@@ -229,15 +209,8 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
         nullptr, &theta[p]);
   }
   for (std::size_t p = 0; p < theta.size(); ++p) {
-    if (!ceres_problem.HasParameterBlock(&theta[p])) continue;
     const Parameter& parameter = problem.parameters[p];
-    if (parameter.fixed) {
-      ceres_problem.SetParameterBlockConstant(&theta[p]);
-      continue;
-    }
-    theta[p] = std::clamp(theta[p], parameter.lower, parameter.upper);
-    ceres_problem.SetParameterLowerBound(&theta[p], 0, parameter.lower);
-    ceres_problem.SetParameterUpperBound(&theta[p], 0, parameter.upper);
+    BoundBlock(&theta[p], parameter.fixed, parameter.lower, parameter.upper, ceres_problem);
   }
   ceres::Solver::Summary summary;
   ceres::Solve(CeresOptionsOf(options, ceres::DENSE_NORMAL_CHOLESKY), &ceres_problem, &summary);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <memory_resource>
 #include <vector>
 
 #include "identification/problem/problem.h"
@@ -16,29 +14,16 @@ struct SearchBuffers {
   Solver solver;
   Response response;
   Solution scratch;
-  std::array<Solution, 3> states;   // of the initial states that are tried
-  std::array<Solution, 3> smaller;  // of models with one term less, and those that they contain
 };
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
-            std::pmr::memory_resource* memory)
-      : problem{&data, options.model, state, Parameters(data, options, state, memory)},
-        starts(memory) {}
-
-  /// The same with one more parameter held.
-  Candidate(const Candidate& other, std::size_t parameter, double theta,
-            std::pmr::memory_resource* memory)
-      : problem{other.problem.data, other.problem.model, other.problem.state,
-                Parameters(other.problem.parameters, memory)},
-        starts(memory) {
-    problem.parameters.Fix(parameter, theta);
-  }
+  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state)
+      : problem{&data, options.model, state, Parameters(data, options, state)} {}
 
   Problem problem;
-  std::pmr::vector<StartingPoint> starts;
-  Solution* solution = nullptr;  // of the caller's buffers
+  std::vector<StartingPoint> starts = {};
+  Solution solution = {};
 };
 
 SolverOptions SolverOptionsOf(const FitOptions& options);
@@ -47,14 +32,13 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// @param rival  of another initial state, as FindStarts() takes it
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
-                    double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory);
+                    double rival, SearchBuffers& buffers);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,
 /// for at most three terms, from the solutions of the models that they contain in turn.
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
-                              const FitOptions& options, SearchBuffers& buffers,
-                              std::pmr::memory_resource* memory);
+                              const FitOptions& options, SearchBuffers& buffers);
 
 /// Solves from each starting point and keeps the best solution.
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);

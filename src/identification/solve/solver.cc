@@ -1,16 +1,31 @@
 #include "identification/solve/solver.h"
 
 #include <ceres/ceres.h>
+#include <ceres/tiny_solver.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "identification/solve/ceres_options.h"
 #include "identification/solve/projected_residual.h"
 
 namespace mindahl::identification {
+ceres::Solver::Options CeresOptionsOf(const SolverOptions& options,
+                                      ceres::LinearSolverType linear_solver) {
+  ceres::Solver::Options search;
+  search.linear_solver_type = linear_solver;
+  search.max_num_iterations = options.max_iterations;
+  search.function_tolerance = options.function_tolerance;
+  search.parameter_tolerance = options.parameter_tolerance;
+  search.gradient_tolerance = std::numeric_limits<double>::min();
+  search.logging_type = ceres::SILENT;
+  return search;
+}
+
 namespace {
+
+/// A residual that refuses a trial: ½ of its square is beyond any cost that is finite, and finite.
+constexpr double kRefused = 1e150;
 
 /// ceres::Solve sees the same compressed residual, with its Jacobian at every point.
 class CompressedCost final : public ceres::CostFunction {
@@ -30,12 +45,11 @@ class CompressedCost final : public ceres::CostFunction {
     rows.setZero();
     rows[0] = std::isfinite(cost) ? std::sqrt(cost) : kRefused;
     if (!with_jacobian || !std::isfinite(cost)) return std::isfinite(cost) || !with_jacobian;
-    const CompressedResidual<Eigen::Dynamic> compressed(residual_.normal(), residual_.gradient(),
-                                                        cost, {});
-    rows = compressed.residual();
+    const CompressedResidual compressed(residual_.normal(), residual_.gradient(), cost, {});
+    rows = compressed.residual;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor> jacobian(jacobians[0], rows.size(), static_cast<Eigen::Index>(count));
-    jacobian = compressed.jacobian();
+    jacobian = compressed.jacobian;
     return rows.allFinite() && jacobian.allFinite();  // Ceres would print what is not
   }
 
@@ -43,14 +57,281 @@ class CompressedCost final : public ceres::CostFunction {
   ProjectedResidual& residual_;
 };
 
-}  // namespace
+/// ceres::TinySolver with what the searches of one start share.
+///
+/// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
+/// stops by the absolute change of the cost. Its cost functor therefore
+/// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
+/// - ends the search where a trial moves a coordinate further than one step may, and goes on with
+///   a trust region in which it does not;
+/// - linearises a trial at once, as an accepted one is linearised next;
+/// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
+///   the function tolerance.
+class TinySearch {
+ public:
+  TinySearch(ProjectedResidual& residual, const SolverOptions& options)
+      : residual_(residual),
+        options_(options),
+        count_(residual.searched().size()),
+        floor_(static_cast<double>(residual.problem().data->counted) * kRoundingRms * kRoundingRms),
+        at_(count_),
+        raw_(count_),
+        trial_(count_),
+        clamped_(count_) {}
 
-namespace {
+  /// Searches from u, which it moves.
+  void Run(std::span<double> u);
+
+  /// Linearises at u, where the next run begins.
+  void LineariseAt(std::span<const double> u) {
+    trial_.assign(u.begin(), u.end());
+    trial_cost_ = residual_.Linearise(u);
+    trial_is_linearised_ = true;
+  }
+
+  // Results of the last run.
+  [[nodiscard]] double cost() const { return cost_; }
+  [[nodiscard]] int iterations() const { return iterations_; }
+  [[nodiscard]] bool hit_maximum() const {
+    return tiny_.summary.status == Tiny::HIT_MAX_ITERATIONS;
+  }
+  /// True if twenty steps together gained next to nothing, and it was left at that.
+  [[nodiscard]] bool is_slow() const { return is_slow_; }
+  [[nodiscard]] const char* Message() const;
+  /// True if the residual was evaluated, or predicted, at u last.
+  [[nodiscard]] bool IsEvaluatedAt(std::span<const double> u) const {
+    return std::ranges::equal(u, trial_);
+  }
+
+ private:
+  struct Function {
+    using Scalar = double;
+    enum {  // Names that TinySolver asks for.
+      // NOLINTNEXTLINE(readability-identifier-naming)
+      NUM_RESIDUALS = Eigen::Dynamic,
+      // NOLINTNEXTLINE(readability-identifier-naming)
+      NUM_PARAMETERS = Eigen::Dynamic
+    };
+
+    [[nodiscard]] int NumParameters() const { return static_cast<int>(search->count_); }
+    [[nodiscard]] int NumResiduals() const { return static_cast<int>(search->count_) + 1; }
+    bool operator()(const double* x, double* residuals, double* jacobian) const {
+      if (jacobian == nullptr) {
+        search->Try(x, residuals);
+      } else {
+        search->Accept(x, residuals, jacobian);
+      }
+      return true;
+    }
+
+    TinySearch* search;
+  };
+  using Tiny = ceres::TinySolver<Function>;
+
+  void Try(const double* x, double* residuals);
+  void Accept(const double* x, double* residuals, double* jacobian);
+  [[nodiscard]] double RadiusOfFirstStep() const;
+  /// A residual that refuses a trial by less than the function tolerance, which ends the search.
+  [[nodiscard]] double EndOfSearch() const {
+    return std::sqrt(cost_ * (1 + options_.function_tolerance / 2));
+  }
+  void Clamp(const double* x, std::vector<double>& to) const;
+  [[nodiscard]] bool IsTooLong(std::size_t j, double step) const;
+  void FindClamped(const double* x);
+  void CountAccepted();
+
+  ProjectedResidual& residual_;
+  const SolverOptions& options_;
+  std::size_t count_;
+  double floor_;               // of the cost: below it residuals are rounding errors
+  std::vector<double> at_;     // accepted coordinates, within their bounds
+  std::vector<double> raw_;    // as TinySolver has them
+  std::vector<double> trial_;  // the last evaluated ones
+  std::vector<unsigned char> clamped_;
+  Tiny tiny_;
+  CompressedResidual compressed_;  // at the accepted coordinates
+  double cost_ = 0.0;              // there
+  double trial_cost_ = 0.0;
+  bool trial_is_linearised_ = false;
+  bool is_first_ = false;  // is the next accepted point that where a search begins?
+  bool is_last_ = false;   // is the next accepted step the last one?
+  bool goes_on_ = false;   // with another trust region, from where the search ended
+  bool is_slow_ = false;
+  int accepted_ = 0;  // steps
+  int iterations_ = 0;
+  double cost_before_ = 0.0;  // kSlowSteps accepted steps ago
+};
+
+void TinySearch::Clamp(const double* x, std::vector<double>& to) const {
+  const std::span<const SearchedParameter> searched = residual_.searched();
+  for (std::size_t j = 0; j < count_; ++j) {
+    to[j] = std::clamp(x[j], searched[j].lower, searched[j].upper);
+  }
+}
+
+bool TinySearch::IsTooLong(std::size_t j, double step) const {
+  const std::size_t p = residual_.searched()[j].parameter;
+  const double unit = p == kShape ? std::max(1.0, raw_[j]) : 1.0;
+  return std::abs(step) > residual_.problem().parameters[p].term->longest_step * unit;
+}
+
+void TinySearch::FindClamped(const double* x) {
+  const std::span<const SearchedParameter> searched = residual_.searched();
+  for (std::size_t j = 0; j < count_; ++j) {
+    const double slope = residual_.gradient()[static_cast<Eigen::Index>(j)];
+    const bool below = x[j] <= searched[j].lower && (x[j] < searched[j].lower || slope > 0);
+    const bool above = x[j] >= searched[j].upper && (x[j] > searched[j].upper || slope < 0);
+    clamped_[j] = below || above ? 1 : 0;
+  }
+}
+
+void TinySearch::CountAccepted() {
+  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
+  constexpr int kSlowSteps = 20;          // ... in as many steps
+  if (!is_first_) ++accepted_;
+  if (accepted_ == 0) cost_before_ = cost_;
+  if (is_first_ || accepted_ % kSlowSteps != 0) return;
+  const auto samples = static_cast<double>(residual_.problem().data->counted);
+  is_slow_ = samples * (cost_before_ - cost_) < kSmallestGain * cost_before_;
+  cost_before_ = cost_;
+}
+
+/// Returns the largest radius, of those tried, with which TinySolver's first step is not too long.
+double TinySearch::RadiusOfFirstStep() const {
+  constexpr double kLargestRadius = 1e3;
+  constexpr int kTries = 40;
+  // TinySolver scales the columns, and keeps the damping of those without effect from vanishing.
+  constexpr double kLeastDiagonal = 1e-6;
+  const Eigen::VectorXd scaling =
+      1 / (1 + compressed_.jacobian.colwise().norm().transpose().array());
+  const Eigen::MatrixXd jacobian = compressed_.jacobian * scaling.asDiagonal();
+  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+  const Eigen::VectorXd gradient = jacobian.transpose() * compressed_.residual;
+  double radius = kLargestRadius;
+  for (int tries = 0; tries < kTries; ++tries, radius /= 4) {
+    Eigen::MatrixXd damped = normal;
+    damped.diagonal() += normal.diagonal().cwiseMax(kLeastDiagonal) / radius;
+    const Eigen::VectorXd step = -scaling.cwiseProduct(damped.ldlt().solve(gradient));
+    bool is_short = true;
+    for (std::size_t j = 0; j < count_; ++j) {
+      is_short = is_short && !IsTooLong(j, step[static_cast<Eigen::Index>(j)]);
+    }
+    if (is_short) break;
+  }
+  return radius;
+}
+
+void TinySearch::Try(const double* x, double* residuals) {
+  const auto size = static_cast<Eigen::Index>(count_);
+  Eigen::Map<Eigen::VectorXd> rows(residuals, size + 1);
+  rows.setZero();
+  bool is_number = true;
+  for (std::size_t j = 0; j < count_; ++j) {
+    is_number = is_number && std::isfinite(x[j]);
+    goes_on_ = goes_on_ || IsTooLong(j, x[j] - raw_[j]);
+  }
+  if (!is_number || goes_on_) {
+    rows[0] = goes_on_ ? EndOfSearch() : kRefused;
+    return;
+  }
+  Clamp(x, trial_);
+  trial_is_linearised_ = !is_last_;
+  if (is_last_ && options_.predicts_last) {
+    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(trial_.data(), size) -
+                                 Eigen::Map<const Eigen::VectorXd>(at_.data(), size);
+    trial_cost_ = (compressed_.residual + compressed_.jacobian * step).squaredNorm();
+  } else {
+    trial_cost_ = is_last_ ? residual_.Evaluate(trial_) : residual_.Linearise(trial_);
+    // A last step that does not lower the cost could have gained next to nothing.
+    if (is_last_ && !(trial_cost_ < cost_)) {
+      rows[0] = EndOfSearch();
+      return;
+    }
+  }
+  rows[0] = std::isfinite(trial_cost_) ? std::sqrt(trial_cost_) : kRefused;
+}
+
+void TinySearch::Accept(const double* x, double* residuals, double* jacobian) {
+  const auto size = static_cast<Eigen::Index>(count_);
+  Eigen::Map<Eigen::VectorXd> rows(residuals, size + 1);
+  Eigen::Map<Eigen::MatrixXd> columns(jacobian, size + 1, size);
+  Clamp(x, at_);
+  if (is_first_ && !(trial_is_linearised_ && trial_ == at_)) {
+    LineariseAt(at_);
+  }
+  raw_.assign(x, x + count_);
+  cost_ = trial_cost_;
+  rows.setZero();
+  columns.setZero();
+  rows[size] = std::sqrt(cost_);
+  tiny_.options.function_tolerance = options_.function_tolerance * cost_;
+  if (!trial_is_linearised_) return;  // that was the last step: a zero gradient ends the search
+  FindClamped(x);
+  compressed_ = CompressedResidual(residual_.normal(), residual_.gradient(), cost_, clamped_);
+  CountAccepted();
+  const double left = compressed_.Explained();
+  if (is_slow_ || left <= options_.function_tolerance * cost_) return;
+  is_last_ = left <= options_.last_step * cost_ && cost_ > floor_;
+  if (is_first_) tiny_.options.initial_trust_region_radius = RadiusOfFirstStep();
+  is_first_ = false;
+  rows = compressed_.residual;
+  columns = compressed_.jacobian;
+}
+
+void TinySearch::Run(std::span<double> u) {
+  // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
+  constexpr double kOnlyZero = std::numeric_limits<double>::min();
+  // A search that ends with more than this fraction of the cost to gain was damped too much.
+  constexpr double kGainWorthGoingOn = 1e-6;
+  tiny_.options.gradient_tolerance = kOnlyZero;
+  tiny_.options.cost_threshold = 0.0;
+  tiny_.options.parameter_tolerance = options_.parameter_tolerance;
+  accepted_ = iterations_ = 0;
+  is_slow_ = false;
+  Eigen::VectorXd point =
+      Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
+  double last_cost = std::numeric_limits<double>::infinity();
+  do {
+    is_first_ = true;
+    is_last_ = goes_on_ = false;
+    tiny_.options.max_num_iterations = options_.max_iterations - iterations_;
+    tiny_.Solve(Function{this}, &point);
+    iterations_ += std::max(tiny_.summary.iterations, 1);
+    // A step that ends the search is not accepted by a call.
+    if (!std::equal(raw_.begin(), raw_.end(), point.data())) {
+      at_ = trial_;
+      cost_ = trial_cost_;
+    }
+    const bool was_damped = tiny_.summary.status == Tiny::COST_CHANGE_TOO_SMALL &&
+                            cost_ < last_cost &&
+                            compressed_.Explained() > kGainWorthGoingOn * cost_;
+    goes_on_ = goes_on_ || was_damped;
+    last_cost = cost_;
+  } while (goes_on_ && iterations_ < options_.max_iterations);
+  std::ranges::copy(at_, u.begin());
+}
+
+const char* TinySearch::Message() const {
+  if (!std::isfinite(cost_)) return "The residuals at the start are not finite.";
+  if (is_slow_) return "Twenty steps together raised twice the log-likelihood by less than 1e-3.";
+  switch (tiny_.summary.status) {
+    case Tiny::GRADIENT_TOO_SMALL:
+      return "No step can lower the cost by more than the function tolerance.";
+    case Tiny::RELATIVE_STEP_SIZE_TOO_SMALL:
+      return "No parameter moves by more than the parameter tolerance.";
+    case Tiny::COST_TOO_SMALL:
+      return "The cost is zero.";
+    case Tiny::COST_CHANGE_TOO_SMALL:
+      return "The last step changed the cost by less than the function tolerance.";
+    case Tiny::HIT_MAX_ITERATIONS:
+      break;
+  }
+  return "The solver made its maximum number of iterations.";
+}
 
 /// True if a coordinate that lies at one of its bounds would lower the cost on its way back.
-/// @param others  room for a mark of each coordinate
-bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance,
-                 std::vector<unsigned char>& others) {
+bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance) {
+  std::vector<unsigned char> others(u.size());
   bool any = false;
   for (std::size_t j = 0; j < u.size(); ++j) {
     const SearchedParameter& searched = residual.searched()[j];
@@ -61,8 +342,7 @@ bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, d
     any = any || inward;
   }
   if (!any) return false;
-  const CompressedResidual<Eigen::Dynamic> compressed(residual.normal(), residual.gradient(), 0.0,
-                                                      others);
+  const CompressedResidual compressed(residual.normal(), residual.gradient(), 0.0, others);
   return compressed.Explained() > tolerance;
 }
 
@@ -97,37 +377,28 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
 }  // namespace
 
 void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
-  std::unique_ptr<TinySearch>& own = searches_[std::min(u.size(), searches_.size()) - 1];
-  if (own == nullptr) own = TinySearch::Make(u.size());
-  TinySearch& search = *own;
-  const double floor =
-      static_cast<double>(residual_.problem().data->counted) * kRoundingRms * kRoundingRms;
   SolverReport& report = solution.report;
   report.solver = "tiny_solver";
   // A third of the steps is left to the second opinion.
   SolverOptions of_tiny = options;
   if (!options.is_rough) of_tiny.max_iterations -= options.max_iterations / 3;
-  search.Start(residual_, of_tiny, floor);
+  TinySearch search(residual_, of_tiny);
   double last_cost = std::numeric_limits<double>::infinity();
   // Each pass lets go what lies at a bound and leads inward.
   for (std::size_t pass = 0; pass <= u.size(); ++pass) {
     search.Run(u);
     report.iterations += search.iterations();
-    if (pass == 0) report.initial_cost = search.initial_cost();
     const bool is_lower = search.cost() < last_cost;
     last_cost = search.cost();
     if (!is_lower || !IsAtBound(residual_, u)) break;
-    search.KnowsLinearised(u, residual_.Linearise(u));
-    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost(), search.marks())) {
-      break;
-    }
+    search.LineariseAt(u);
+    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost())) break;
   }
   double cost = search.cost();
   solution.converged = !search.hit_maximum() && std::isfinite(cost);
   report.termination = solution.converged ? "CONVERGENCE" : "NO_CONVERGENCE";
   report.message = search.Message();
   bool is_evaluated = search.IsEvaluatedAt(u);
-  const bool is_predicted = is_evaluated && search.is_predicted();
   const int left = options.max_iterations - report.iterations;
   if (!options.is_rough && left > 0 && std::isfinite(cost) &&
       (!solution.converged || search.is_slow() || IsAtBound(residual_, u))) {
@@ -146,9 +417,6 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   }
   if (!is_evaluated) cost = residual_.Evaluate(u);
   solution.sum_of_squares = cost;
-  if (!is_predicted) {
-    solution.residual.assign(residual_.residual().begin(), residual_.residual().end());
-  }
 }
 
 void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
@@ -177,19 +445,10 @@ void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
   }
 }
 
-double Solver::CostAt(std::span<double> theta) {
-  u_.resize(residual_.searched().size());
-  residual_.Load(theta, u_);
-  const double cost = residual_.Evaluate(u_);
-  residual_.Store(u_, theta);
-  return cost;
-}
-
 void Solver::Solve(std::span<const double> start, const SolverOptions& options,
                    Solution& solution) {
   const Parameters& parameters = residual_.problem().parameters;
   solution.theta.assign(residual_.theta().begin(), residual_.theta().end());
-  solution.residual.clear();
   solution.report.iterations = 0;
   residual_.ReleaseLinear();
   u_.resize(residual_.searched().size());
@@ -198,14 +457,12 @@ void Solver::Solve(std::span<const double> start, const SolverOptions& options,
   for (std::size_t pass = 0; pass <= parameters.size(); ++pass) {
     if (u_.empty()) {
       solution.sum_of_squares = residual_.Evaluate(u_);
-      solution.residual.assign(residual_.residual().begin(), residual_.residual().end());
       solution.converged = std::isfinite(solution.sum_of_squares);
       solution.report.solver = "none";
       solution.report.termination = "CONVERGENCE";
       solution.report.message = parameters.free().empty()
                                     ? "every parameter is fixed"
                                     : "Every parameter that is not linear is fixed.";
-      solution.report.initial_cost = solution.sum_of_squares / 2;
     } else {
       SearchFrom(u_, options, solution);
     }

@@ -6,10 +6,8 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 
-#include "core/draws.h"
 #include "core/extremes.h"
 
 namespace mindahl::identification {
@@ -39,9 +37,6 @@ constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
 /// Number of starts where α is held at 0 and there are several minima next to each other.
 constexpr std::size_t kStartsAmongKinks = 4;
-
-constexpr double kHighestDrawnShape = 3.0;
-constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of them
 
 /// A term with which a loop looks like one of another shape: the best look of each shape is tried
 /// with it.
@@ -75,21 +70,15 @@ struct Look {
 
 class Plane {
  public:
-  Plane(const Problem& problem, const FitOptions& options, Solver& solver,
-        std::pmr::memory_resource* memory)
-      : problem_(problem), options_(options), solver_(solver), theta_(memory), guesses_(memory) {
-    const Parameters& parameters = problem.parameters;
-    theta_.resize(parameters.size());
-    for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
-      terms_[k] = parameters.PositionOf(kTermsOfLook[k].id, 0);
-    }
-    FindGuesses(memory);
+  Plane(const Problem& problem, const FitOptions& options, Solver& solver)
+      : problem_(problem), options_(options), solver_(solver) {
+    for (const Parameter& parameter : problem.parameters) theta_.push_back(parameter.theta);
+    FindGuesses();
   }
 
   /// Returns the parameter of kTermsOfLook.
   [[nodiscard]] const Parameter& TermOf(std::size_t term) const {
-    return problem_.parameters[terms_[term]];
+    return problem_.parameters[RowOf(kTermsOfLook[term].id)];
   }
   [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
 
@@ -110,14 +99,13 @@ class Plane {
       }
       point.load_exponent = theta_[kLoadExponent];
     }
-    std::size_t record = 0;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (parameters[p].term->name != OriginTerm(problem_.data->excitation)) continue;
-      theta_[p] = guesses_[look.guess][record++];
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      theta_[parameters.PositionOfOrigin(r)] = guesses_[look.guess][r];
     }
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
+    for (std::size_t k = 0; k < kTermsOfLook.size(); ++k) {
       const Parameter& term = TermOf(k);
-      if (!term.fixed) theta_[terms_[k]] = std::clamp(look.terms[k], term.lower, term.upper);
+      if (term.fixed) continue;
+      theta_[RowOf(kTermsOfLook[k].id)] = std::clamp(look.terms[k], term.lower, term.upper);
     }
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
@@ -166,7 +154,7 @@ class Plane {
   }
 
  private:
-  using Guess = std::pmr::vector<double>;  // one a record
+  using Guess = std::vector<double>;  // one a record
 
   /// Largest |excitation| from where a guess has the contact unloaded.
   [[nodiscard]] double FarthestFrom(std::size_t guess) const {
@@ -186,40 +174,34 @@ class Plane {
     }
   }
 
-  void FindGuesses(std::pmr::memory_resource* memory) {
-    const Parameters& parameters = problem_.parameters;
-    const std::size_t records = problem_.data->records.size();
-    Guess fixed(memory);
-    Guess first(memory);
-    Guess centre(memory);
-    Guess zero(memory);
-    bool all_fixed = true;
-    for (std::size_t r = 0; r < records; ++r) {
-      const Parameter& offset = parameters[parameters.PositionOfOrigin(r)];
-      all_fixed = all_fixed && offset.fixed;
-      fixed.push_back(offset.theta);
-      first.push_back(offset.fixed ? offset.theta : problem_.data->records[r].excitation().front());
-      centre.push_back(offset.fixed ? offset.theta : 0.0);
-      zero.push_back(offset.fixed ? offset.theta : offset.ToTheta(0.0));
-    }
-    if (all_fixed) {
-      guesses_.push_back(std::move(fixed));
-      return;
-    }
-    const bool zero_is_near = std::ranges::all_of(zero, [](double x) { return std::abs(x) <= 1; });
-    const bool zero_is_new = zero_is_near && zero != first && zero != centre;
-    const bool centre_is_new = centre != first;
-    guesses_.push_back(std::move(first));
-    if (centre_is_new) guesses_.push_back(std::move(centre));
-    if (zero_is_new) guesses_.push_back(std::move(zero));
+  /// At the first sample, at the centre of the record and at the file's zero, where these differ.
+  void FindGuesses() {
+    const auto guess_at = [this](auto&& place) {
+      Guess guess;
+      for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+        const Parameter& offset = problem_.parameters[problem_.parameters.PositionOfOrigin(r)];
+        guess.push_back(offset.fixed ? offset.theta : place(problem_.data->records[r], offset));
+      }
+      return guess;
+    };
+    const auto add = [this](const Guess& guess) {
+      if (std::ranges::find(guesses_, guess) == guesses_.end()) guesses_.push_back(guess);
+    };
+    add(guess_at([](const ScaledRecord& record, const Parameter& /*offset*/) {
+      return record.excitation().front();
+    }));
+    add(guess_at([](const ScaledRecord& /*record*/, const Parameter& /*offset*/) { return 0.0; }));
+    const Guess zero = guess_at([](const ScaledRecord& /*record*/, const Parameter& offset) {
+      return offset.ToTheta(0.0);
+    });
+    if (std::ranges::all_of(zero, [](double x) { return std::abs(x) <= 1; })) add(zero);
   }
 
   const Problem& problem_;
   const FitOptions& options_;
   Solver& solver_;
-  std::pmr::vector<double> theta_;
-  std::pmr::vector<Guess> guesses_;
-  std::array<std::size_t, kTermsOfLook.size()> terms_{};  // positions of the parameters
+  std::vector<double> theta_;
+  std::vector<Guess> guesses_;
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
@@ -314,10 +296,9 @@ constexpr SolverOptions kRough{.function_tolerance = 1e-2,
 
 }  // namespace
 
-std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options,
-                                        std::pmr::memory_resource* memory) {
-  if (options.start.empty() || options.starts > 1) return std::nullopt;
-  StartingPoint start{.theta = std::pmr::vector<double>(memory)};
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options) {
+  if (options.start.empty()) return std::nullopt;
+  StartingPoint start;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
     const bool is_searched = p == kSlipForce || (parameters[p].term->entry == Entry::kLaw &&
@@ -332,68 +313,39 @@ bool HasKinks(const Parameters& parameters) {
   return parameters[kShape].fixed && parameters[kShape].theta == 0;
 }
 
-std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
-                                           double rival, Solver& solver, Response& response,
-                                           Solution& scratch, std::pmr::memory_resource* memory) {
+std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
+                                      Solver& solver, Response& response, Solution& scratch) {
   // A look that is that much worse than the best does not lead to a better minimum.
   constexpr double kHopeless = 4.0;
-  std::pmr::vector<StartingPoint> starts(memory);
-  starts.reserve(std::max(options.starts, kRows.size()) + 1);
-  solver.Bind(thin, response);
-  Plane plane(thin, options, solver, memory);
   // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
   constexpr double kBeyondRival = 10.0;
-  const auto looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
+  std::vector<StartingPoint> starts;
+  solver.Bind(thin, response);
+  Plane plane(thin, options, solver);
+  const Looks looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
     return thin.parameters[p].term->presence == Presence::kOnDemand;
   });
   const bool is_beaten = looks.front().cost > kBeyondRival * rival;
-  const std::size_t most =
-      HasKinks(thin.parameters) ? std::max(options.starts, kStartsAmongKinks) : options.starts;
+  const std::size_t most = HasKinks(thin.parameters) ? kStartsAmongKinks : 1;
   for (Look look : looks) {
     const bool is_wanted = bent || starts.size() < most ||
                            (starts.size() < 2 && look.cost < kHopeless * looks.front().cost);
     if (!is_wanted || !std::isfinite(look.cost)) break;
     plane.At(look);
     const std::span<const double> theta = plane.theta();
-    StartingPoint& start =
-        starts.emplace_back(StartingPoint{.theta = {theta.begin(), theta.end(), memory},
-                                          .cost = look.cost,
-                                          .look = looks.front().cost});
+    StartingPoint& start = starts.emplace_back(StartingPoint{
+        .theta = {theta.begin(), theta.end()}, .cost = look.cost, .look = looks.front().cost});
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
-    start.theta.assign(scratch.theta.begin(), scratch.theta.end());
+    start.theta = scratch.theta;
     start.cost = scratch.sum_of_squares;
     if (is_beaten) break;
   }
-  // Sorts by insertion, as they are few: stable_sort would allocate.
-  for (auto start = starts.begin(); start != starts.end(); ++start) {
-    std::rotate(
-        std::ranges::upper_bound(starts.begin(), start, start->cost, {}, &StartingPoint::cost),
-        start, start + 1);
-  }
-  if (starts.size() > most)
-    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(most), starts.end());
-  // If all looks have the wrong sign of force, so have all draws.
-  if (starts.empty() || options.starts <= starts.size()) return starts;
-  Draws draws(options.seed);
-  const Parameter& shape = thin.parameters[kShape];
-  for (std::size_t left = kDrawsPerStart * options.starts;
-       left > 0 && starts.size() < options.starts; --left) {
-    Look look;
-    look.reach = plane.is_forced() ? draws.Uniform(kMobilised.front(), kMobilised.back())
-                                   : draws.LogUniform(kReaches.front(), kReaches.back());
-    const double alpha = draws.Uniform(0.0, kHighestDrawnShape);
-    look.shape = shape.fixed ? shape.theta : std::clamp(alpha, shape.lower, shape.upper);
-    look.rig_ratio = draws.LogUniform(kRigRatios.front(), kRigRatios.back());
-    look.guess = draws.Index(plane.guesses());
-    plane.At(look);
-    if (!std::isfinite(look.cost)) continue;
-    const std::span<const double> theta = plane.theta();
-    starts.push_back({.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost});
-  }
+  std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
+  if (starts.size() > most) starts.resize(most);
   return starts;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory_resource>
 #include <optional>
 #include <vector>
 
@@ -12,9 +11,9 @@
 namespace mindahl::identification {
 
 struct StartingPoint {
-  std::pmr::vector<double> theta;  // all parameters
-  double cost = 0.0;               // on the thinned record
-  double look = 0.0;               // of the best look there
+  std::vector<double> theta;  // all parameters
+  double cost = 0.0;          // on the thinned record
+  double look = 0.0;          // of the best look there
 };
 
 /// True if α is held at 0: the likelihood has a kink wherever a sample begins to slip, and minima
@@ -22,8 +21,7 @@ struct StartingPoint {
 bool HasKinks(const Parameters& parameters);
 
 /// The options' own start, where it leaves nothing to be looked for.
-std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options,
-                                        std::pmr::memory_resource* memory);
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options);
 
 /// Starting points from the data, best first.
 ///
@@ -31,15 +29,13 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
 /// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
 /// is tried unloaded at the first sample, at the centre of the record and at displacement zero; a
 /// rig of unknown stiffness at some ratios to the contact's. The best of each α, or where α is held
-/// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
-/// more than these four, the others are drawn at random over the same range, seeded.
+/// of each third of the plane, goes on to the minimum of the thinned record.
 /// @param thin      the problem on its thinned record
 /// @param rival     look of another initial state; of looks ten times as dear the best alone
 ///                  is followed. Infinite where there is none
 /// @param solver    bound to it here
 /// @returns empty where no point has the sign of the force
-std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
-                                           double rival, Solver& solver, Response& response,
-                                           Solution& scratch, std::pmr::memory_resource* memory);
+std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
+                                      Solver& solver, Response& response, Solution& scratch);
 
 }  // namespace mindahl::identification

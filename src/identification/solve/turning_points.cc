@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace mindahl::identification {
 namespace {
@@ -96,37 +97,33 @@ double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal) {
                     LongestOvershoot(record, reversal));
 }
 
-std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
-                                                  std::span<const double> overshoot) {
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-  auto turned = std::make_unique<TurnedRecords>(TurnedRecords{data.WithoutRecords(memory), {}});
-  turned->data.counted = data.counted;
-  turned->data.records.reserve(data.records.size());
-  turned->reversals.resize(data.records.size());
+ScaledRecords PutInTurningPoints(const ScaledRecords& data, std::span<const double> overshoot) {
+  ScaledRecords turned = data;
   std::size_t next_overshoot = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    ScaledRecord& target = turned->data.records.emplace_back(record.WithoutSamples(memory));
-    const std::span<const double> x = record.displacement;
-    std::size_t copied = 0;
+    std::vector<std::size_t> samples;
+    std::vector<std::size_t> turns;
+    std::size_t next = 0;
     const auto copy_until = [&](std::size_t end) {
-      target.Append(record, copied, end);
-      target.inserted.resize(target.size(), 0);
-      copied = end;
+      while (next < end) samples.push_back(next++);
     };
     for (std::size_t k = 0; k < record.reversals.size(); ++k) {
       const std::size_t i = record.reversals[k];
-      const double sense = SenseOfTurn(record, k);
-      copy_until(TurnsBefore(x, i, sense) ? i : i + 1);
-      turned->reversals[r].push_back(target.size());
-      target.Append(record, i);
-      target.displacement.back() = x[i] + sense * overshoot[next_overshoot++];
-      target.root_weight.back() = 0.0;
-      target.counts.back() = 0;
-      target.inserted.push_back(1);
+      copy_until(TurnsBefore(record.displacement, i, SenseOfTurn(record, k)) ? i : i + 1);
+      turns.push_back(samples.size());
+      samples.push_back(i);
     }
-    copy_until(x.size());
-    target.reversals = turned->reversals[r];
+    copy_until(record.size());
+    ScaledRecord& target = turned.records[r] = record.At(samples);
+    target.inserted.assign(target.size(), 0);
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      target.displacement[turns[k]] += SenseOfTurn(record, k) * overshoot[next_overshoot++];
+      target.root_weight[turns[k]] = 0.0;
+      target.counts[turns[k]] = 0;
+      target.inserted[turns[k]] = 1;
+    }
+    target.reversals = std::move(turns);
   }
   return turned;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -10,18 +9,13 @@
 
 namespace mindahl::identification {
 
-/// Records whose turning points lie beyond their outermost samples, by an overshoot each.
+/// Puts the turning points of records beyond their outermost samples, by an overshoot each, next to
+/// these.
 ///
 /// A record that is sampled coarsely misses the extremes of its motion; the branches that follow
 /// then start in the wrong place, and no other parameter can correct that without a bias.
-struct TurnedRecords {
-  ScaledRecords data;  // with the turning points inserted next to the outermost samples
-  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;  // of `data`, which refers to them
-};
-
 /// @param overshoot  >= 0, one a reversal of all records
-std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
-                                                  std::span<const double> overshoot);
+ScaledRecords PutInTurningPoints(const ScaledRecords& data, std::span<const double> overshoot);
 
 /// Returns how far the motion turns beyond a reversal's sample, by the samples about it alone: >=
 /// 0, at most the longer of the adjacent steps. It turns where the lines through the two samples
@@ -31,9 +25,9 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
 /// most (2π/n)⁶/200 of the amplitude.
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
-/// A fit of turned records.
+/// A fit of records whose turning points were put in.
 struct TurningPointFit {
-  std::unique_ptr<TurnedRecords> records;
+  std::unique_ptr<ScaledRecords> records;
   Solution solution;
 };
 

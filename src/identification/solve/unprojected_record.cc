@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory_resource>
 #include <utility>
 
 #include "mindahl/core/error.h"
@@ -13,68 +12,44 @@ namespace {
 
 /// The samples of one record, with the units of all.
 ScaledRecords DataOfRecord(const ScaledRecords& data, std::size_t r) {
-  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-  ScaledRecords one = data.WithoutRecords(memory);
-  ScaledRecord& record = one.records.emplace_back(data.records[r].WithoutSamples(memory));
-  record.Append(data.records[r], 0, data.records[r].size());
-  record.reversals = data.records[r].reversals;
-  record.whole = data.records[r].whole;
-  for (const unsigned char counts : record.counts) one.counted += counts;
+  ScaledRecords one = data;
+  one.records = {data.records[r]};
+  one.counted = 0;
+  for (const unsigned char counts : data.records[r].counts) one.counted += counts;
   return one;
 }
 
-bool AreFinite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
-
+/// The cost function of some samples of a record.
 class RecordCost final : public ceres::CostFunction {
  public:
-  explicit RecordCost(std::shared_ptr<UnprojectedRecord> record) : record_(std::move(record)) {
-    set_num_residuals(static_cast<int>(record_->samples()));
+  RecordCost(std::shared_ptr<UnprojectedRecord> record, std::size_t first, std::size_t count)
+      : record_(std::move(record)), first_(first), count_(count) {
+    set_num_residuals(static_cast<int>(count));
     mutable_parameter_block_sizes()->assign(record_->blocks().size(), 1);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     record_->MoveTo(parameters, jacobians != nullptr);
-    std::ranges::copy(record_->residual(), residuals);
-    bool is_finite = AreFinite(record_->residual());
+    bool is_finite = Copy(record_->residual(), residuals);
     for (std::size_t b = 0; jacobians != nullptr && b < record_->blocks().size(); ++b) {
       if (jacobians[b] == nullptr) continue;
-      std::ranges::copy(record_->Derivative(b), jacobians[b]);
-      is_finite = is_finite && AreFinite(record_->Derivative(b));
+      is_finite = Copy(record_->Derivative(b), jacobians[b]) && is_finite;
     }
     return is_finite;  // Ceres would print what is no number
   }
 
  private:
-  std::shared_ptr<UnprojectedRecord> record_;
-};
-
-class SampleCost final : public ceres::CostFunction {
- public:
-  SampleCost(std::shared_ptr<UnprojectedRecord> record, std::size_t sample)
-      : record_(std::move(record)), sample_(sample) {
-    set_num_residuals(1);
-    mutable_parameter_block_sizes()->assign(record_->blocks().size(), 1);
+  /// @returns whether the values are finite
+  bool Copy(std::span<const double> values, double* to) const {
+    const std::span<const double> some = values.subspan(first_, count_);
+    std::ranges::copy(some, to);
+    return std::ranges::all_of(some, [](double value) { return std::isfinite(value); });
   }
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    record_->MoveTo(parameters, jacobians != nullptr);
-    residuals[0] = record_->residual()[sample_];
-    bool is_finite = std::isfinite(residuals[0]);
-    for (std::size_t b = 0; jacobians != nullptr && b < record_->blocks().size(); ++b) {
-      if (jacobians[b] == nullptr) continue;
-      jacobians[b][0] = record_->Derivative(b)[sample_];
-      is_finite = is_finite && std::isfinite(jacobians[b][0]);
-    }
-    return is_finite;
-  }
-
- private:
   std::shared_ptr<UnprojectedRecord> record_;
-  std::size_t sample_;
+  std::size_t first_;
+  std::size_t count_;
 };
 
 }  // namespace
@@ -82,7 +57,7 @@ class SampleCost final : public ceres::CostFunction {
 UnprojectedRecord::UnprojectedRecord(const Problem& problem, std::size_t record, double unit)
     : data_(DataOfRecord(*problem.data, record)),
       problem_{&data_, problem.model, problem.state.Of(record),
-               Parameters(problem.parameters, record, std::pmr::get_default_resource())},
+               Parameters(problem.parameters, record)},
       unit_(unit) {
   const std::size_t origin = problem.parameters.PositionOfOrigin(record);
   for (const Parameter& parameter : problem_.parameters) theta_.push_back(parameter.theta);
@@ -93,7 +68,7 @@ UnprojectedRecord::UnprojectedRecord(const Problem& problem, std::size_t record,
     blocks_.push_back(p);
     own_.push_back(parameter.term->scope == Scope::kContact
                        ? p
-                       : problem_.parameters.PositionOf(parameter.term->name, 0));
+                       : problem_.parameters.PositionOf(parameter.term->id));
   }
   response_.Bind(problem_);
   residual_.resize(samples());
@@ -123,12 +98,31 @@ void UnprojectedRecord::MoveTo(double const* const* theta, bool with_jacobian) {
 }
 
 std::unique_ptr<ceres::CostFunction> CostOfRecord(std::shared_ptr<UnprojectedRecord> record) {
-  return std::make_unique<RecordCost>(std::move(record));
+  const std::size_t samples = record->samples();
+  return std::make_unique<RecordCost>(std::move(record), 0, samples);
 }
 
-std::unique_ptr<ceres::CostFunction> CostOfSample(std::shared_ptr<UnprojectedRecord> record,
-                                                  std::size_t sample) {
-  return std::make_unique<SampleCost>(std::move(record), sample);
+void AddRecord(std::shared_ptr<UnprojectedRecord> record, const std::vector<double*>& blocks,
+               ceres::LossFunction* loss, ceres::Problem& problem) {
+  if (loss == nullptr) {
+    problem.AddResidualBlock(CostOfRecord(std::move(record)).release(), nullptr, blocks);
+    return;
+  }
+  for (std::size_t i = 0; i < record->samples(); ++i) {
+    if (!record->Counts(i)) continue;
+    problem.AddResidualBlock(std::make_unique<RecordCost>(record, i, 1).release(), loss, blocks);
+  }
+}
+
+void BoundBlock(double* theta, bool fixed, double lower, double upper, ceres::Problem& problem) {
+  if (!problem.HasParameterBlock(theta)) return;
+  if (fixed) {
+    problem.SetParameterBlockConstant(theta);
+    return;
+  }
+  *theta = std::clamp(*theta, lower, upper);
+  problem.SetParameterLowerBound(theta, 0, lower);
+  problem.SetParameterUpperBound(theta, 0, upper);
 }
 
 }  // namespace mindahl::identification

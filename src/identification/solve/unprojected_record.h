@@ -1,6 +1,8 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
 
 #include <cstddef>
 #include <memory>
@@ -55,9 +57,14 @@ class UnprojectedRecord {
 /// The cost function of all samples of a record.
 std::unique_ptr<ceres::CostFunction> CostOfRecord(std::shared_ptr<UnprojectedRecord> record);
 
-/// The cost function of one sample, for a loss of each: all samples share the evaluations of the
-/// record, so that they belong to one thread.
-std::unique_ptr<ceres::CostFunction> CostOfSample(std::shared_ptr<UnprojectedRecord> record,
-                                                  std::size_t sample);
+/// Adds a residual block of the record; with a loss one a sample that counts, which share the
+/// evaluations of the record, so that they belong to one thread.
+/// @param blocks  θ of the record's blocks, in order
+/// @param loss    may be null; the problem takes it as its options have it
+void AddRecord(std::shared_ptr<UnprojectedRecord> record, const std::vector<double*>& blocks,
+               ceres::LossFunction* loss, ceres::Problem& problem);
+
+/// Bounds a parameter block of one θ, or holds it, where the problem has it.
+void BoundBlock(double* theta, bool fixed, double lower, double upper, ceres::Problem& problem);
 
 }  // namespace mindahl::identification
