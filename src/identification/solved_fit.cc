@@ -206,8 +206,10 @@ SolvedFit SolveFit(const Attempt& attempt) {
         const Attempt weighted{options, attempt.depth, attempt.prepared,
                                data,    weighted_thin, buffers};
         Candidate again = FitBestState(weighted);
-        if (std::isfinite(again.solution.sum_of_squares)) best = std::move(again);
-        fit_with_weights(data);
+        if (std::isfinite(again.solution.sum_of_squares)) {
+          best = std::move(again);
+          fit_with_weights(data);
+        }
       }
     }
     if (is_plain) {
