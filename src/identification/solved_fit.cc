@@ -236,8 +236,11 @@ SolvedFit SolveFit(const Attempt& attempt) {
         ThinnedRecords weighted_thin(data);
         const Attempt weighted{options, attempt.depth, attempt.prepared,
                                data,    weighted_thin, buffers};
-        best = FitBestState(weighted);
-        fit_with_weights(data);
+        Candidate again = FitBestState(weighted);
+        if (std::isfinite(again.solution.sum_of_squares)) {
+          best = std::move(again);
+          fit_with_weights(data);
+        }
       }
     }
     if (is_plain) {
