@@ -48,15 +48,10 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
     RequireDistinctOutputs({option, path}, {"--report", directory});
   }
   std::error_code error;
-  if (std::filesystem::is_directory(directory, error)) return;
-  if (std::filesystem::exists(directory, error)) {
-    throw InputError(
-        fmt::format("--report: '{}' is a file: give a directory for the pages", directory));
-  }
-  if (!std::filesystem::create_directory(directory, error)) {
-    throw InputError(
-        fmt::format("--report: cannot make the directory '{}': {}", directory, error.message()));
-  }
+  std::filesystem::create_directory(directory, error);
+  if (!error && std::filesystem::is_directory(directory)) return;
+  throw InputError(fmt::format("--report: '{}' is no directory, and none can be made: {}",
+                               directory, error ? error.message() : "it is a file"));
 }
 
 std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command,

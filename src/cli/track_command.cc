@@ -130,15 +130,6 @@ Json QuantityRows(const TrackedTest& test) {
   return quantities;
 }
 
-Json FlagCounts(const TrackedTest& test) {
-  Json flags = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(flag.name);
-    flags[flag.name] = found == test.flags.end() ? 0 : found->second;
-  }
-  return flags;
-}
-
 /// Returns the flags that a cycle has, with what they say.
 Json FlagRows(const TrackedTest& test) {
   Json rows = Json::object();
@@ -151,6 +142,11 @@ Json FlagRows(const TrackedTest& test) {
 }
 
 std::string ToJson(const TrackedTest& test) {
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(flag.name);
+    flags[flag.name] = found == test.flags.end() ? 0 : found->second;
+  }
   const campaign::EnergyCounts& counts = test.energy.counts();
   return report::Dump(
       {{"schema", "mindahl.track/1"},
@@ -165,7 +161,7 @@ std::string ToJson(const TrackedTest& test) {
        {"output", test.output},
        {"fits", test.fits},
        {"flagged", test.flagged},
-       {"flags", FlagCounts(test)},
+       {"flags", std::move(flags)},
        {"accumulated_energy", test.energy.total()},
        {"energy_counts",
         {{"measured", counts.measured},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "core/nearest_name.h"
@@ -145,17 +146,17 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
 }
 
 void RequireOptionsOfDisplacement(const FitRequest& request) {
-  const auto refuse = [](std::string_view option, std::string_view why) {
+  constexpr std::string_view kOfForce = "it needs a fit of the force; leave one of the two out";
+  for (const auto& [is_given, option, why] :
+       {std::tuple(request.rig_stiffness.has_value(), "--rig-stiffness", kOfForce),
+        {!request.covariates.empty(), "--covariate", kOfForce},
+        {ChoosesTerms(request), "--terms auto", kOfForce},
+        {request.compare, "--compare", kOfForce},
+        {request.fit.force_noise.has_value(), "--force-noise",
+         "the force is taken as exact; give --displacement-noise"}}) {
+    if (!is_given) continue;
     throw InputError(
         fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
-  };
-  constexpr std::string_view kBeside = "it needs a fit of the force; leave one of the two out";
-  if (request.rig_stiffness) refuse("--rig-stiffness", kBeside);
-  if (!request.covariates.empty()) refuse("--covariate", kBeside);
-  if (ChoosesTerms(request)) refuse("--terms auto", kBeside);
-  if (request.compare) refuse("--compare", "models are compared by fits of the force");
-  if (request.fit.force_noise) {
-    refuse("--force-noise", "the force is taken as exact; give --displacement-noise");
   }
   if (const auto& noise = request.fit.preparation.displacement_noise) {
     RequirePositive("--displacement-noise [m]", *noise);
@@ -259,21 +260,17 @@ FitOptions MakeFitOptions(const FitRequest& request) {
 }
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
-  if (request.compare) {
-    throw InputError("--compare: models are compared over a test: by fit --select cycles=LO:HI");
-  }
-  if (!CovariatesOf(request).empty()) {
-    throw InputError("--covariate is not available in track: fit a part of the record with fit");
-  }
-  if (request.fit.response() == loop::Channel::kDisplacement) {
-    throw InputError(
-        "--noise-in displacement is not available in track: fit a part of the record with fit");
-  }
-  if (std::ranges::find(request.terms, "asymmetry") != request.terms.end()) {
-    throw InputError(
-        "--terms asymmetry is not available in track: where the contact slips as a whole, "
-        "force_offset "
-        "of a cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
+  // Where the contact slips as a whole, an asymmetry of a cycle is an offset of its force.
+  const bool is_asymmetric = std::ranges::find(request.terms, "asymmetry") != request.terms.end();
+  for (const auto& [is_given, option] :
+       {std::pair(request.compare, "--compare"),
+        {!CovariatesOf(request).empty(), "--covariate"},
+        {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
+        {is_asymmetric, "--terms asymmetry"}}) {
+    if (!is_given) continue;
+    throw InputError(fmt::format(
+        "{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
+        option));
   }
   return MakeFitOptions(request);
 }
