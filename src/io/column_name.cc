@@ -20,6 +20,39 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
+std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
+  const std::optional<Unit> force = ForceUnit(symbol);
+  return force ? force : TorqueUnit(symbol);
+}
+
+std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
+
+/// Finds the unit of a force over a length or of the inverse, "N/um" or "um/N".
+std::optional<Unit> ResponseUnit(std::string_view symbol) {
+  const std::size_t slash = std::min(symbol.find('/'), symbol.size());
+  const std::string_view first = symbol.substr(0, slash);
+  const std::string_view second = symbol.substr(std::min(slash + 1, symbol.size()));
+  const bool is_stiffness = ForceUnit(first).has_value();
+  const std::optional<Unit> above = is_stiffness ? ForceUnit(first) : LengthUnit(first);
+  const std::optional<Unit> below = is_stiffness ? LengthUnit(second) : ForceUnit(second);
+  if (!above || !below) return std::nullopt;
+  return Unit{.symbol = std::string(symbol),
+              .numerator = above->numerator * below->denominator,
+              .denominator = above->denominator * below->numerator};
+}
+
+std::string ResponseUnitSymbols() { return "a force over a length or the inverse, as N/um, um/N"; }
+
+constexpr std::array kDimensions = {
+    UnitsOfDimension{LengthUnit, LengthUnitSymbols, "m"},
+    UnitsOfDimension{AngleUnit, AngleUnitSymbols, "rad"},
+    UnitsOfDimension{ForceUnit, ForceUnitSymbols, "N"},
+    UnitsOfDimension{TorqueUnit, TorqueUnitSymbols, "N m"},
+    UnitsOfDimension{TimeUnit, TimeUnitSymbols, "s"},
+    UnitsOfDimension{ForceOrTorqueUnit, ForceOrTorqueUnitSymbols, "N"},
+    UnitsOfDimension{ResponseUnit, ResponseUnitSymbols, "N/m"},
+};
+
 /// True if a list "|a|b|" has the word.
 bool Lists(std::string_view list, std::string_view word) {
   return list.find('|' + std::string(word) + '|') != std::string_view::npos;
@@ -160,26 +193,29 @@ void TakeUnitAtEnd(ColumnName& split) {
 
 }  // namespace
 
+const UnitsOfDimension& UnitsOf(Dimension dimension) {
+  return kDimensions.at(static_cast<std::size_t>(dimension));
+}
+
 Dimension DimensionOfUnit(std::string_view symbol) {
   if (symbol.empty()) return Dimension::kNone;
-  if (LengthUnit(symbol)) return Dimension::kLength;
-  if (AngleUnit(symbol)) return Dimension::kAngle;
-  if (ForceUnit(symbol)) return Dimension::kForce;
-  if (TorqueUnit(symbol)) return Dimension::kTorque;
-  return TimeUnit(symbol) ? Dimension::kTime : Dimension::kOther;
+  for (const Dimension dimension : {Dimension::kLength, Dimension::kAngle, Dimension::kForce,
+                                    Dimension::kTorque, Dimension::kTime}) {
+    if (UnitsOf(dimension).find(symbol)) return dimension;
+  }
+  return Dimension::kOther;
 }
 
 bool MayHaveRole(Dimension dimension, Role role) {
+  const bool is_angular = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
   switch (role) {
     case Role::kDisplacement:
-      return dimension == Dimension::kLength || dimension == Dimension::kAngle;
+      return dimension == (is_angular ? Dimension::kAngle : Dimension::kLength);
     case Role::kForce:
     case Role::kNormalLoad:
-      return dimension == Dimension::kForce || dimension == Dimension::kTorque;
-    case Role::kTime:
-      return dimension == Dimension::kTime;
+      return dimension == (is_angular ? Dimension::kTorque : Dimension::kForce);
     default:
-      return false;
+      return role == Role::kTime && dimension == Dimension::kTime;
   }
 }
 

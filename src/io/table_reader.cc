@@ -7,30 +7,20 @@
 #include "io/source.h"
 
 namespace mindahl::io {
-namespace {
 
-std::vector<std::size_t> ColumnsOfNumbers(const Layout& layout) {
-  std::vector<std::size_t> columns;
-  for (std::size_t column = 0; column < layout.columns; ++column) {
-    if (layout.holds_numbers[column]) columns.push_back(column);
-  }
-  return columns;
-}
-
-}  // namespace
-
-TableReader::TableReader(const Layout& layout, std::string file, bool skip_broken)
-    : TableReader(layout, std::move(file), ColumnsOfNumbers(layout), skip_broken) {}
-
-TableReader::TableReader(const Layout& layout, std::string file, std::vector<std::size_t> wanted,
-                         bool skip_broken)
+TableReader::TableReader(const Layout& layout, std::string file, bool skip_broken,
+                         std::vector<std::size_t> wanted)
     : layout_(layout),
       wanted_(std::move(wanted)),
       places_(layout.columns, -1),
-      values_(wanted_.size()),
-      last_clock_(wanted_.size()),
       line_(layout.data_line - 1),
       skip_broken_(skip_broken) {
+  const bool reads_all = wanted_.empty();
+  for (std::size_t column = 0; column < layout.columns && reads_all; ++column) {
+    if (layout.holds_numbers[column]) wanted_.push_back(column);
+  }
+  values_.resize(wanted_.size());
+  last_clock_.resize(wanted_.size());
   for (std::size_t k = 0; k < wanted_.size(); ++k) places_[wanted_[k]] = static_cast<int>(k);
   table_.file = std::move(file);
   table_.header_line = layout.header_line;

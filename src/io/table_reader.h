@@ -14,12 +14,11 @@ namespace mindahl::io {
 /// Fills a table from the rows of a text that comes in pieces.
 class TableReader {
  public:
-  /// @param wanted       columns to read, from 0, each once; the others stay empty
   /// @param skip_broken  rows that are at fault are left out
-  TableReader(const Layout& layout, std::string file, std::vector<std::size_t> wanted,
-              bool skip_broken);
-  /// Reads all columns of numbers.
-  TableReader(const Layout& layout, std::string file, bool skip_broken);
+  /// @param wanted       columns to read, from 0, each once: those of numbers where none is given;
+  ///   the others stay empty
+  TableReader(const Layout& layout, std::string file, bool skip_broken,
+              std::vector<std::size_t> wanted = {});
 
   /// Reads further rows, up to one that is at fault.
   /// @param text  of whole lines; the first piece without what is above the data

@@ -145,9 +145,6 @@ struct SweepFile {
 /// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
 SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
                     const std::string& response);
-/// The same of a table.
-SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns, const std::string& response);
-
 /// Names what a path to impose has a column of.
 enum class Imposed { kDisplacement, kForce, kNormalLoad };
 
