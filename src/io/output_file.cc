@@ -7,11 +7,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <string>
 #include <utility>
 
 #include "core/platform.h"
-#include "io/unfinished_output.h"
+#include "io/source.h"
 
 namespace mindahl::io {
 
@@ -52,28 +53,43 @@ void RemoveAndRaise(int signal) {
   std::raise(signal);
 }
 
+/// A file that goes with this object unless it is kept; and with the program, when
+/// RemoveTemporaryFilesOnSignals() was called and a signal ends it.
+class TemporaryName {
+ public:
+  /// Before the file is made: a signal may come in between.
+  explicit TemporaryName(const char* name) : name_(name) { ReplaceName(nullptr, name_); }
+  ~TemporaryName() {
+    if (!kept_) RemoveName(name_);
+    ReplaceName(name_, nullptr);
+  }
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
+
+  void Keep() {
+    kept_ = true;
+    ReplaceName(name_, nullptr);
+  }
+
+ private:
+  const char* name_;
+  bool kept_ = false;
+};
+
+[[noreturn]] void ThrowCannotWrite(const std::filesystem::path& path, int error) {
+  Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
+}
+
+/// Passes an error on, if there is one.
+void RequireWritten(const std::filesystem::path& path, int error) {
+  if (error != 0) ThrowCannotWrite(path, error);
+}
+
 }  // namespace
 
-TemporaryName::TemporaryName(std::string name) : name_(std::move(name)) {
-  ReplaceName(nullptr, name_.c_str());
-}
-
-TemporaryName::~TemporaryName() {
-  if (kept_) return;
-  RemoveName(name_.c_str());
-  ReplaceName(name_.c_str(), nullptr);
-}
-
-void TemporaryName::Keep() {
-  kept_ = true;
-  ReplaceName(name_.c_str(), nullptr);
-}
-
 void RemoveTemporaryFiles() {
-  for (int pass = 0; pass < 2; ++pass) {  // directories once they are empty
-    for (const std::atomic<const char*>& slot : registered_names) {
-      if (const char* const name = slot.load()) RemoveName(name);
-    }
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) RemoveName(name);
   }
 }
 
@@ -134,7 +150,7 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
           .string();
-  TemporaryName temporary(name);
+  TemporaryName temporary(name.c_str());
   OutputFile file(name, Opening::kNew, path);
   if (is_old) RequireWritten(path, CopyPermissions(target.string(), file.file()));
   file.Write(content);

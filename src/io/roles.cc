@@ -10,7 +10,6 @@
 #include <span>
 #include <utility>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 
 namespace mindahl::io {
@@ -380,19 +379,6 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, Role role) 
     if (found.size() == 1) return found.front();
   }
   return std::nullopt;
-}
-
-Expression ColumnNames::Read(const std::string& text, Role role) const {
-  const auto unknown = [&](std::string_view name) {
-    std::vector<std::string> known;
-    known.reserve(size());
-    for (const Column& column : columns_) known.push_back(ForMessage(column.name.name));
-    return fmt::format("no column is called '{}' (for the {}){} {}", name, RulesOf(role).name,
-                       DidYouMean(name, known), Listing());
-  };
-  return ReadExpression(
-      text, size(), [&](std::string_view name) { return Named(name, role); },
-      fmt::format("{}: {} {}", table_.file, RulesOf(role).option, text), unknown);
 }
 
 Expression ColumnNames::Find(const std::string& text, Role role,

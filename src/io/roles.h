@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "io/column_name.h"
-#include "io/expression.h"
 #include "io/source.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
@@ -23,6 +22,23 @@ struct RoleRules {
   Dimension linear, angular;  // of its units; a joint carries a torque
 };
 const RoleRules& RulesOf(Role role);
+
+/// Holds a quantity as a linear function of columns: the sum of weight·column, and an offset.
+struct Expression {
+  struct Term {
+    std::size_t column;  ///< from 0
+    double weight;
+  };
+  std::vector<Term> terms;  ///< none where only a unit is given
+  double offset = -0.0;     ///< to which adding -0 makes -0
+  std::string unit;         // "" where none is given
+  bool is_scaled = false;   ///< a factor or an offset is given
+
+  /// True if it is a column as it is.
+  [[nodiscard]] bool is_plain() const {
+    return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
+  }
+};
 
 /// A quantity as a table gives it: a sum of columns, in a unit.
 struct Quantity {
@@ -61,10 +77,16 @@ class ColumnNames {
   const Column& operator[](std::size_t column) const { return columns_[column]; }
   [[nodiscard]] const CsvTable& table() const { return table_; }
 
-  /// Returns the columns that the user gives for a role.
+  /// Reads what an option says of a role's columns: a name or a number from 1, "Fx", "3"; with a
+  /// unit in brackets, "3 [kN]", or that alone, "[kN]"; a sum of columns with factors and an
+  /// offset, "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that
+  /// column; in a sum, a column is called by number behind '#'.
   /// @throws InputError for an unknown or ambiguous one
   [[nodiscard]] Expression Read(const std::string& text, Role role) const;
-  /// Returns them, or else the column with the best evidence; none where none has any.
+  /// Returns the column of a name, from 0; empty where there is none.
+  /// @throws InputError where it is that of several
+  [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
+  /// Returns what is given, or else the column with the best evidence; none where none has any.
   [[nodiscard]] Expression Find(const std::string& text, Role role,
                                 const std::vector<bool>& taken) const;
   /// Returns the column, from 0, that the user calls so.
@@ -92,8 +114,6 @@ class ColumnNames {
   [[nodiscard]] std::string MayEachBe(Role role, const std::vector<std::size_t>& columns) const;
 
  private:
-  [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
-
   const CsvTable& table_;
   std::vector<Column> columns_;
 };
