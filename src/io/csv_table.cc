@@ -19,17 +19,12 @@ namespace {
 /// Refuses a file that is larger than can be held, by as much of it as has been read.
 void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
                    const std::string& name) {
-  constexpr std::string_view kRemedy =
-      "fit a part of the file, every n-th row, or each cycle with mindahl track; or allow more";
-  if (rows > limits.rows) {
-    Refuse("{}: has more than the {} rows that --max-rows leaves for it: {}", name, limits.rows,
-           kRemedy);
-  }
   const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
   if (memory <= limits.memory) return;
   Refuse(
-      "{}: {} of it need about {} of memory, more than the {} that --max-memory leaves for it: {}",
-      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy);
+      "{}: {} of it need about {} of memory, more than the {} that --max-memory leaves for it: fit "
+      "a part of the file, every n-th row, or each cycle with mindahl track; or allow more",
+      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory));
 }
 
 /// Returns what a reader has read, at the end of its file.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,9 @@ class TableReader {
   /// @param text  of whole lines; the first piece without what is above the data
   void Read(std::string_view text);
   /// Notes that there are no further rows: text below the data is a fault.
-  void Finish() { EndGap(/*repeats=*/false); }
+  void Finish() {
+    if (gap_ && !gap_->empty()) EndGap();
+  }
 
   /// Returns the fault of the row at which reading ended; "" where there is none.
   [[nodiscard]] const std::string& fault() const { return fault_; }
@@ -37,8 +40,8 @@ class TableReader {
   void ReadRow(std::string_view row);
   bool ReadCells(std::string_view row);
   bool BelongsToHeader(std::string_view row);
-  void EndGap(bool repeats);
-  void Refuse(const std::string& fault);
+  void EndGap();
+  void RefuseRow(const std::string& fault);
   [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
   double ValueOf(std::size_t place, std::string_view text);
 
@@ -57,8 +60,8 @@ class TableReader {
   std::size_t row_line_ = 0;
   char mark_ = '\0';  // the decimal mark, once one was seen
   std::size_t mark_line_ = 0;
-  std::string gap_fault_;  // of the first row of text since the last row of numbers
-  bool has_repeated_header_ = false;
+  /// Text since the last row of numbers: its fault, "" of a header that is repeated.
+  std::optional<std::string> gap_;
   bool skip_broken_;
   LeftOutRows skipped_;
   std::string fault_;
