@@ -13,7 +13,8 @@ namespace mindahl::io {
 namespace {
 
 constexpr std::string_view kOtherUnits =
-    "|-|%|V|mV|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/s|°/s|m/s2|m/s^2|m/s²|"
+    "|-|%|V|mV|Volt|Volts|volt|volts|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/"
+    "s|°/s|m/s2|m/s^2|m/s²|"
     "mm/s2|mm/min|N/s|kN/s|mV/V|cycle|cycles|segments|count|counts|#|J|W|mm/mm|1/s|";
 
 /// Words in brackets at the end of a name that are no unit of it.
@@ -103,13 +104,24 @@ std::string_view WithoutPath(std::string_view name) {
   return name;
 }
 
-/// One letter, or a few that are no word, are a name by themselves.
+/// One letter, or a few that are no word, are a name by themselves, perhaps with "actual" and the
+/// like; what is behind a label, "U1 PI: P N: 1", is none of it.
 std::string_view OnlyWord(std::string_view name) {
   const auto is_letter = [](char character) { return IsLetter(character); };
-  const auto begin = std::ranges::find_if(name, is_letter);
-  const auto end = std::find_if_not(begin, name.end(), is_letter);
-  return std::find_if(end, name.end(), is_letter) == name.end() ? std::string_view(begin, end)
-                                                                : std::string_view();
+  if (const std::size_t label = name.find(": "); label != std::string_view::npos) {
+    name = name.substr(0, name.find_last_of(' ', label));
+  }
+  std::string_view only;
+  for (auto begin = name.begin(); begin != name.end();) {
+    begin = std::find_if(begin, name.end(), is_letter);
+    const auto end = std::find_if_not(begin, name.end(), is_letter);
+    const std::string_view word(begin, end);
+    begin = end;
+    if (word.empty() || Lists(kRemarks, LowerCase(word))) continue;
+    if (!only.empty()) return {};
+    only = word;
+  }
+  return only;
 }
 
 NameEvidence EvidenceOf(std::string_view name) {

@@ -218,10 +218,6 @@ std::string Coordinate(double pixel) {
   return text == "-0" ? "0" : text;
 }
 
-std::string Path(std::string_view kind, const std::string& classes, const std::string& data) {
-  return fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, classes, data);
-}
-
 /// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
 /// one before.
 std::string Points(const Values& x, const Values& y, std::string_view shape, char first = 'M') {

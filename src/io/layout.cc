@@ -112,6 +112,7 @@ class Reading {
 
  private:
   [[nodiscard]] std::size_t FirstDataRow() const;
+  void PassResults();
   [[nodiscard]] bool HasTextAmongNumbers(const Row& row) const;
   [[nodiscard]] std::optional<Strings> HeaderCells(const Row& row) const;
   [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
@@ -167,6 +168,7 @@ Reading::Reading(std::span<const Row> sampled, char delimiter) {
 
 Layout Reading::Find(const std::string& file) && {
   data_ = FirstDataRow();
+  PassResults();
   layout_.data_offset = rows_[data_].offset;
   layout_.data_line = rows_[data_].line;
   FindNames(file);
@@ -194,6 +196,26 @@ std::size_t Reading::FirstDataRow() const {
   }
   // Text in every row, each time in another column: the first row is as good as any.
   return any.value_or(0);
+}
+
+/// Passes over a table of results above the data: a few rows of numbers below a header of their
+/// own, before one that is another.
+void Reading::PassResults() {
+  constexpr std::size_t kOneIn = 10;
+  for (std::size_t k = data_ + 1; k < rows_.size(); ++k) {
+    const auto is_same = [&](const Row& row) { return row.text == rows_[k].text; };
+    if (!rows_[k].IsText() || CountKnownWords(rows_[k].cells) < 2 ||
+        std::ranges::any_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(k),
+                            is_same)) {
+      continue;
+    }
+    const auto is_data = [&](const Row& row) { return row.HasData() && row.CanHave(columns_); };
+    const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto above = std::count_if(rows_.begin(), header, is_data);
+    const auto data = std::find_if(header, rows_.end(), is_data);
+    if (kOneIn * above > std::count_if(data, rows_.end(), is_data)) return;
+    data_ = static_cast<std::size_t>(data - rows_.begin());
+  }
 }
 
 bool Reading::HasTextAmongNumbers(const Row& row) const {

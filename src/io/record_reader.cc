@@ -58,6 +58,8 @@ void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
   }
 }
 
+}  // namespace
+
 /// Turns the rows of tables into samples of a record.
 class RecordBuilder {
  public:
@@ -272,6 +274,8 @@ std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool&
   }
   return "";
 }
+
+namespace {
 
 /// Returns the numbers of a table's column in the rows of some lines.
 std::vector<double> AtLines(const CsvTable& table, std::size_t column,

@@ -111,8 +111,13 @@ class RoleAssigner {
     }
     TakeFound(Role::kNormalLoad, taken);
     TakeLeft();
-    // A word is enough for a displacement that only grows, a force needs its unit.
-    if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, 1);
+    // A word is enough for a displacement that only grows, but for the X of a report where another
+    // column may be meant; a force needs its unit.
+    const bool may_be_time = names_[ColumnOf(Role::kDisplacement)].name.evidence.word == "X" &&
+                             std::ranges::any_of(LeftColumns(), [&](std::size_t column) {
+                               return names_[column].goes_to_and_fro;
+                             });
+    if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, may_be_time ? 100 : 1);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement, 100);
     RequireOneKind();
     return std::move(roles_);
@@ -211,9 +216,24 @@ class RoleAssigner {
     for (const auto& [role, columns] :
          {std::pair(Role::kDisplacement, of_displacement), std::pair(Role::kForce, of_force)}) {
       if (!IsMissing(role) || columns.empty()) continue;
+      const bool has_other = !of_displacement.empty() || !IsMissing(Role::kDisplacement);
+      if (columns.size() > 1 && !has_other && LeftColumns().empty()) {
+        ThrowNoColumn(Role::kDisplacement);
+      }
       if (columns.size() > 1) names_.ThrowAmbiguous(role, {columns.begin(), columns.end()});
       Take(*columns.begin(), role);
     }
+  }
+
+  /// Returns the columns of numbers of which neither name nor unit says anything.
+  std::vector<std::size_t> LeftColumns() const {
+    std::vector<std::size_t> left;
+    for (std::size_t column = 0; column < taken_.size(); ++column) {
+      const ColumnNames::Column& of = names_[column];
+      const bool is_unknown = of.dimension == Dimension::kNone && of.name.evidence.word.empty();
+      if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
+    }
+    return left;
   }
 
   /// Gives what no name or unit decides to the columns that are left, if they are as many.
@@ -221,12 +241,7 @@ class RoleAssigner {
     std::vector<Role> missing = {Role::kDisplacement, Role::kForce};
     std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
     if (missing.empty()) return;
-    std::vector<std::size_t> left;
-    for (std::size_t column = 0; column < taken_.size(); ++column) {
-      const ColumnNames::Column& of = names_[column];
-      const bool is_unknown = of.dimension == Dimension::kNone && of.name.evidence.word.empty();
-      if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
-    }
+    std::vector<std::size_t> left = LeftColumns();
     std::string why;
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
