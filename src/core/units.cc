@@ -121,6 +121,7 @@ constexpr auto kSynonyms = std::to_array<Synonym>({
     {"second", "s"},
     {"seconds", "s"},
     {"sek", "s"},
+    {"seg", "s"},
     {"秒", "s"},
     {"msec", "ms"},
     {"毫秒", "ms"},

@@ -201,7 +201,7 @@ std::size_t Reading::FirstDataRow() const {
 /// Passes over a table of results above the data: a few rows of numbers below a header of their
 /// own, before one that is another.
 void Reading::PassResults() {
-  constexpr std::size_t kOneIn = 10;
+  constexpr std::ptrdiff_t kOneIn = 10;
   for (std::size_t k = data_ + 1; k < rows_.size(); ++k) {
     const auto is_same = [&](const Row& row) { return row.text == rows_[k].text; };
     if (!rows_[k].IsText() || CountKnownWords(rows_[k].cells) < 2 ||
@@ -349,7 +349,8 @@ void Reading::ThrowNoNumbers(const std::string& file) const {
       std::ranges::find_if(row.kinds, [](Cell::Kind kind) { return kind != Cell::Kind::kNumber; }) -
       row.kinds.begin());
   const std::string_view remedy =
-      row.text.find('|') != std::string_view::npos
+      row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p"
+      : row.text.find('|') != std::string_view::npos
           ? "; separate the columns by ',', ';' or tabs in place of '|'"
       : row.cells[cell].find(',') != std::string::npos
           ? "; where commas are decimal marks, separate the columns by ';' or tabs"

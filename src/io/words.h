@@ -79,7 +79,8 @@ inline constexpr std::array kWords = {
 
 // Commanded, raw and statistical quantities are weaker evidence than measured ones.
 inline constexpr std::string_view kLesserWords =
-    "setpoint|set|command|cmd|commanded|target|desired|reference|ref|control|soll|sollwert|"
+    "setpoint|set|goal|demand|command|cmd|commanded|target|desired|reference|ref|control|soll|"
+    "sollwert|"
     "consigne|"
     "consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
 

@@ -101,12 +101,14 @@ BluehillWithATableOfResults 2 3 1.5e-3 2.5 0.9 | "Results"¶"","Load (N)","Exten
   "0.9","2","3"¶
 RobotWithActualValues 2 3 1.5 2.5 1.0 torsional | t,actual_q_0,actual_tau_0,actual_current¶0,1.5,2.5,1¶
   1,2,3,2¶
+WideLettersAndBrackets 2 3 1.5e-3 2.5 1.0 | 時間（ｓ）,変位【ｍｍ】,荷重［Ｎ］¶0,1.5,2.5¶1,2,3¶
+ServoWithGoals 2 4 1.5 2.5 1.0 | t,Present Position,Goal Position,Present Load¶0,1.5,9,2.5¶1,2,9,3¶
 RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение, мм;Сила, кН¶0;1,5;2,5¶1;2;3¶
 )layouts";
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 46U);
+  EXPECT_EQ(layouts.size(), 48U);
   for (const Strings& layout : layouts) {
     std::istringstream head(layout[0]);
     std::string name;
@@ -161,6 +163,8 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
               HasSubstr("'X' (column 1) only grows while 'RF:RF1' (column 3) goes to and fro"));
   EXPECT_THAT(Refusal("t,ay [g],az [g]\n" + wave),
               HasSubstr("no column for the displacement: the columns are"));
+  EXPECT_THAT(Refusal("stamp:\n  secs: 1\nposition: [1.5]\n---\nposition: [2]\n"),
+              HasSubstr("write it by rostopic echo -p"));
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 
