@@ -202,7 +202,7 @@ std::size_t Reading::FirstDataRow() const {
 /// own, before one that is another.
 void Reading::PassResults() {
   constexpr std::ptrdiff_t kOneIn = 10;
-  for (std::size_t k = data_ + 1; k < rows_.size(); ++k) {
+  for (std::size_t k = data_ + 1; data_ > 0 && k < rows_.size(); ++k) {
     const auto is_same = [&](const Row& row) { return row.text == rows_[k].text; };
     if (!rows_[k].IsText() || CountKnownWords(rows_[k].cells) < 2 ||
         std::ranges::any_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(k),
