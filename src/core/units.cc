@@ -89,12 +89,6 @@ constexpr auto kSynonyms = std::to_array<Synonym>({
     {"millimetre", "mm"},
     {"millimetres", "mm"},
     {"毫米", "mm"},
-    {"м", "m"},
-    {"мм", "mm"},
-    {"мкм", "um"},
-    {"Н", "N"},
-    {"кН", "kN"},
-    {"с", "s"},
     {"微米", "um"},
     {"newton", "N"},
     {"newtons", "N"},
@@ -140,6 +134,13 @@ constexpr auto kSynonyms = std::to_array<Synonym>({
     {"degrees", "deg"},
     {"度", "deg"},
     {"revolutions", "rev"},
+    // In Cyrillic.
+    {"м", "m"},
+    {"мм", "mm"},
+    {"мкм", "um"},
+    {"Н", "N"},
+    {"кН", "kN"},
+    {"с", "s"},
 });
 
 /// "µ" has two code points, U+00B5 and U+03BC; both become "u".
