@@ -7,10 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -129,8 +132,6 @@ void RemoveName(const char* name) {
   if (::unlink(name) != 0) ::rmdir(name);
 }
 
-int MakeNewDirectory(std::string& name) { return ::mkdtemp(name.data()) == nullptr ? errno : 0; }
-
 void HandleSignalAgain(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
@@ -161,13 +162,23 @@ void EndBySignal(int signal) {
   ::raise(signal);
 }
 
-int RunProgram(std::vector<std::string> words, const std::string& messages, bool& succeeded) {
-  succeeded = false;
+int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written) {
+  const auto close = [](std::FILE* file) { std::fclose(file); };
+  std::array<std::unique_ptr<std::FILE, decltype(close)>, 3> streams;
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  int error = 0;
+  for (int stream = 0; stream < 3 && error == 0; ++stream) {
+    auto& file = streams.at(static_cast<std::size_t>(stream));
+    file.reset(std::tmpfile());
+    if (!file) {
+      error = errno;
+    } else {
+      posix_spawn_file_actions_adddup2(&actions, ::fileno(file.get()), stream);
+    }
+  }
+  if (error == 0) error = WriteFile(::fileno(streams[0].get()), input);
+  if (error == 0) std::rewind(streams[0].get());
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
@@ -181,8 +192,9 @@ int RunProgram(std::vector<std::string> words, const std::string& messages, bool
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = 0;
-  const int error =
-      ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  if (error == 0) {
+    error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  }
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) return error;
@@ -190,7 +202,18 @@ int RunProgram(std::vector<std::string> words, const std::string& messages, bool
   while (::waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) return errno;
   }
-  succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  written.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const auto content = [](std::FILE* file) {
+    std::string text;
+    std::array<char, 4096> block{};
+    std::rewind(file);
+    while (const std::size_t size = std::fread(block.data(), 1, block.size(), file)) {
+      text.append(block.data(), size);
+    }
+    return text;
+  };
+  written.output = content(streams[1].get());
+  written.messages = content(streams[2].get());
   return 0;
 }
 

@@ -52,8 +52,6 @@ int CloseFile(int file);
 int CopyPermissions(const std::string& from, int file);
 /// Removes a file or an empty directory. A signal handler may call it.
 void RemoveName(const char* name);
-/// Makes a directory of a name that ends in XXXXXX, which is replaced by what makes it new.
-int MakeNewDirectory(std::string& name);
 
 /// Calls a handler once for each signal that ends the program by a person's or a system's wish,
 /// unless the program was started to ignore it; what waits for input is not resumed.
@@ -65,8 +63,13 @@ void CallEverySecond(void (*handler)(int));
 void CallInASecond();
 void EndBySignal(int signal);
 
-/// Runs a program, found on PATH, with no shell, no input, and its messages in a file.
-/// @param succeeded  written: it ended by itself, with status 0
-int RunProgram(std::vector<std::string> words, const std::string& messages, bool& succeeded);
+/// What a program wrote.
+struct ProgramOutput {
+  std::string output, messages;
+  bool succeeded = false;  // it ended by itself, with status 0
+};
+/// Runs a program, found on PATH, with no shell; what it reads and writes is in files without
+/// names.
+int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written);
 
 }  // namespace mindahl

@@ -22,9 +22,9 @@ struct Entry {
 };
 
 constexpr std::array kLengths = {
-    Entry{"m", 1, 1, "meter meters metre metres"},
-    Entry{"mm", 1, 1e3, "MM millimeter millimeters millimetre millimetres 毫米"},
-    Entry{"um", 1, 1e6, "micron microns micrometer micrometers micrometre 微米"},
+    Entry{"m", 1, 1, "meter meters metre metres м"},
+    Entry{"mm", 1, 1e3, "MM millimeter millimeters millimetre millimetres 毫米 мм"},
+    Entry{"um", 1, 1e6, "micron microns micrometer micrometers micrometre 微米 мкм"},
     Entry{"nm", 1, 1e9},
     Entry{"cm", 1, 1e2},
     Entry{"in", 254, 1e4, "inch inches \""},
@@ -34,10 +34,10 @@ constexpr std::array kLengths = {
 };
 // A mass that stands for a force is its weight.
 constexpr std::array kForces = {
-    Entry{"N", 1, 1, "newton newtons 牛"},
+    Entry{"N", 1, 1, "newton newtons 牛 Н"},
     Entry{"mN", 1, 1e3},
     Entry{"uN", 1, 1e6},
-    Entry{"kN", 1e3, 1, "KN kilonewton kilonewtons 千牛"},
+    Entry{"kN", 1e3, 1, "KN kilonewton kilonewtons 千牛 кН"},
     Entry{"MN", 1e6, 1},
     Entry{"lbf", 4.4482216152605, 1, "lb lbs pounds"},
     Entry{"kgf", 9.80665, 1, "kg kp"},
@@ -62,7 +62,7 @@ constexpr std::array kTorques = {
     Entry{"lbf ft", 4.4482216152605 * 0.3048, 1},
 };
 constexpr std::array kTimes = {
-    Entry{"s", 1, 1, "sec secs second seconds sek 秒"},
+    Entry{"s", 1, 1, "sec secs second seconds sek seg 秒 с"},
     Entry{"ms", 1, 1e3, "msec 毫秒 milliseconds millis"},
     Entry{"us", 1, 1e6, "usec"},
     Entry{"ns", 1, 1e9, "nsec"},

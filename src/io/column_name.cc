@@ -13,12 +13,29 @@ namespace mindahl::io {
 namespace {
 
 constexpr std::string_view kOtherUnits =
-    "|-|%|V|mV|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/s|°/s|m/s2|m/s^2|m/s²|"
+    "|-|%|V|mV|Volt|Volts|volt|volts|A|mA|°C|C|°F|K|Hz|kHz|m/s|mm/s|um/s|µm/s|in/s|rpm|rad/s|deg/"
+    "s|°/s|m/s2|m/s^2|m/s²|"
     "mm/s2|mm/min|N/s|kN/s|mV/V|cycle|cycles|segments|count|counts|#|J|W|mm/mm|1/s|";
 
 /// Words in brackets at the end of a name that are no unit of it.
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
+
+std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
+  const std::optional<Unit> force = ForceUnit(symbol);
+  return force ? force : TorqueUnit(symbol);
+}
+
+std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
+
+constexpr std::array kDimensions = {
+    UnitsOfDimension{LengthUnit, LengthUnitSymbols, "m"},
+    UnitsOfDimension{AngleUnit, AngleUnitSymbols, "rad"},
+    UnitsOfDimension{ForceUnit, ForceUnitSymbols, "N"},
+    UnitsOfDimension{TorqueUnit, TorqueUnitSymbols, "N m"},
+    UnitsOfDimension{TimeUnit, TimeUnitSymbols, "s"},
+    UnitsOfDimension{ForceOrTorqueUnit, ForceOrTorqueUnitSymbols, "N"},
+};
 
 /// True if a list "|a|b|" has the word.
 bool Lists(std::string_view list, std::string_view word) {
@@ -70,13 +87,24 @@ std::string_view WithoutPath(std::string_view name) {
   return name;
 }
 
-/// One letter, or a few that are no word, are a name by themselves.
+/// One letter, or a few that are no word, are a name by themselves, perhaps with "actual" and the
+/// like; what is behind a label, "U1 PI: P N: 1", is none of it.
 std::string_view OnlyWord(std::string_view name) {
   const auto is_letter = [](char character) { return IsLetter(character); };
-  const auto begin = std::ranges::find_if(name, is_letter);
-  const auto end = std::find_if_not(begin, name.end(), is_letter);
-  return std::find_if(end, name.end(), is_letter) == name.end() ? std::string_view(begin, end)
-                                                                : std::string_view();
+  if (const std::size_t label = name.find(": "); label != std::string_view::npos) {
+    name = name.substr(0, name.find_last_of(' ', label));
+  }
+  std::string_view only;
+  for (auto begin = name.begin(); begin != name.end();) {
+    begin = std::find_if(begin, name.end(), is_letter);
+    const auto end = std::find_if_not(begin, name.end(), is_letter);
+    const std::string_view word(begin, end);
+    begin = end;
+    if (word.empty() || Lists(kRemarks, LowerCase(word))) continue;
+    if (!only.empty()) return {};
+    only = word;
+  }
+  return only;
 }
 
 NameEvidence EvidenceOf(std::string_view name) {
@@ -122,17 +150,24 @@ bool MayBeUnit(std::string_view text) {
          !Lists(kRemarks, LowerCase(text));
 }
 
-/// The text with the brackets of Chinese and Japanese fonts as those of ASCII.
-std::string WithAsciiBrackets(std::string_view text) {
-  std::string plain(text);
-  for (const auto& [wide, narrow] :
-       {std::pair("（", "("), std::pair("）", ")"), std::pair("［", "["), std::pair("］", "]"),
-        std::pair("【", "["), std::pair("】", "]")}) {
-    for (std::size_t at = plain.find(wide); at != std::string::npos; at = plain.find(wide)) {
-      plain.replace(at, std::string_view(wide).size(), narrow);
+/// The text with the brackets, letters and signs of Chinese and Japanese fonts, U+FF01 to U+FF5E,
+/// as those of ASCII.
+std::string WithNarrowLetters(std::string_view text) {
+  std::string narrow;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const auto third = at + 2 < text.size() ? static_cast<unsigned char>(text[at + 2]) : 0U;
+    const std::string_view lead = text.substr(at, 2);
+    const bool is_bracket = lead == "\xE3\x80" && (third == 0x90 || third == 0x91);
+    const bool is_letter = lead == "\xEF\xBC" || (lead == "\xEF\xBD" && third < 0x9F);
+    if (!is_bracket && !is_letter) {
+      narrow += text[at];
+      continue;
     }
+    narrow += is_bracket ? "[]"[third - 0x90]
+                         : static_cast<char>(third - (lead == "\xEF\xBC" ? 0x60 : 0x20));
+    at += 2;
   }
-  return plain;
+  return narrow;
 }
 
 /// Takes a unit off behind a comma, a slash, an underscore or a blank.
@@ -160,26 +195,29 @@ void TakeUnitAtEnd(ColumnName& split) {
 
 }  // namespace
 
+const UnitsOfDimension& UnitsOf(Dimension dimension) {
+  return kDimensions.at(static_cast<std::size_t>(dimension));
+}
+
 Dimension DimensionOfUnit(std::string_view symbol) {
   if (symbol.empty()) return Dimension::kNone;
-  if (LengthUnit(symbol)) return Dimension::kLength;
-  if (AngleUnit(symbol)) return Dimension::kAngle;
-  if (ForceUnit(symbol)) return Dimension::kForce;
-  if (TorqueUnit(symbol)) return Dimension::kTorque;
-  return TimeUnit(symbol) ? Dimension::kTime : Dimension::kOther;
+  for (const Dimension dimension : {Dimension::kLength, Dimension::kAngle, Dimension::kForce,
+                                    Dimension::kTorque, Dimension::kTime}) {
+    if (UnitsOf(dimension).find(symbol)) return dimension;
+  }
+  return Dimension::kOther;
 }
 
 bool MayHaveRole(Dimension dimension, Role role) {
+  const bool is_angular = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
   switch (role) {
     case Role::kDisplacement:
-      return dimension == Dimension::kLength || dimension == Dimension::kAngle;
+      return dimension == (is_angular ? Dimension::kAngle : Dimension::kLength);
     case Role::kForce:
     case Role::kNormalLoad:
-      return dimension == Dimension::kForce || dimension == Dimension::kTorque;
-    case Role::kTime:
-      return dimension == Dimension::kTime;
+      return dimension == (is_angular ? Dimension::kTorque : Dimension::kForce);
     default:
-      return false;
+      return role == Role::kTime && dimension == Dimension::kTime;
   }
 }
 
@@ -196,7 +234,7 @@ bool LooksLikeUnit(std::string_view cell) {
 }
 
 ColumnName SplitColumnName(std::string_view header) {
-  const std::string plain = WithAsciiBrackets(Trimmed(header));
+  const std::string plain = WithNarrowLetters(Trimmed(header));
   ColumnName split{.name = plain};
   bool is_known = false;
   for (std::size_t close = plain.find_last_of("])");

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +12,16 @@ namespace mindahl::io {
 /// Names what a column may be.
 enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther };
 
-enum class Dimension { kNone, kLength, kAngle, kForce, kTorque, kTime, kOther };
+enum class Dimension { kLength, kAngle, kForce, kTorque, kTime, kForceOrTorque, kOther, kNone };
+
+/// Holds the units of a dimension.
+struct UnitsOfDimension {
+  std::optional<Unit> (*find)(std::string_view);
+  std::string (*symbols)();
+  std::string_view si;
+};
+/// @param dimension  before kOther
+const UnitsOfDimension& UnitsOf(Dimension dimension);
 
 /// Returns the dimension of a unit; kNone for "".
 Dimension DimensionOfUnit(std::string_view symbol);
@@ -28,6 +36,9 @@ struct NameEvidence {
   bool is_angular = false;  // of an angle or a torque
   bool is_lesser = false;   ///< commanded, raw or a statistic
   std::size_t other_words = 0;
+
+  /// True if it is a word of the role.
+  [[nodiscard]] bool names(Role other) const { return !word.empty() && role == other; }
 };
 
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".

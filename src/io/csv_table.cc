@@ -19,18 +19,12 @@ namespace {
 /// Refuses a file that is larger than can be held, by as much of it as has been read.
 void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
                    const std::string& name) {
-  constexpr std::string_view kRemedy =
-      "fit a part of the file, every n-th row, or each cycle with mindahl track; or allow more";
-  if (rows > limits.rows) {
-    throw InputError(fmt::format("{}: has more than the {} rows that --max-rows leaves for it: {}",
-                                 name, limits.rows, kRemedy));
-  }
   const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
   if (memory <= limits.memory) return;
-  throw InputError(fmt::format(
-      "{}: {} of it need about {} of memory, more than the {} that "
-      "--max-memory leaves for it: {}",
-      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy));
+  Refuse(
+      "{}: {} of it need about {} of memory, more than the {} that --max-memory leaves for it: fit "
+      "a part of the file, every n-th row, or each cycle with mindahl track; or allow more",
+      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory));
 }
 
 /// Returns what a reader has read, at the end of its file.
@@ -55,9 +49,8 @@ CsvTable Finished(TableReader& reader) {
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const TableColumn& of = columns.at(column);
   if (of.values.empty()) {
-    throw InputError(fmt::format("{}:{}:{}: column {} holds no numbers", file,
-                                 lines.empty() ? header_line : lines.front(), column + 1,
-                                 column + 1));
+    Refuse("{}:{}:{}: column {} holds no numbers", file,
+           lines.empty() ? header_line : lines.front(), column + 1, column + 1);
   }
   if (!of.fault.empty()) throw InputError(of.fault);
   if (!of.missing.empty()) throw InputError(of.missing);
@@ -89,15 +82,13 @@ CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {
   table.file = std::move(source);
   table.header_line = 1;
   if (columns.empty() || columns.front().values.empty()) {
-    throw InputError(
-        fmt::format("{}: there is no {}", table.file, columns.empty() ? "column" : "row"));
+    Refuse("{}: there is no {}", table.file, columns.empty() ? "column" : "row");
   }
   const std::size_t rows = columns.front().values.size();
   for (const NamedColumn& column : columns) {
     if (column.values.size() == rows) continue;
-    throw InputError(fmt::format("{}: '{}' has {} rows and '{}' {}: give as many of both",
-                                 table.file, columns.front().name, rows, column.name,
-                                 column.values.size()));
+    Refuse("{}: '{}' has {} rows and '{}' {}: give as many of both", table.file,
+           columns.front().name, rows, column.name, column.values.size());
   }
   for (NamedColumn& column : columns) {
     TableColumn& added = table.columns.emplace_back();

@@ -22,32 +22,32 @@ constexpr double kTicCharacter = 9.6;     // [px] on a narrow screen, where lett
 
 using Values = std::vector<double>;
 
-void RequireNumbers(const std::string& name, const Values& values, bool logarithmic) {
-  for (const double value : values) {
-    RequireFinite(name, value);
-    if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
-  }
-}
-
 void RequireDrawable(const PlotPanel& panel, std::string_view where) {
   RequirePositive(fmt::format("height of {}", where), panel.height);
   if (panel.series.empty())
     throw InvalidArgument(fmt::format("{} has no series: must have one", where));
+  const auto require = [](const std::string& name, const Values& values, bool logarithmic) {
+    for (const double value : values) {
+      RequireFinite(name, value);
+      if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
+    }
+  };
   for (const PlotSeries& series : panel.series) {
     const std::string name = fmt::format("'{}' of {}", series.label, where);
     if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-    const auto require = [&](const Values& values, const char* what, bool logarithmic) {
-      RequireSameSize("x of " + name, series.x.size(), what + name, values.size());
-      RequireNumbers(what + name, values, logarithmic);
-    };
-    require(series.x, "x of ", panel.log_x);
-    require(series.y, "y of ", panel.log_y);
-    if (series.style != PlotStyle::kBand) continue;
-    require(series.lower, "lower ends of ", panel.log_y);
-    require(series.upper, "upper ends of ", panel.log_y);
+    require("x of " + name, series.x, panel.log_x);
+    std::vector<std::pair<std::string, const Values*>> heights = {{"y of ", &series.y}};
+    if (series.style == PlotStyle::kBand) {
+      heights.insert(heights.end(),
+                     {{"lower ends of ", &series.lower}, {"upper ends of ", &series.upper}});
+    }
+    for (const auto& [what, values] : heights) {
+      RequireSameSize("x of " + name, series.x.size(), what + name, values->size());
+      require(what + name, *values, panel.log_y);
+    }
   }
   for (const PlotMark& mark : panel.marks) {
-    RequireNumbers(fmt::format("mark '{}' of {}", mark.label, where), {mark.x}, panel.log_x);
+    require(fmt::format("mark '{}' of {}", mark.label, where), {mark.x}, panel.log_x);
   }
 }
 
@@ -83,12 +83,9 @@ class Axis {
     PlaceTics();
   }
 
-  void Place(double from_pixel, double to_pixel) {
-    from_pixel_ = from_pixel;
-    to_pixel_ = to_pixel;
-  }
-  [[nodiscard]] double Pixel(double value) const {
-    return from_pixel_ + (At(value) - from_) / (to_ - from_) * (to_pixel_ - from_pixel_);
+  /// Returns the place of a value between the pixels of the axis' ends.
+  [[nodiscard]] double Pixel(double value, double from_pixel, double to_pixel) const {
+    return from_pixel + (At(value) - from_) / (to_ - from_) * (to_pixel - from_pixel);
   }
   [[nodiscard]] const Values& tics() const { return tics_; }
   [[nodiscard]] std::string Label(double tic) const;
@@ -100,8 +97,6 @@ class Axis {
   bool logarithmic_;
   double from_;
   double to_;
-  double from_pixel_ = 0.0;
-  double to_pixel_ = 1.0;
   double step_ = 0.0;  // between tics; 0 of powers of ten
   Values tics_;
 };
@@ -144,21 +139,20 @@ std::string Axis::Label(double tic) const {
 }
 
 std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = -least;
-  const auto include = [&](double value) {
-    least = std::min(least, value);
-    greatest = std::max(greatest, value);
+  Values values;
+  const auto add = [&](const Values& more) {
+    values.insert(values.end(), more.begin(), more.end());
   };
   for (const PlotSeries& series : panel.series) {
-    std::ranges::for_each(horizontal ? series.x : series.y, include);
+    add(horizontal ? series.x : series.y);
     if (horizontal || series.style != PlotStyle::kBand) continue;
-    std::ranges::for_each(series.lower, include);
-    std::ranges::for_each(series.upper, include);
+    add(series.lower);
+    add(series.upper);
   }
   for (const PlotMark& mark : panel.marks) {
-    if (horizontal) include(mark.x);
+    if (horizontal) values.push_back(mark.x);
   }
+  const auto [least, greatest] = std::ranges::minmax(values);
   return {least, greatest};
 }
 
@@ -224,23 +218,18 @@ std::string Coordinate(double pixel) {
   return text == "-0" ? "0" : text;
 }
 
-std::string Path(std::string_view kind, const std::string& classes, const std::string& data) {
-  return fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, classes, data);
-}
-
-/// Points as "M1 2L3 4…", those left out that fall on the one before.
-std::string Line(const Values& x, const Values& y, char first, bool forward) {
+/// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
+/// one before.
+std::string Points(const Values& x, const Values& y, std::string_view shape, char first = 'M') {
   std::string path;
   std::string last;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const std::size_t point = forward ? k : x.size() - 1 - k;
-    const std::string at = fmt::format("{} {}", Coordinate(x[point]), Coordinate(y[point]));
+    const std::string at = fmt::format("{} {}", Coordinate(x[k]), Coordinate(y[k]));
     if (at == last) continue;
-    path += (path.empty() ? first : 'L') + at;
+    path += path.empty() || !shape.empty() ? first : 'L';
+    path.append(at).append(shape);
     last = at;
   }
-  // A path of one point draws nothing.
-  if (first == 'M' && path.find('L') == std::string::npos) path += "h0";
   return path;
 }
 
@@ -256,34 +245,23 @@ std::string DrawPoints(const PlotSeries& series, const Look& look) {
       "m0-4.2l4 2.9l-1.5 4.7h-5l-1.5-4.7z",
   };
   const PlotStyle style = series.style;
-  const auto at_each = [&](const auto& text_of) {
-    std::string path;
-    std::string last;
-    for (std::size_t k = 0; k < series.x.size(); ++k) {
-      const std::string at = text_of(Coordinate(series.x[k]), Coordinate(series.y[k]));
-      if (at != last) path += at;
-      last = at;
-    }
-    return path;
-  };
   std::string drawn;
+  const auto draw = [&](std::string_view kind, const std::string& path) {
+    drawn += fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, look.classes, path);
+  };
   if (style == PlotStyle::kBand) {
-    drawn += Path(
-        "area", look.classes,
-        Line(series.x, series.upper, 'M', true) + Line(series.x, series.lower, 'L', false) + "Z");
+    const Values back(series.x.rbegin(), series.x.rend());
+    draw("area", Points(series.x, series.upper, "") +
+                     Points(back, {series.lower.rbegin(), series.lower.rend()}, "", 'L') + "Z");
   }
-  if (style == PlotStyle::kPoints) {
-    return Path("dots", look.classes, at_each([](const auto& x, const auto& y) {
-                  return fmt::format("M{} {}h0", x, y);
-                }));
+  if (style == PlotStyle::kPoints) draw("dots", Points(series.x, series.y, "h0"));
+  if (style != PlotStyle::kMarkers && style != PlotStyle::kPoints) {
+    const std::string line = Points(series.x, series.y, "");
+    // A path of one point draws nothing.
+    draw("line", line.find('L') == std::string::npos ? line + "h0" : line);
   }
-  if (style != PlotStyle::kMarkers) {
-    drawn += Path("line", look.classes, Line(series.x, series.y, 'M', true));
-  }
-  if (style != PlotStyle::kLine && style != PlotStyle::kBand) {
-    drawn += Path("marker", look.classes, at_each([&](const auto& x, const auto& y) {
-                    return fmt::format("M{} {}{}", x, y, kShapes[look.shape]);
-                  }));
+  if (style == PlotStyle::kMarkers || style == PlotStyle::kLineAndPoints) {
+    draw("marker", Points(series.x, series.y, kShapes[look.shape]));
   }
   return drawn;
 }
@@ -326,15 +304,15 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
   RequireDrawable(panel, where);
   constexpr double kMarginX = 0.02;
   constexpr double kMarginY = 0.05;
-  Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
-  Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
+  const Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
+  const Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
   const double top = kAboveAxes;
   const double bottom = kAboveAxes + axes_height;
   const double right = width - kRightMargin;
   double left = kLeftMargin;
   for (const double tic : y_axis.tics()) left = std::max(left, 14 + WidthOf(y_axis.Label(tic)));
-  x_axis.Place(left, right);
-  y_axis.Place(bottom, top);
+  const auto x_pixel = [&](double x) { return x_axis.Pixel(x, left, right); };
+  const auto y_pixel = [&](double y) { return y_axis.Pixel(y, bottom, top); };
 
   std::string grid;
   std::string labels;
@@ -342,14 +320,14 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
   for (const double tic : x_axis.tics()) {
     const std::string label = x_axis.Label(tic);
     const double half = WidthOf(label) / 2;
-    const double at = x_axis.Pixel(tic);
+    const double at = x_pixel(tic);
     grid += fmt::format("M{} {}V{}", Coordinate(at), Coordinate(top), Coordinate(bottom));
     if (at - half < last_end || at + half > width) continue;
     last_end = at + half;
     labels += Text(at, bottom + 19, "middle", label);
   }
   for (const double tic : y_axis.tics()) {
-    const double at = y_axis.Pixel(tic);
+    const double at = y_pixel(tic);
     grid += fmt::format("M{} {}H{}", Coordinate(left), Coordinate(at), Coordinate(right));
     labels += Text(left - 7, at + 5, "end", y_axis.Label(tic));
   }
@@ -365,11 +343,11 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
     const PlotSeries& series = panel.series[k];
     PlotSeries pixels{.label = "", .style = series.style};
     for (const std::size_t point : Thinned(series, most)) {
-      pixels.x.push_back(x_axis.Pixel(series.x[point]));
-      pixels.y.push_back(y_axis.Pixel(series.y[point]));
+      pixels.x.push_back(x_pixel(series.x[point]));
+      pixels.y.push_back(y_pixel(series.y[point]));
       if (series.style != PlotStyle::kBand) continue;
-      pixels.lower.push_back(y_axis.Pixel(series.lower[point]));
-      pixels.upper.push_back(y_axis.Pixel(series.upper[point]));
+      pixels.lower.push_back(y_pixel(series.lower[point]));
+      pixels.upper.push_back(y_pixel(series.upper[point]));
     }
     elements += DrawPoints(pixels, looks[k]);
   }
@@ -378,7 +356,7 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
   last_end = -width;
   double line = 0;
   for (const PlotMark& mark : panel.marks) {
-    const double at = x_axis.Pixel(mark.x);
+    const double at = x_pixel(mark.x);
     elements += fmt::format("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at),
                             Coordinate(top), Coordinate(bottom));
     if (mark.label.empty()) continue;

@@ -1,13 +1,13 @@
-#include "io/expression.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 #include "core/from_chars.h"
+#include "core/nearest_name.h"
 #include "io/cells.h"
-#include "mindahl/core/error.h"
+#include "io/roles.h"
 
 namespace mindahl::io {
 namespace {
@@ -17,9 +17,8 @@ constexpr std::string_view kOperators = "+-*/";
 /// Reads a sum of products, each of numbers and at most one column.
 class ExpressionReader {
  public:
-  ExpressionReader(std::string_view text, std::size_t columns, const FindColumn& find,
-                   const std::string& where, const DescribeUnknown& unknown)
-      : rest_(text), columns_(columns), find_(find), where_(where), unknown_(unknown) {}
+  ExpressionReader(std::string_view text, const ColumnNames& names, Role role, std::string where)
+      : rest_(text), names_(names), role_(role), where_(std::move(where)) {}
 
   Expression Read() {
     Expression expression;
@@ -58,9 +57,7 @@ class ExpressionReader {
   }
 
  private:
-  [[noreturn]] void Throw(std::string_view rule) const {
-    throw InputError(fmt::format("{}: {}", where_, rule));
-  }
+  [[noreturn]] void Throw(std::string_view rule) const { Refuse("{}: {}", where_, rule); }
   void Take(std::size_t size) { rest_ = Trimmed(rest_.substr(size)); }
 
   /// Takes the longest name before an operator or the end, or # and a number.
@@ -68,7 +65,7 @@ class ExpressionReader {
     for (std::size_t end = rest_.size(); end != std::string_view::npos && end > 0;
          end = rest_.find_last_of(kOperators, end - 1)) {
       const std::string_view name = Trimmed(rest_.substr(0, end));
-      if (const auto column = name.empty() ? std::nullopt : find_(name)) {
+      if (const auto column = name.empty() ? std::nullopt : names_.Named(name, role_)) {
         Take(end);
         return column;
       }
@@ -76,8 +73,8 @@ class ExpressionReader {
     if (!rest_.starts_with('#')) return std::nullopt;
     Take(1);
     const double number = TakeNumber();
-    if (number < 1 || number > static_cast<double>(columns_) || number != std::floor(number)) {
-      Throw(fmt::format("has #{}: there are {} columns", number, columns_));
+    if (number < 1 || number > static_cast<double>(names_.size()) || number != std::floor(number)) {
+      Throw(fmt::format("has #{}: there are {} columns", number, names_.size()));
     }
     return static_cast<std::size_t>(number) - 1;
   }
@@ -90,27 +87,33 @@ class ExpressionReader {
     const bool ends = after.empty() || kOperators.find(after.front()) != std::string_view::npos;
     if (error != std::errc() || size == 0 || !std::isfinite(value) || !ends) {
       const std::string_view name = Trimmed(rest_.substr(0, rest_.find_first_of(kOperators)));
-      Throw(name.empty() ? "is incomplete: write it like raw*0.0123-4.5 [N]" : unknown_(name));
+      if (name.empty()) Throw("is incomplete: write it like raw*0.0123-4.5 [N]");
+      std::vector<std::string> known;
+      known.reserve(names_.size());
+      for (std::size_t column = 0; column < names_.size(); ++column) {
+        known.push_back(ForMessage(names_[column].name.name));
+      }
+      Throw(fmt::format("no column is called '{}' (for the {}){} {}", name, RulesOf(role_).name,
+                        DidYouMean(name, known), names_.Listing()));
     }
     Take(size);
     return value;
   }
 
   std::string_view rest_;
-  std::size_t columns_;
-  const FindColumn& find_;
-  const std::string& where_;
-  const DescribeUnknown& unknown_;
+  const ColumnNames& names_;
+  Role role_;
+  std::string where_;
 };
 
 }  // namespace
 
-Expression ReadExpression(std::string_view text, std::size_t columns, const FindColumn& find,
-                          const std::string& where, const DescribeUnknown& unknown) {
-  text = Trimmed(text);
+Expression ColumnNames::Read(const std::string& given, Role role) const {
+  std::string_view text = Trimmed(given);
   if (text.empty()) return {};
+  const std::string where = fmt::format("{}: {} {}", table_.file, RulesOf(role).option, given);
   if (!NumberIn<std::size_t>(text)) {
-    if (const auto named = find(text)) return {.terms = {{*named, 1.0}}, .unit = ""};
+    if (const auto named = Named(text, role)) return {.terms = {{*named, 1.0}}, .unit = ""};
   }
   std::string unit;
   if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
@@ -119,13 +122,13 @@ Expression ReadExpression(std::string_view text, std::size_t columns, const Find
   }
   Expression expression;
   if (const auto number = NumberIn<std::size_t>(text)) {
-    if (*number < 1 || *number > columns) {
-      throw InputError(fmt::format("{}: there is no column {}: the file has {} column{}", where,
-                                   text, columns, columns == 1 ? "" : "s"));
+    if (*number < 1 || *number > size()) {
+      Refuse("{}: there is no column {}: the file has {} column{}", where, text, size(),
+             size() == 1 ? "" : "s");
     }
     expression.terms = {{*number - 1, 1.0}};
   } else if (!text.empty()) {
-    expression = ExpressionReader(text, columns, find, where, unknown).Read();
+    expression = ExpressionReader(text, *this, role, where).Read();
   }
   expression.unit = std::move(unit);
   return expression;

@@ -7,11 +7,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <string>
 #include <utility>
 
 #include "core/platform.h"
-#include "io/unfinished_output.h"
+#include "io/source.h"
 
 namespace mindahl::io {
 
@@ -52,28 +53,38 @@ void RemoveAndRaise(int signal) {
   std::raise(signal);
 }
 
+/// A file that goes with this object unless it is kept; and with the program, when
+/// RemoveTemporaryFilesOnSignals() was called and a signal ends it.
+class TemporaryName {
+ public:
+  /// Before the file is made: a signal may come in between.
+  explicit TemporaryName(const char* name) : name_(name) { ReplaceName(nullptr, name_); }
+  ~TemporaryName() {
+    if (!kept_) RemoveName(name_);
+    ReplaceName(name_, nullptr);
+  }
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
+
+  void Keep() {
+    kept_ = true;
+    ReplaceName(name_, nullptr);
+  }
+
+ private:
+  const char* name_;
+  bool kept_ = false;
+};
+
+[[noreturn]] void ThrowCannotWrite(const std::filesystem::path& path, int error) {
+  Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
+}
+
 }  // namespace
 
-TemporaryName::TemporaryName(std::string name) : name_(std::move(name)) {
-  ReplaceName(nullptr, name_.c_str());
-}
-
-TemporaryName::~TemporaryName() {
-  if (kept_) return;
-  RemoveName(name_.c_str());
-  ReplaceName(name_.c_str(), nullptr);
-}
-
-void TemporaryName::Keep() {
-  kept_ = true;
-  ReplaceName(name_.c_str(), nullptr);
-}
-
 void RemoveTemporaryFiles() {
-  for (int pass = 0; pass < 2; ++pass) {  // directories once they are empty
-    for (const std::atomic<const char*>& slot : registered_names) {
-      if (const char* const name = slot.load()) RemoveName(name);
-    }
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) RemoveName(name);
   }
 }
 
@@ -90,14 +101,12 @@ void RaiseNotedSignal() {
   EndBySignal(signal);
 }
 
-namespace {
-
 /// An open file, closed with it. `path` is the name the user knows it by, for messages.
 class OutputFile {
  public:
-  OutputFile(const std::string& name, Opening opening, const std::filesystem::path& path)
-      : path_(path) {
-    RequireWritten(path_, OpenFile(name, opening, file_));
+  OutputFile(const std::string& name, Opening opening, std::filesystem::path path)
+      : path_(std::move(path)) {
+    Require(OpenFile(name, opening, file_));
   }
   ~OutputFile() {
     if (file_ >= 0) CloseFile(file_);
@@ -106,19 +115,30 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   [[nodiscard]] int file() const { return file_; }
-  void Write(std::string_view content) { RequireWritten(path_, WriteFile(file_, content)); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Passes an error on, if there is one.
+  void Require(int error) const {
+    if (error != 0) ThrowCannotWrite(path_, error);
+  }
+  void Write(std::string_view content) const { Require(WriteFile(file_, content)); }
   /// A full disk may show only here.
-  void Close() { RequireWritten(path_, CloseFile(std::exchange(file_, -1))); }
+  void Close() { Require(CloseFile(std::exchange(file_, -1))); }
+  /// Waits until the file of that name is on the disk, and closes it.
+  void Finish() {
+    Require(WriteToDisk(file_));
+    Close();
+  }
+  void WriteNameToDisk(const std::filesystem::path& target) const {
+    const std::filesystem::path parent = target.parent_path();
+    Require(WriteDirectoryToDisk(parent.empty() ? "." : parent.string()));
+  }
 
  private:
-  const std::filesystem::path& path_;
+  std::filesystem::path path_;
   int file_ = -1;
 };
 
-void WriteNameToDisk(const std::filesystem::path& file, const std::filesystem::path& path) {
-  const std::filesystem::path parent = file.parent_path();
-  RequireWritten(path, WriteDirectoryToDisk(parent.empty() ? "." : parent.string()));
-}
+namespace {
 
 /// /dev/stdout may lead to a regular file, which the shell opened and must not be replaced.
 bool IsBelowDevOrProc(const std::filesystem::path& path) {
@@ -134,15 +154,14 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
           .string();
-  TemporaryName temporary(name);
+  TemporaryName temporary(name.c_str());
   OutputFile file(name, Opening::kNew, path);
-  if (is_old) RequireWritten(path, CopyPermissions(target.string(), file.file()));
+  if (is_old) file.Require(CopyPermissions(target.string(), file.file()));
   file.Write(content);
-  RequireWritten(path, WriteToDisk(file.file()));
-  file.Close();
+  file.Finish();
   if (std::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
   temporary.Keep();
-  WriteNameToDisk(target, path);
+  file.WriteNameToDisk(target);
 }
 
 }  // namespace
@@ -163,31 +182,22 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   ReplaceFile(target, is_old, content, path);
 }
 
-AppendedFile::AppendedFile(std::filesystem::path path, std::uintmax_t kept)
-    : path_(std::move(path)), descriptor_(-1), size_(kept) {
-  RequireWritten(path_, OpenFile(path_.string(), Opening::kCreated, descriptor_));
-  if (const int error = EndFileAt(descriptor_, kept); error != 0) {
-    CloseFile(descriptor_);
-    ThrowCannotWrite(path_, error);
-  }
+AppendedFile::AppendedFile(const std::filesystem::path& path, std::uintmax_t kept)
+    : file_(std::make_unique<OutputFile>(path.string(), Opening::kCreated, path)), size_(kept) {
+  file_->Require(EndFileAt(file_->file(), kept));
 }
-
-AppendedFile::~AppendedFile() {
-  if (descriptor_ >= 0) CloseFile(descriptor_);
-}
+AppendedFile::~AppendedFile() = default;
 
 void AppendedFile::Append(std::string_view block) {
-  if (const int error = WriteFile(descriptor_, block); error != 0) {
-    EndFileAt(descriptor_, size_);
-    ThrowCannotWrite(path_, error);
-  }
+  const int error = WriteFile(file_->file(), block);
+  if (error != 0) EndFileAt(file_->file(), size_);
+  file_->Require(error);
   size_ += block.size();
 }
 
 void AppendedFile::Finish() {
-  RequireWritten(path_, WriteToDisk(descriptor_));
-  RequireWritten(path_, CloseFile(std::exchange(descriptor_, -1)));
-  WriteNameToDisk(path_, path_);
+  file_->Finish();
+  file_->WriteNameToDisk(file_->path());
 }
 
 }  // namespace mindahl::io

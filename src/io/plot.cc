@@ -6,15 +6,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "core/platform.h"
 #include "core/text.h"
 #include "io/drawing.h"
-#include "io/unfinished_output.h"
+#include "io/source.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 
@@ -131,49 +129,28 @@ std::string SvgOf(const Plot& plot) {
   return svg + "</svg>\n";
 }
 
-std::string Content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// Converts a drawing by `rsvg-convert --format=png --output=PNG SVG`.
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
-  if (const int error = MakeNewDirectory(pattern); error != 0) {
-    throw InputError(
-        fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(error)));
-  }
-  const TemporaryName scratch(pattern);
-  const TemporaryName drawing(pattern + "/plot.svg");
-  const TemporaryName picture(pattern + "/plot.png");
-  const TemporaryName messages(pattern + "/messages");
-  if (!(std::ofstream(drawing.name(), std::ios::binary) << svg).flush()) {
-    throw InputError(fmt::format("cannot write '{}': is the disk full?", drawing.name()));
-  }
-  bool succeeded = false;
-  const int error =
-      RunProgram({"rsvg-convert", "--format=png", "--output=" + picture.name(), drawing.name()},
-                 messages.name(), succeeded);
+  ProgramOutput png;
+  const int error = RunProgram({"rsvg-convert", "--format=png"}, svg, png);
   if (error == ENOENT) {
-    throw InputError(
+    Refuse(
         "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
         "librsvg2-bin), or give a name that ends in .svg");
   }
-  const std::string said = error != 0 ? std::strerror(error) : Content(messages.name());
-  const std::string png = Content(picture.name());
+  const std::string said = error != 0 ? std::strerror(error) : png.messages;
   // A disk that is full may end the file, and not the program.
-  const bool is_whole = png.ends_with("IEND\xAE\x42\x60\x82");
-  if (error == 0 && succeeded && is_whole) return png;
-  throw InputError(fmt::format("cannot draw '{}': rsvg-convert {}", path.string(),
-                               succeeded ? "wrote only a part of it; is the disk full?"
-                                         : "failed: " + said.substr(0, said.find('\n'))));
+  if (error == 0 && png.succeeded && png.output.ends_with("IEND\xAE\x42\x60\x82")) {
+    return png.output;
+  }
+  Refuse("cannot draw '{}': rsvg-convert {}", path.string(),
+         png.succeeded ? "wrote only a part of it; is the disk full?"
+                       : "failed: " + said.substr(0, said.find('\n')));
 }
 
 bool IsPng(const std::filesystem::path& path) {
   const std::string extension = LowerCase(path.extension().string());
   if (extension == ".svg" || extension == ".png") return extension == ".png";
-  throw InputError(
-      fmt::format("cannot draw '{}': its name must end in .svg or .png", path.string()));
+  Refuse("cannot draw '{}': its name must end in .svg or .png", path.string());
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mindahl/core/error.h"
+#include "io/source.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/segments.h"
 
@@ -27,8 +27,7 @@ void ReduceColumns(RecordFile& file, const Reduce& reduce) {
 void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last) {
   const std::vector<double>& time = input.record.time;
   if (time.empty()) {
-    throw InputError(
-        fmt::format("{}: --time-window needs a time column: name it with --time", file));
+    Refuse("{}: --time-window needs a time column: name it with --time", file);
   }
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < time.size(); ++i) {
@@ -36,9 +35,8 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
   }
   if (kept.empty()) {
     const auto [begin, end] = std::ranges::minmax(time);
-    throw InputError(
-        fmt::format("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s",
-                    file, first, last, begin, end));
+    Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", file, first,
+           last, begin, end);
   }
   input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
                                     kept.size(), time.size(), first, last));
@@ -55,40 +53,27 @@ void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
   });
 }
 
-namespace {
-
-LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
-  const auto line = [&](std::size_t sample) {
-    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
-  };
-  return {.normal_load = piece.normal_load,
-          .first_line = line(piece.first),
-          .last_line = line(piece.last - 1)};
-}
-
-NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
-                         const LoadPiece& description, const std::string& file) {
-  RecordFile part = input;
-  KeepSamples(part, piece.first, piece.last);
-  part.notes.clear();
-  part.piece = description;
-  std::string name = fmt::format("{}:{}-{}", file, description.first_line, description.last_line);
-  return {.name = std::move(name), .file = std::move(part)};
-}
-
-}  // namespace
-
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
   if (pieces.empty()) return {{.name = file, .file = input}};
+  const auto line = [&](std::size_t sample) {
+    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
+  };
   std::vector<NamedRecord> records;
-  std::size_t kept = 0;
+  std::size_t left_out = input.record.size();
   for (const loop::ConstantLoad& piece : pieces) {
-    kept += piece.last - piece.first;
-    LoadPiece description = Described(input, piece);
-    if (&piece == &pieces.back()) description.left_out = input.record.size() - kept;
-    records.push_back(NamedPieceOf(input, piece, description, file));
+    left_out -= piece.last - piece.first;
+    NamedRecord& added = records.emplace_back();
+    added.file = input;
+    KeepSamples(added.file, piece.first, piece.last);
+    added.file.notes.clear();
+    added.file.piece = {.normal_load = piece.normal_load,
+                        .first_line = line(piece.first),
+                        .last_line = line(piece.last - 1)};
+    added.name =
+        fmt::format("{}:{}-{}", file, added.file.piece->first_line, added.file.piece->last_line);
   }
+  records.back().file.piece->left_out = left_out;
   return records;
 }
 
@@ -105,10 +90,10 @@ void RequireJoinable(const RecordFile& first, const std::string& first_name, con
                      const std::string& next_name) {
   const auto require = [&](bool same, std::string_view what) {
     if (same) return;
-    throw InputError(
-        fmt::format("--join: one of {} and {} has {} and the other does not: pieces of one record "
-                    "must have the same columns",
-                    first_name, next_name, what));
+    Refuse(
+        "--join: one of {} and {} has {} and the other does not: pieces of one record must have "
+        "the same columns",
+        first_name, next_name, what);
   };
   require(next.time.has_value() == first.time.has_value(), "a time");
   require(next.normal_load.has_value() == first.normal_load.has_value(), "a normal load");

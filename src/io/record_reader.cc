@@ -3,24 +3,279 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <iterator>
+#include <limits>
 #include <utility>
 
-#include "core/text.h"
-#include "io/record_builder.h"
 #include "io/roles.h"
-#include "mindahl/core/error.h"
-#include "mindahl/core/units.h"
+#include "io/table_reader.h"
 #include "mindahl/io/csv_table.h"
+#include "mindahl/io/record_stream.h"
 
 namespace mindahl::io {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDay = 86'400.0;
 
 bool IsNumber(double value) { return !std::isnan(value); }
+
+/// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
+std::string ImpliedTimeUnit(std::string_view word, double first) {
+  if (word == "ms" || word == "millis" || word == "msec") return "ms";
+  if (word == "micros") return "us";
+  if (word == "nanos") return "ns";
+  constexpr double kFrom2001 = 1e9;  // [s] since 1970, to 2100
+  constexpr double kTo2100 = 4.1e9;
+  for (const auto& [scale, unit] :
+       {std::pair(1.0, "s"), std::pair(1e3, "ms"), std::pair(1e6, "us"), std::pair(1e9, "ns")}) {
+    if (first >= kFrom2001 * scale && first <= kTo2100 * scale) return unit;
+  }
+  return "";
+}
+
+/// Refuses numbers of a register whose highest bit is a sign: none lies in the upper half of those
+/// below it, and there are some on both sides.
+void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
+  const std::size_t column = quantity.first_column();
+  for (const double bit : {1024.0, 32768.0}) {
+    double below = -1.0;
+    double above = 0.0;
+    bool is_register = true;
+    for (const double value : names.table().columns[column].values) {
+      if (std::isnan(value)) continue;
+      is_register = is_register && value >= 0 && value < 2 * bit && value == std::floor(value);
+      if (value < bit) below = std::max(below, value);
+      if (value >= bit) above = std::max(above, value);
+    }
+    if (!is_register || below < 0 || above < bit || below >= bit / 2) continue;
+    Refuse(
+        "{}: {} holds no value between {} and {}, as a register whose bit {} is the sign of the "
+        "{}: write signed numbers, {} - value where the value is {} or more",
+        names.Header(), names.Label(column), below, bit - 1, bit, RulesOf(quantity.role).name, bit,
+        bit);
+  }
+}
+
+}  // namespace
+
+/// Turns the rows of tables into samples of a record.
+class RecordBuilder {
+ public:
+  /// Assigns the columns, by the rows that the table has.
+  RecordBuilder(const CsvTable& table, const RecordColumns& asked)
+      : skip_broken_(asked.skip_broken_rows) {
+    const std::optional<double>& rate = asked.sample_rate;
+    if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
+      Refuse("--sample-rate {}: must be finite and > 0 Hz", *rate);
+    }
+    if (rate && !asked.time.empty()) {
+      Refuse("{}: --time and --sample-rate exclude each other", table.file);
+    }
+    file_.notes = table.notes;
+    const ColumnNames names(table);
+    Roles roles = AssignRoles(names, asked, file_.notes);
+    file_.is_torsional = roles.is_torsional;
+    const auto choose = [&](Role role) {
+      return Choose(names, role, std::move(roles[role]), AskedOf(asked, role));
+    };
+    file_.displacement = choose(Role::kDisplacement);
+    file_.force = choose(Role::kForce);
+    if (Expression& time = roles[Role::kTime]; !time.terms.empty()) {
+      FindOrigin(names, time);
+      file_.time = choose(Role::kTime);
+      file_.time->is_clock = table.columns[file_.time->index - 1].is_clock;
+    }
+    if (!roles[Role::kNormalLoad].terms.empty()) file_.normal_load = choose(Role::kNormalLoad);
+    if (file_.time) return;
+    interval_ = rate ? 1.0 / *rate : table.interval;
+    if (table.interval > 0 && !rate) {
+      file_.notes.push_back(fmt::format("{}: has no time: its header states {} s between rows",
+                                        table.file, table.interval));
+    }
+  }
+
+  /// Returns the columns, units and notes, without samples.
+  [[nodiscard]] RecordFile& file() { return file_; }
+  /// Returns the columns that are used, from 0, each once.
+  [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
+  /// Returns the rows left out so far.
+  [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
+
+  /// Appends the rows of a table, up to one that is refused; those without a number in a column
+  /// that is used are left out.
+  /// @returns the fault of that row; "" where there is none
+  std::string Add(const CsvTable& table, Samples& samples);
+  /// Returns what is said of rows left out that are more than one in a hundred; "" where they are
+  /// fewer, or broken rows are skipped.
+  [[nodiscard]] std::string TooManyLeftOut() const;
+
+ private:
+  ChosenColumn Choose(const ColumnNames& names, Role role, Expression sum, const std::string& text);
+  void FindOrigin(const ColumnNames& names, Expression& time);
+  bool Follows(double& time, const Unit& unit);
+  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
+
+  RecordFile file_;
+  std::vector<Quantity> quantities_;
+  std::vector<std::size_t> wanted_;
+  bool skip_broken_;
+  LeftOutRows left_out_;
+  std::size_t rows_ = 0;      // seen so far
+  double interval_ = 0.0;     // [s] between rows, in place of a column of times
+  double time_origin_ = 0.0;  // in the unit of the time
+  double shift_ = 0.0;        // of the times of a block, in their unit
+  bool begins_block_ = false;
+  double last_time_ = -std::numeric_limits<double>::infinity();
+  double time_above_ = 0.0;  // the one before the last
+  double last_step_ = 0.0;
+};
+
+ChosenColumn RecordBuilder::Choose(const ColumnNames& names, Role role, Expression sum,
+                                   const std::string& text) {
+  const bool is_plain = sum.is_plain();
+  const Quantity& added =
+      quantities_.emplace_back(names.InUnit(role, std::move(sum), file_.is_torsional, file_.notes));
+  if (is_plain && (role == Role::kDisplacement || role == Role::kForce)) {
+    RequireNoSignBit(names, added);
+  }
+  const std::vector<TableColumn>& columns = names.table().columns;
+  for (const Expression::Term& term : added.sum.terms) {
+    if (columns[term.column].values.empty()) static_cast<void>(names.table().Numbers(term.column));
+    if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
+  }
+  return {.name = is_plain ? columns[added.first_column()].name : text,
+          .index = added.first_column() + 1,
+          .unit = added.unit.symbol};
+}
+
+/// Finds from where the time counts, and its unit where it states none.
+void RecordBuilder::FindOrigin(const ColumnNames& names, Expression& time) {
+  const std::size_t first = time.terms.front().column;
+  const TableColumn& column = names.table().columns[first];
+  const auto number = std::ranges::find_if(column.values, IsNumber);
+  const double start = number == column.values.end() ? 0.0 : *number;
+  const auto note = [&](std::string_view what) {
+    file_.notes.push_back(
+        fmt::format("{}: time {} {}", names.table().file, names.Label(first), what));
+  };
+  if (column.is_clock) {
+    time.unit = "s";
+    time_origin_ = kDay * std::floor(start / kDay);
+    note("holds times of day: taken as seconds since midnight of the first one's day");
+  } else if (const std::string stated = time.is_plain() ? names.UnitOf(first, "--time") : "";
+             !stated.empty()) {
+    const auto unit = TimeUnit(stated);
+    if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
+  } else if (time.unit.empty() && time.is_plain()) {
+    time.unit = ImpliedTimeUnit(names[first].name.evidence.word, start);
+    if (time.unit.empty()) {
+      time.unit = "s";
+      note(fmt::format("names no unit: taken as s; --time '{} [s]' says so", first + 1));
+    } else if (ImpliedTimeUnit("", start) == time.unit) {
+      time_origin_ = start;
+      note(fmt::format("holds stamps since 1970 in {}: taken as seconds since the first",
+                       time.unit));
+    } else {
+      note(fmt::format("names no unit: taken as {}", time.unit));
+    }
+  }
+}
+
+std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
+  std::vector<std::vector<double>> values;
+  std::vector<double>* time = nullptr;
+  values.reserve(quantities_.size());
+  for (const Quantity& quantity : quantities_) {
+    std::vector<double>& added = values.emplace_back(quantity.Values(table));
+    if (quantity.role == Role::kTime) {
+      time = &added;
+    } else {
+      for (double& value : added) value = quantity.unit.ToSi(value);
+    }
+  }
+  auto block = table.blocks.begin();
+  std::string refusal;
+  std::size_t kept = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
+    if (block != table.blocks.end() && row == *block) {
+      begins_block_ = true;
+      ++block;
+    }
+    const bool is_whole =
+        std::ranges::all_of(values, [row](const auto& of) { return std::isfinite(of[row]); });
+    if (!is_whole || (time != nullptr && !Follows((*time)[row], quantities_[2].unit))) {
+      bool is_missing = false;
+      std::string fault = FaultOf(table, row, is_missing);
+      if (!is_missing && !skip_broken_) {
+        refusal = std::move(fault);
+        break;
+      }
+      left_out_.Add(table.lines[row], fault);
+      continue;
+    }
+    begins_block_ = false;
+    for (std::vector<double>& of : values) of[kept] = of[row];
+    ++kept;
+    if (time == nullptr && interval_ > 0) {
+      samples.time.push_back(static_cast<double>(rows_) * interval_);
+    }
+    samples.lines.push_back(table.lines[row]);
+  }
+  const std::array to = {&samples.displacement, &samples.force, &samples.time,
+                         &samples.normal_load};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    std::vector<double>& of = *to.at(static_cast<std::size_t>(quantities_[k].role));
+    of.insert(of.end(), values[k].begin(), values[k].begin() + static_cast<std::ptrdiff_t>(kept));
+  }
+  return refusal;
+}
+
+std::string RecordBuilder::TooManyLeftOut() const {
+  // One in a hundred, rounded up from a hundred on.
+  constexpr std::size_t kOneIn = 100;
+  const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
+  if (skip_broken_ || left_out_.count <= most) return "";
+  return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
+                     left_out_.fault, left_out_.count, rows_);
+}
+
+/// Converts a time.
+/// @returns false where it is before the last
+bool RecordBuilder::Follows(double& time, const Unit& unit) {
+  time -= time_origin_;
+  if (begins_block_ && time + shift_ < last_time_) shift_ = last_time_ + last_step_ - time;
+  time += shift_;
+  time_above_ = std::exchange(last_time_, time);
+  if (time < time_above_) return false;
+  if (std::isfinite(time_above_)) last_step_ = time - time_above_;
+  time = unit.ToSi(time);
+  return std::isfinite(time);
+}
+
+/// Describes what is wrong with a row.
+std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+  for (const std::size_t column : wanted_) {
+    const TableColumn& of = table.columns[column];
+    if (!std::isnan(of.values[row])) continue;
+    is_missing = of.fault.empty() || of.fault_row != row;
+    return is_missing && !of.missing.empty() ? of.missing : of.fault;
+  }
+  for (const Quantity& quantity : quantities_) {
+    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
+    if (quantity.role != Role::kTime || !(last_time_ < time_above_)) continue;
+    return fmt::format(
+        "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
+        "the rows, split the file where a clock starts again, or rename the column if it holds no "
+        "time",
+        table.file, table.lines[row], quantity.first_column() + 1, last_time_, quantity.unit.symbol,
+        time_above_, quantity.unit.symbol);
+  }
+  return "";
+}
+
+namespace {
 
 /// Returns the numbers of a table's column in the rows of some lines.
 std::vector<double> AtLines(const CsvTable& table, std::size_t column,
@@ -36,30 +291,29 @@ std::vector<double> AtLines(const CsvTable& table, std::size_t column,
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
-void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
+void AddCovariates(const CsvTable& table, const std::vector<std::string>& choices,
                    RecordFile& file) {
-  const CsvTable& table = names.table();
-  const RoleRules& rules = RulesOf(Role::kOther);
+  const ColumnNames names(table);
+  std::vector<std::size_t> read;
   const auto add = [&](std::size_t column, const std::string& name, std::vector<double> values) {
     const std::string unit = names.UnitOf(column, "");
     file.covariates.push_back({.name = name, .index = column + 1, .unit = unit});
     file.record.covariates.push_back({.name = name, .unit = unit, .values = std::move(values)});
+    read.push_back(column);
   };
   const auto is_read = [&](std::size_t column) {
-    return std::ranges::find(file.covariates, column + 1, &ChosenColumn::index) !=
-           file.covariates.end();
+    return std::ranges::find(read, column) != read.end();
   };
   for (const std::string& choice : choices) {
-    const std::size_t column = names.Chosen(choice, rules);
+    const std::size_t column = names.Chosen(choice, Role::kOther);
     const bool is_displacement = column + 1 == file.displacement.index;
     if (is_displacement || column + 1 == file.force.index) {
-      throw InputError(fmt::format("{}: {} is the {} already: choose another column for the {}",
-                                   table.file, names.Label(column),
-                                   is_displacement ? "displacement" : "force", rules.name));
+      Refuse("{}: {} is the {} already: choose another column for the covariate", table.file,
+             names.Label(column), is_displacement ? "displacement" : "force");
     }
     if (is_read(column)) {
-      throw InputError(fmt::format("{}: {} is chosen twice as a {}: choose it once", table.file,
-                                   names.Label(column), rules.name));
+      Refuse("{}: {} is chosen twice as a covariate: choose it once", table.file,
+             names.Label(column));
     }
     std::vector<double> values = AtLines(table, column, file.lines);
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) {
@@ -67,61 +321,28 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     }
     add(column, choice, std::move(values));
   }
-  std::size_t left = kMostOtherColumns;
-  for (std::size_t column = 0; column < table.columns.size() && left > 0; ++column) {
-    const bool has_role = column + 1 == file.displacement.index || column + 1 == file.force.index ||
-                          (file.time && column + 1 == file.time->index) ||
-                          (file.normal_load && column + 1 == file.normal_load->index);
-    if (has_role || is_read(column) || !names.StatesOneUnit(column)) continue;
-    if (table.columns[column].values.empty() || table.columns[column].is_clock) continue;
+  const std::size_t most = choices.size() + kMostOtherColumns;
+  for (const ChosenColumn* of : {&file.displacement, &file.force, file.time ? &*file.time : nullptr,
+                                 file.normal_load ? &*file.normal_load : nullptr}) {
+    if (of != nullptr) read.push_back(of->index - 1);
+  }
+  for (std::size_t column = 0; column < names.size() && file.covariates.size() < most; ++column) {
+    if (is_read(column) || !names.StatesOneUnit(column) || names[column].is_clock) continue;
     std::vector<double> values = AtLines(table, column, file.lines);
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (!changes || !std::ranges::all_of(values, IsNumber)) continue;
     add(column, names.NameOf(column), std::move(values));
-    --left;
   }
-}
-
-/// Returns the columns that are given for a role, else the one that is recognised; none where there
-/// is none.
-Expression FindColumns(const ColumnNames& names, Role role, const std::string& text,
-                       const std::vector<bool>& taken) {
-  Expression columns = names.Read(text, RulesOf(role));
-  const std::optional<std::size_t> found =
-      columns.terms.empty() ? FindColumnOf(names, role, taken) : std::nullopt;
-  if (found) columns.terms = {{*found, 1.0}};
-  return columns;
-}
-
-/// Returns the numbers of a role's columns in SI units.
-/// @throws InputError where one is missing or too large
-std::vector<double> NumbersOf(const ColumnNames& names, const RoleRules& rules,
-                              const Expression& columns, std::vector<std::string>& notes) {
-  const CsvTable& table = names.table();
-  const Unit unit = FindUnit(names, rules, columns, notes);
-  std::vector<double> values(table.rows(), columns.offset);
-  for (const Expression::Term& term : columns.terms) {
-    const std::span<const double> numbers = table.Numbers(term.column);
-    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
-  }
-  for (std::size_t row = 0; row < values.size(); ++row) {
-    const double value = std::exchange(values[row], unit.ToSi(values[row]));
-    if (std::isfinite(values[row])) continue;
-    throw InputError(fmt::format(
-        "{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units", table.file,
-        table.lines[row], columns.terms.front().column + 1, rules.name, value, unit.symbol));
-  }
-  return values;
 }
 
 /// Returns the times of a table, by which another is joined to it; none where it has none.
 std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
-  Expression time = FindColumns(names, Role::kTime, given, std::vector<bool>(names.size()));
+  Expression time = names.Find(given, Role::kTime, std::vector<bool>(names.size()));
   if (time.terms.empty()) return {};
   if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
-  return NumbersOf(names, RulesOf(Role::kTime), time, notes);
+  return names.InUnit(Role::kTime, std::move(time), false, notes).Numbers(table);
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
@@ -129,20 +350,25 @@ std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
 void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& given_time) {
   const std::vector<double> times = TimesOf(table, given_time);
   const std::vector<double> of_other = TimesOf(other, "");
-  const bool by_time = !times.empty() && !of_other.empty() && std::ranges::is_sorted(of_other) &&
-                       std::ranges::all_of(of_other, IsNumber);
+  const bool by_time = !times.empty() && !of_other.empty() && std::ranges::is_sorted(of_other);
   if (!by_time && table.rows() != other.rows()) {
-    throw InputError(fmt::format(
-        "--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
-        table.file, table.rows(), other.file, other.rows()));
+    Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
+           table.file, table.rows(), other.file, other.rows());
   }
   for (const TableColumn& column : other.columns) {
     TableColumn& added = table.columns.emplace_back(column);
     if (!by_time || added.values.empty()) continue;
-    added.values.assign(table.rows(), kNone);
+    added.values.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const auto above = std::ranges::lower_bound(of_other, times[row]);
-      if (above == of_other.end() || !(of_other.front() <= times[row])) continue;
+      if (above == of_other.end() || !(of_other.front() <= times[row])) {
+        // Times of the first file that the other does not cover are no fault.
+        if (added.missing.empty()) {
+          added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
+                                      table.lines[row], other.file);
+        }
+        continue;
+      }
       const auto k = static_cast<std::size_t>(above - of_other.begin());
       const double step = k == 0 ? 0.0 : of_other[k] - of_other[k - 1];
       const double weight = step > 0 ? (of_other[k] - times[row]) / step : 0.0;
@@ -150,12 +376,6 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
                               ? weight * column.values[k - 1] + (1 - weight) * column.values[k]
                               : column.values[k];
     }
-    // Times of the first file that the other does not cover are no fault.
-    const auto hole = std::ranges::find_if_not(added.values, IsNumber);
-    if (hole == added.values.end()) continue;
-    const auto row = static_cast<std::size_t>(hole - added.values.begin());
-    added.missing =
-        fmt::format("{}:{}: {} has no row at this time", table.file, table.lines[row], other.file);
   }
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
   table.notes.push_back(fmt::format("{}: its columns follow those of {}, {}", other.file,
@@ -182,7 +402,7 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   }
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
-  AddCovariates(ColumnNames(table), columns.covariates, file);
+  AddCovariates(table, columns.covariates, file);
   return std::move(file);
 }
 
@@ -195,28 +415,76 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   return RecordOf(table, columns);
 }
 
-std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
-                                  const std::string& column) {
-  const Role role = quantity == Imposed::kDisplacement ? Role::kDisplacement
-                    : quantity == Imposed::kForce      ? Role::kForce
-                                                       : Role::kNormalLoad;
-  const ColumnNames names(table);
-  const std::vector<bool> taken(names.size());
-  Expression columns = names.Read(column, RulesOf(role));
-  if (columns.terms.empty()) {
-    const auto is_first = [&](Role other) {
-      return other != role && FindColumnOf(names, other, taken) == std::size_t{0};
-    };
-    const bool first_is_another =
-        is_first(Role::kTime) || is_first(Role::kForce) || is_first(Role::kDisplacement);
-    const auto found = first_is_another ? FindColumnOf(names, role, taken) : std::nullopt;
-    columns.terms = {{found.value_or(0), 1.0}};
+struct RecordStream::State {
+  State(const std::filesystem::path& path, const RecordColumns& columns)
+      : pieces(path, columns.encoding),
+        name(NameOfInput(path)),
+        rows(pieces.Next()),
+        layout(FindLayout(rows, name)),
+        builder(FirstRows(), columns),
+        reader(layout, name, columns.skip_broken_rows, builder.wanted()) {
+    if (!columns.with.empty()) {
+      Refuse("--with: a record that is read in pieces is of one file: join them before");
+    }
+    rows.remove_prefix(layout.data_offset);
+    std::vector<std::string>& notes = builder.file().notes;
+    if (!pieces.note().empty()) notes.insert(notes.begin(), pieces.note());
   }
-  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
-                                                   : DimensionOfUnit(columns.unit);
-  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
-  std::vector<std::string> notes;  // SI is the documented default here
-  return NumbersOf(names, RulesOf(role, is_torsional && role != Role::kForce), columns, notes);
+
+  /// The table of the first rows, by which the content of the columns is judged: what becomes of
+  /// those at fault is for Next() to say.
+  CsvTable FirstRows() const {
+    constexpr std::size_t kJudged = LinePieces::kPiece / 8;  // [bytes]
+    TableReader first(layout, name, /*skip_broken=*/true);
+    const std::string_view data = rows.substr(layout.data_offset);
+    first.Read(data.substr(0, std::min(data.find('\n', kJudged), data.size() - 1) + 1));
+    return std::move(first.table());
+  }
+
+  LinePieces pieces;
+  std::string name;
+  std::string_view rows;  // of the first piece
+  Layout layout;
+  RecordBuilder builder;
+  TableReader reader;
+  std::string refusal;  // of a row that is reached next
+};
+
+RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& columns)
+    : state_(std::make_unique<State>(path, columns)) {}
+RecordStream::~RecordStream() = default;
+
+const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
+
+bool RecordStream::Next(Samples& samples) {
+  auto& [pieces, name, rows, layout, builder, reader, refusal] = *state_;
+  for (const auto column : loop::kRecordColumns) (samples.*column).clear();
+  samples.lines.clear();
+  while (samples.lines.empty()) {
+    if (!refusal.empty()) throw InputError(refusal);
+    const std::string_view text = rows.empty() ? pieces.Next() : std::exchange(rows, {});
+    reader.Clear();
+    reader.Read(text);
+    if (text.empty()) reader.Finish();
+    refusal = builder.Add(reader.table(), samples);
+    if (refusal.empty()) refusal = reader.fault();
+    if (refusal.empty()) refusal = builder.TooManyLeftOut();
+    if (text.empty() && refusal.empty()) return false;
+  }
+  return true;
 }
+
+LeftOutRows RecordStream::left_out() const {
+  const LeftOutRows& missing = state_->builder.left_out();
+  LeftOutRows all = state_->reader.skipped();
+  if (missing.count > 0 && (all.count == 0 || missing.first_line < all.first_line)) {
+    all.first_line = missing.first_line;
+    all.fault = missing.fault;
+  }
+  all.count += missing.count;
+  return all;
+}
+
+std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
 
 }  // namespace mindahl::io

@@ -1,68 +1,44 @@
 #include "io/roles.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 #include <utility>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
-#include "io/source.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::io {
 namespace {
 
-std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
-  const std::optional<Unit> force = ForceUnit(symbol);
-  return force ? force : TorqueUnit(symbol);
-}
-
-std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
-
+// By role.
 constexpr std::array kRules = {
-    RoleRules{Role::kDisplacement, "displacement", "--displacement", "m", LengthUnit,
-              LengthUnitSymbols},
-    RoleRules{Role::kForce, "force", "--force", "N", ForceUnit, ForceUnitSymbols},
-    RoleRules{Role::kTime, "time", "--time", "s", TimeUnit, TimeUnitSymbols},
-    RoleRules{Role::kNormalLoad, "normal load", "--normal-load-column", "N", ForceUnit,
-              ForceUnitSymbols},
-    RoleRules{Role::kOther, "covariate", "--covariate", "", nullptr, nullptr},
+    RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle},
+    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque},
+    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime},
+    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kForceOrTorque},
+    RoleRules{"covariate", "--covariate", Dimension::kOther, Dimension::kOther},
 };
-// A joint carries a torque, a twisted contact a normal load.
-constexpr std::array kTorsionalRules = {
-    RoleRules{Role::kDisplacement, "displacement", "--displacement", "rad", AngleUnit,
-              AngleUnitSymbols},
-    RoleRules{Role::kForce, "force", "--force", "N m", TorqueUnit, TorqueUnitSymbols},
-    kRules[2],
-    RoleRules{Role::kNormalLoad, "normal load", "--normal-load-column", "N", ForceOrTorqueUnit,
-              ForceOrTorqueUnitSymbols},
-};
+constexpr std::array kRolesOfRecord = {Role::kDisplacement, Role::kForce, Role::kTime,
+                                       Role::kNormalLoad};
 
 /// Returns how a column's numbers behave.
 ColumnNames::Column ObservedIn(std::span<const double> values) {
   constexpr double kGoodPart = 0.4;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double least = kInfinity;
-  double greatest = -kInfinity;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
   double rise = 0.0;
   double fall = 0.0;
-  bool rises = false;
-  bool falls = false;
   std::size_t holes = 0;
-  double last = std::numeric_limits<double>::quiet_NaN();
   for (const double value : values) {
     if (std::isnan(value)) {
       ++holes;
       continue;
     }
-    rises = rises || value > last;
-    falls = falls || value < last;
-    last = value;
     least = std::min(least, value);
     greatest = std::max(greatest, value);
     rise = std::max(rise, value - least);
@@ -71,23 +47,12 @@ ColumnNames::Column ObservedIn(std::span<const double> values) {
   return {
       .name = {},
       .is_numeric = !values.empty() && 2 * holes <= values.size(),
-      .is_constant = !rises && !falls,
-      .is_monotone = rises != falls,
+      .is_constant = rise == 0 && fall == 0,
+      .is_monotone = (rise > 0) != (fall > 0),
       .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least)};
 }
 
-/// Refuses columns, "'x' (column 1) and 'd' (column 2) may each be the displacement: give …".
-[[noreturn]] void ThrowAmbiguous(const ColumnNames& names, const RoleRules& rules,
-                                 const std::vector<std::size_t>& columns) {
-  std::string choices;
-  for (const std::size_t column : columns) {
-    choices += fmt::format("{}{} {}", choices.empty() ? "" : " or ", rules.option, column + 1);
-  }
-  throw InputError(fmt::format("{}: {} may each be the {}: give {}", names.Header(),
-                               names.Labels(columns), rules.name, choices));
-}
-
-/// Evidence that a column has a role: 0 is none. A unit counts more than a word.
+/// Returns the evidence that a column has a role: 0 is none. A unit counts more than a word.
 int EvidenceFor(const ColumnNames::Column& column, Role role) {
   constexpr int kUnit = 100;
   constexpr int kWord = 50;
@@ -96,11 +61,11 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
   constexpr int kContrary = 60;  // a unit of the role, but a word of another
   const NameEvidence& evidence = column.name.evidence;
   const bool has_word = !evidence.word.empty();
-  const bool is_named = has_word && evidence.role == role;
+  const bool is_named = evidence.names(role);
   // A force in newton, unless there is a better one.
   if (role == Role::kForce && evidence.word == "f n") return 1;
   // A normal load is one by its name alone.
-  const bool is_load = has_word && evidence.role == Role::kNormalLoad;
+  const bool is_load = evidence.names(Role::kNormalLoad);
   if (!is_named && (role == Role::kNormalLoad || is_load)) return 0;
   const bool is_of_unit = MayHaveRole(column.dimension, role);
   int found = 0;
@@ -117,100 +82,90 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
   return found > kLesser && evidence.is_lesser ? found - kLesser : found;
 }
 
-enum class Kind { kAny, kLinear, kAngular };
-
-/// Length and force, or angle and torque, by the unit or else the name.
-Kind KindOf(const ColumnNames& names, std::size_t column, std::string_view unit) {
+/// Returns whether a column is an angle or a torque, or else a length or a force, by the unit or
+/// else the name; empty where neither says.
+std::optional<bool> IsAngular(const ColumnNames& names, std::size_t column, std::string_view unit) {
   const Dimension dimension = unit.empty() ? names[column].dimension : DimensionOfUnit(unit);
-  if (dimension == Dimension::kAngle || dimension == Dimension::kTorque) return Kind::kAngular;
-  if (dimension == Dimension::kLength || dimension == Dimension::kForce) return Kind::kLinear;
-  return names[column].name.evidence.is_angular ? Kind::kAngular : Kind::kAny;
+  if (dimension == Dimension::kAngle || dimension == Dimension::kTorque) return true;
+  if (dimension == Dimension::kLength || dimension == Dimension::kForce) return false;
+  return names[column].name.evidence.is_angular ? std::optional(true) : std::nullopt;
 }
 
 class RoleAssigner {
  public:
   RoleAssigner(const ColumnNames& names, std::vector<std::string>& notes)
-      : names_(names), notes_(notes), taken_(names.size()) {}
+      : names_(names), file_(names.table().file), notes_(notes), taken_(names.size()) {}
 
-  Roles Assign(const RecordColumns& columns) {
-    Roles roles;
-    roles.displacement = TakeGiven(columns.displacement, Role::kDisplacement);
-    roles.force = TakeGiven(columns.force, Role::kForce);
-    roles.time = TakeGiven(columns.time, Role::kTime);
-    roles.normal_load = TakeGiven(columns.normal_load, Role::kNormalLoad);
-    const bool finds_displacement = roles.displacement.terms.empty();
-    const bool finds_force = roles.force.terms.empty();
-    FindPair(roles);
-    if (roles.time.terms.empty() && !columns.sample_rate) TakeFound(Role::kTime, roles.time);
+  Roles Assign(const RecordColumns& asked) {
+    for (const Role role : kRolesOfRecord) TakeGiven(AskedOf(asked, role), role);
+    const bool finds_displacement = IsMissing(Role::kDisplacement);
+    const bool finds_force = IsMissing(Role::kForce);
+    FindPair();
+    if (!asked.sample_rate) TakeFound(Role::kTime, taken_);
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     std::vector<bool> taken = taken_;
-    for (const std::string& covariate : columns.covariates) {
-      taken_[names_.Chosen(covariate, RulesOf(Role::kOther))] = true;
+    for (const std::string& covariate : asked.covariates) {
+      taken[names_.Chosen(covariate, Role::kOther)] = true;
     }
-    if (roles.normal_load.terms.empty()) TakeFound(Role::kNormalLoad, roles.normal_load);
-    taken_ = std::move(taken);
-    TakeLeft(roles);
-    const std::size_t displacement = roles.displacement.terms.front().column;
-    const std::size_t force = roles.force.terms.front().column;
-    // A word is enough for a displacement that only grows, a force needs its unit.
-    if (finds_displacement && roles.displacement.unit.empty()) {
-      RequireMoving(displacement, force, Role::kDisplacement, 1);
-    }
-    if (finds_force && roles.force.unit.empty()) {
-      RequireMoving(force, displacement, Role::kForce, 100);
-    }
-    roles.is_torsional = RequireOneKind(roles);
-    return roles;
+    TakeFound(Role::kNormalLoad, taken);
+    TakeLeft();
+    // A word is enough for a displacement that only grows, but for the X of a report where another
+    // column may be meant; a force needs its unit.
+    const bool may_be_time = names_[ColumnOf(Role::kDisplacement)].name.evidence.word == "X" &&
+                             std::ranges::any_of(LeftColumns(), [&](std::size_t column) {
+                               return names_[column].goes_to_and_fro;
+                             });
+    if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, may_be_time ? 100 : 1);
+    if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement, 100);
+    RequireOneKind();
+    return std::move(roles_);
   }
 
  private:
-  Expression TakeGiven(const std::string& text, Role role) {
-    const RoleRules& rules = RulesOf(role);
-    Expression given = names_.Read(text, rules);
-    for (const Expression::Term& term : given.terms) {
+  bool IsMissing(Role role) { return roles_[role].terms.empty(); }
+  std::size_t ColumnOf(Role role) { return roles_[role].terms.front().column; }
+  void Take(std::size_t column, Role role) {
+    taken_[column] = true;
+    roles_[role].terms = {{column, 1.0}};
+  }
+
+  void TakeGiven(const std::string& text, Role role) {
+    roles_[role] = names_.Read(text, role);
+    for (const Expression::Term& term : roles_[role].terms) {
       if (taken_[term.column]) {
-        throw InputError(
-            fmt::format("{}: {} is chosen for the {} and for another quantity: choose two columns",
-                        names_.table().file, names_.Label(term.column), rules.name));
+        Refuse("{}: {} is chosen for the {} and for another quantity: choose two columns", file_,
+               names_.Label(term.column), RulesOf(role).name);
       }
       taken_[term.column] = true;
     }
-    return given;
   }
 
-  void Take(std::size_t column, Expression& role) {
-    taken_[column] = true;
-    role.terms = {{column, 1.0}};
-  }
-
-  void TakeFound(Role role, Expression& found) {
-    const std::optional<std::size_t> column = FindColumnOf(names_, role, taken_);
-    if (column) return Take(*column, found);
-    for (std::size_t text = 0; text < taken_.size() && role == Role::kTime; ++text) {
-      const NameEvidence& evidence = names_[text].name.evidence;
-      if (evidence.word.empty() || evidence.role != role || names_[text].is_numeric) continue;
-      notes_.push_back(fmt::format("{}: time {} holds no numbers: left out", names_.table().file,
-                                   names_.Label(text)));
+  void TakeFound(Role role, const std::vector<bool>& taken) {
+    if (!IsMissing(role)) return;
+    const Expression found = names_.Find("", role, taken);
+    if (!found.terms.empty()) return Take(found.terms.front().column, role);
+    for (std::size_t text = 0; text < taken.size() && role == Role::kTime; ++text) {
+      if (!names_[text].name.evidence.names(role) || names_[text].is_numeric) continue;
+      notes_.push_back(
+          fmt::format("{}: time {} holds no numbers: left out", file_, names_.Label(text)));
     }
-    if (found.unit.empty()) return;
-    const RoleRules& rules = RulesOf(role);
-    throw InputError(fmt::format("{}: {} [{}]: no column is recognised as the {}: name it",
-                                 names_.table().file, rules.option, found.unit, rules.name));
+    const std::string& unit = roles_[role].unit;
+    if (unit.empty()) return;
+    Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
+           unit, RulesOf(role).name);
   }
 
   struct Candidate {
     std::optional<std::size_t> column;
     int evidence = 0;
-    Kind kind = Kind::kAny;
+    std::optional<bool> is_angular;
   };
 
   /// Returns the columns that may have a role: the one that is given, else those with evidence; of
   /// these, those that go to and fro, if any does. There is always one, perhaps without a column.
-  std::vector<Candidate> CandidatesFor(Role role, const Expression& given) {
-    if (!given.terms.empty()) {
-      const std::size_t column = given.terms.front().column;
-      return {{column, 0, KindOf(names_, column, given.unit)}};
-    }
+  std::vector<Candidate> CandidatesFor(Role role) {
+    const std::string& unit = roles_[role].unit;
+    if (!IsMissing(role)) return {{ColumnOf(role), 0, IsAngular(names_, ColumnOf(role), unit)}};
     std::vector<Candidate> moving;
     std::vector<Candidate> unmoved;
     std::vector<std::size_t> all;
@@ -219,7 +174,7 @@ class RoleAssigner {
       if (taken_[column] || !names_[column].is_numeric || evidence <= 0) continue;
       all.push_back(column);
       (names_[column].goes_to_and_fro ? moving : unmoved)
-          .push_back({column, evidence, KindOf(names_, column, given.unit)});
+          .push_back({column, evidence, IsAngular(names_, column, unit)});
     }
     if (all.empty()) return {Candidate{}};
     if (moving.empty()) return unmoved;
@@ -227,60 +182,64 @@ class RoleAssigner {
       return of.empty() ? 0 : std::ranges::max(of, {}, &Candidate::evidence).evidence;
     };
     if (most(unmoved) >= most(moving)) {
-      notes_.push_back(fmt::format("{}: {} may each be the {}: one that goes to and fro is taken",
-                                   names_.table().file, names_.Labels(all), RulesOf(role).name));
+      notes_.push_back(fmt::format("{}: {}: one that goes to and fro is taken", file_,
+                                   names_.MayEachBe(role, all)));
     }
     return moving;
   }
 
   /// Takes the displacement and the force of the most evidence that go together.
-  void FindPair(Roles& roles) {
+  void FindPair() {
     constexpr int kMismatch = 40;
-    const auto displacements = CandidatesFor(Role::kDisplacement, roles.displacement);
-    const auto forces = CandidatesFor(Role::kForce, roles.force);
+    const std::vector<Candidate> displacements = CandidatesFor(Role::kDisplacement);
     int most = std::numeric_limits<int>::min();
-    std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> best;
-    for (const Candidate& x : displacements) {
-      for (const Candidate& f : forces) {
+    std::set<std::size_t> of_displacement;
+    std::set<std::size_t> of_force;
+    for (const Candidate& f : CandidatesFor(Role::kForce)) {
+      for (const Candidate& x : displacements) {
         if (x.column && x.column == f.column) continue;
-        const bool differs = x.kind != f.kind && x.kind != Kind::kAny && f.kind != Kind::kAny;
+        const bool differs = x.is_angular && f.is_angular && x.is_angular != f.is_angular;
         const int evidence = x.evidence + f.evidence - (differs ? kMismatch : 0);
         if (evidence < most) continue;
-        if (evidence > most) best.clear();
-        most = evidence;
-        best.emplace_back(x.column, f.column);
+        if (evidence > std::exchange(most, evidence)) {
+          of_displacement.clear();
+          of_force.clear();
+        }
+        if (x.column) of_displacement.insert(*x.column);
+        if (f.column) of_force.insert(*f.column);
       }
     }
-    if (best.empty()) best = {{displacements.front().column, std::nullopt}};
-    for (const Role role : {Role::kDisplacement, Role::kForce}) {
-      std::vector<std::size_t> columns;
-      for (const auto& [displacement, force] : best) {
-        const auto& column = role == Role::kForce ? force : displacement;
-        if (column && std::ranges::find(columns, *column) == columns.end()) {
-          columns.push_back(*column);
-        }
+    const std::optional<std::size_t> first = displacements.front().column;
+    if (most == std::numeric_limits<int>::min() && first) of_displacement.insert(*first);
+    for (const auto& [role, columns] :
+         {std::pair(Role::kDisplacement, of_displacement), std::pair(Role::kForce, of_force)}) {
+      if (!IsMissing(role) || columns.empty()) continue;
+      const bool has_other = !of_displacement.empty() || !IsMissing(Role::kDisplacement);
+      if (columns.size() > 1 && !has_other && LeftColumns().empty()) {
+        ThrowNoColumn(Role::kDisplacement);
       }
-      Expression& taken = role == Role::kForce ? roles.force : roles.displacement;
-      if (!taken.terms.empty() || columns.empty()) continue;
-      if (columns.size() > 1) ThrowAmbiguous(names_, RulesOf(role), columns);
-      Take(columns.front(), taken);
+      if (columns.size() > 1) names_.ThrowAmbiguous(role, {columns.begin(), columns.end()});
+      Take(*columns.begin(), role);
     }
   }
 
-  /// Gives what no name or unit decides to the columns that are left, if they are as many.
-  void TakeLeft(Roles& roles) {
-    std::vector<std::pair<Role, Expression*>> missing;
-    if (roles.displacement.terms.empty()) {
-      missing.emplace_back(Role::kDisplacement, &roles.displacement);
-    }
-    if (roles.force.terms.empty()) missing.emplace_back(Role::kForce, &roles.force);
-    if (missing.empty()) return;
+  /// Returns the columns of numbers of which neither name nor unit says anything.
+  std::vector<std::size_t> LeftColumns() const {
     std::vector<std::size_t> left;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
       const bool is_unknown = of.dimension == Dimension::kNone && of.name.evidence.word.empty();
       if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
     }
+    return left;
+  }
+
+  /// Gives what no name or unit decides to the columns that are left, if they are as many.
+  void TakeLeft() {
+    std::vector<Role> missing = {Role::kDisplacement, Role::kForce};
+    std::erase_if(missing, [&](Role role) { return !IsMissing(role); });
+    if (missing.empty()) return;
+    std::vector<std::size_t> left = LeftColumns();
     std::string why;
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
@@ -288,12 +247,12 @@ class RoleAssigner {
       });
       why = ", of those that neither stay nor only grow";
     }
-    if (left.size() != missing.size()) ThrowNoColumn(missing.front().first);
+    if (left.size() != missing.size()) ThrowNoColumn(missing.front());
     for (std::size_t k = 0; k < left.size(); ++k) {
-      Take(left[k], *missing[k].second);
+      Take(left[k], missing[k]);
       notes_.push_back(
-          fmt::format("{}: no column name is recognised as {}: taken from {}, {}{}",
-                      names_.table().file, RulesOf(missing[k].first).name, names_.Label(left[k]),
+          fmt::format("{}: no column name is recognised as {}: taken from {}, {}{}", file_,
+                      RulesOf(missing[k]).name, names_.Label(left[k]),
                       left.size() == 1 ? "the only one left" : "the two left in their order", why));
     }
   }
@@ -304,69 +263,103 @@ class RoleAssigner {
       if (EvidenceFor(names_[column], role) <= 0 || names_[column].is_numeric) continue;
       const TableColumn& of = names_.table().columns[column];
       if (!of.values.empty() && !of.fault.empty()) throw InputError(of.fault);
-      throw InputError(fmt::format(
+      Refuse(
           "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
-          names_.table().file, names_.Label(column), rules.name, rules.option));
+          file_, names_.Label(column), rules.name, rules.option);
     }
-    throw InputError(fmt::format(
-        "{}: no column for the {}: {}", names_.table().file, rules.name,
-        names_.size() == 1
-            ? "the file has 1 column"
-            : fmt::format("{}: name the column of the displacement with --displacement and "
-                          "that of the force with --force, by name or number",
-                          names_.Listing())));
+    Refuse("{}: no column for the {}: {}", file_, rules.name,
+           names_.size() == 1 ? "the file has 1 column"
+                              : names_.Listing() +
+                                    ": name the column of the displacement with --displacement "
+                                    "and that of the force with --force, by name or number");
   }
 
-  /// Refuses a column of little evidence whose numbers are those of a clock or a counter.
-  /// @param other  goes to and fro
-  void RequireMoving(std::size_t column, std::size_t other, Role role, int least_evidence) const {
-    if (EvidenceFor(names_[column], role) >= least_evidence || !names_[column].is_monotone ||
-        !names_[other].goes_to_and_fro) {
+  /// Refuses a column of little evidence whose numbers are those of a clock or a counter, where
+  /// those of the other role go to and fro.
+  void RequireMoving(Role role, Role other, int least_evidence) {
+    const std::size_t column = ColumnOf(role);
+    if (!roles_[role].unit.empty() || EvidenceFor(names_[column], role) >= least_evidence ||
+        !names_[column].is_monotone || !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
     }
-    const std::vector<double>& values = names_.table().columns[column].values;
+    const CsvTable& table = names_.table();
+    const std::vector<double>& values = table.columns[column].values;
     const auto last = std::find_if(values.rbegin(), values.rend(),
                                    [](double value) { return !std::isnan(value); });
-    throw InputError(fmt::format(
+    Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "
         "{} with {}, by name or number: {}",
-        names_.table().file, names_.table().lines.front(), column + 1, names_.Label(column),
-        *last > values.front() ? "grows" : "falls", names_.Label(other), RulesOf(role).name,
-        RulesOf(role).option, names_.Listing()));
+        file_, table.lines.front(), column + 1, names_.Label(column),
+        *last > values.front() ? "grows" : "falls", names_.Label(ColumnOf(other)),
+        RulesOf(role).name, RulesOf(role).option, names_.Listing());
   }
 
-  /// @returns true for an angle and a torque
-  bool RequireOneKind(const Roles& roles) const {
-    const std::size_t displacement = roles.displacement.terms.front().column;
-    const std::size_t force = roles.force.terms.front().column;
-    const Kind of_displacement = KindOf(names_, displacement, roles.displacement.unit);
-    const Kind of_force = KindOf(names_, force, roles.force.unit);
-    const bool is_angular = of_displacement == Kind::kAngular || of_force == Kind::kAngular;
-    if (!is_angular || (of_displacement != Kind::kLinear && of_force != Kind::kLinear)) {
-      return is_angular;
-    }
-    const auto unit = [&](const Expression& role, const char* implied) {
+  void RequireOneKind() {
+    const std::size_t displacement = ColumnOf(Role::kDisplacement);
+    const std::size_t force = ColumnOf(Role::kForce);
+    const auto turns = IsAngular(names_, displacement, roles_[Role::kDisplacement].unit);
+    const auto twists = IsAngular(names_, force, roles_[Role::kForce].unit);
+    roles_.is_torsional = turns == true || twists == true;
+    if (!roles_.is_torsional || (turns != false && twists != false)) return;
+    const auto unit = [&](Role role) {
       const std::string stated =
-          role.unit.empty() ? names_.UnitOf(role.terms.front().column, "") : role.unit;
-      return stated.empty() ? std::string(implied) : stated;
+          roles_[role].unit.empty() ? names_.UnitOf(ColumnOf(role), "") : roles_[role].unit;
+      return stated.empty() ? std::string(UnitsOf(RulesOf(role).angular).si) : stated;
     };
-    throw InputError(fmt::format(
+    Refuse(
         "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
         "choose other columns, or give their units, as in --force '{} [N]'",
-        names_.table().file, names_.Label(displacement), unit(roles.displacement, "rad"),
-        names_.Label(force), unit(roles.force, "N m"), force + 1));
+        file_, names_.Label(displacement), unit(Role::kDisplacement), names_.Label(force),
+        unit(Role::kForce), force + 1);
   }
 
   const ColumnNames& names_;
+  const std::string& file_;
   std::vector<std::string>& notes_;
   std::vector<bool> taken_;
+  Roles roles_;
 };
 
 }  // namespace
 
-const RoleRules& RulesOf(Role role, bool is_torsional) {
-  const auto place = static_cast<std::size_t>(role);
-  return is_torsional ? kTorsionalRules.at(place) : kRules.at(place);
+const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
+
+const std::string& AskedOf(const RecordColumns& columns, Role role) {
+  return role == Role::kDisplacement ? columns.displacement
+         : role == Role::kForce      ? columns.force
+         : role == Role::kTime       ? columns.time
+                                     : columns.normal_load;
+}
+
+std::vector<double> Quantity::Values(const CsvTable& table) const {
+  std::vector<double> values = table.columns[first_column()].values;
+  if (sum.is_plain()) return values;
+  std::ranges::fill(values, sum.offset);
+  for (const Expression::Term& term : sum.terms) {
+    const std::vector<double>& numbers = table.columns[term.column].values;
+    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
+  }
+  return values;
+}
+
+std::vector<double> Quantity::Numbers(const CsvTable& table) const {
+  for (const Expression::Term& term : sum.terms) static_cast<void>(table.Numbers(term.column));
+  std::vector<double> values = Values(table);
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    values[row] = unit.ToSi(values[row]);
+    if (!std::isfinite(values[row])) throw InputError(TooLarge(table, row));
+  }
+  return values;
+}
+
+std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
+  double value = sum.offset;
+  for (const auto& [column, weight] : sum.terms)
+    value += weight * table.columns[column].values[row];
+  if (std::isfinite(unit.ToSi(value))) return "";
+  return fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units",
+                     table.file, table.lines[row], first_column() + 1, RulesOf(role).name, value,
+                     unit.symbol);
 }
 
 ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
@@ -381,7 +374,7 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
   }
 }
 
-std::optional<std::size_t> ColumnNames::Named(std::string_view name, const RoleRules& rules) const {
+std::optional<std::size_t> ColumnNames::Named(std::string_view name, Role role) const {
   const std::string lower = LowerCase(name);
   const auto matches = [&](std::size_t column, int strictness) {
     const std::string& full = table_.columns[column].name;
@@ -395,29 +388,31 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, const RoleR
     for (std::size_t column = 0; column < size(); ++column) {
       if (matches(column, strictness)) found.push_back(column);
     }
-    if (found.size() > 1) ThrowAmbiguous(*this, rules, found);
+    if (found.size() > 1) ThrowAmbiguous(role, found);
     if (found.size() == 1) return found.front();
   }
   return std::nullopt;
 }
 
-Expression ColumnNames::Read(const std::string& text, const RoleRules& rules) const {
-  const auto unknown = [&](std::string_view name) {
-    std::vector<std::string> known;
-    known.reserve(size());
-    for (const Column& column : columns_) known.push_back(ForMessage(column.name.name));
-    return fmt::format("no column is called '{}' (for the {}){} {}", name, rules.name,
-                       DidYouMean(name, known), Listing());
-  };
-  return ReadExpression(
-      text, size(), [&](std::string_view name) { return Named(name, rules); },
-      fmt::format("{}: {} {}", table_.file, rules.option, text), unknown);
+Expression ColumnNames::Find(const std::string& text, Role role,
+                             const std::vector<bool>& taken) const {
+  Expression columns = Read(text, role);
+  if (!columns.terms.empty()) return columns;
+  int most = 0;
+  for (std::size_t column = 0; column < size(); ++column) {
+    if (taken[column] || !columns_[column].is_numeric) continue;
+    const int evidence = EvidenceFor(columns_[column], role);
+    if (evidence <= most) continue;
+    most = evidence;
+    columns.terms = {{column, 1.0}};
+  }
+  return columns;
 }
 
-std::size_t ColumnNames::Chosen(const std::string& text, const RoleRules& rules) const {
-  const Expression chosen = Read(text, rules);
+std::size_t ColumnNames::Chosen(const std::string& text, Role role) const {
+  const Expression chosen = Read(text, role);
   if (!chosen.is_plain()) {
-    throw InputError(fmt::format("{}: {} {}: must be one column", table_.file, rules.option, text));
+    Refuse("{}: {} {}: must be one column", table_.file, RulesOf(role).option, text);
   }
   return chosen.terms.front().column;
 }
@@ -432,10 +427,9 @@ std::string ColumnNames::UnitOf(std::size_t column, std::string_view option) con
   const std::string& unit = columns_[column].name.unit;
   const std::string of_row(WithoutBrackets(table_.columns[column].unit));
   if (StatesOneUnit(column)) return unit.empty() ? of_row : unit;
-  throw InputError(fmt::format(
-      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}", Header(),
-      Label(column), unit, of_row,
-      option.empty() ? "" : fmt::format(" with {} '{} [{}]'", option, column + 1, unit)));
+  Refuse("{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}", Header(),
+         Label(column), unit, of_row,
+         option.empty() ? "" : fmt::format(" with {} '{} [{}]'", option, column + 1, unit));
 }
 
 std::string ColumnNames::NameOf(std::size_t column) const {
@@ -451,93 +445,87 @@ std::string ColumnNames::Label(std::size_t column) const {
   return fmt::format("'{}' (column {})", ForMessage(name), column + 1);
 }
 
-std::string ColumnNames::Labels(const std::vector<std::size_t>& columns) const {
-  std::string labels;
+std::string ColumnNames::MayEachBe(Role role, const std::vector<std::size_t>& columns) const {
+  std::vector<std::string> labels;
+  labels.reserve(columns.size());
+  for (const std::size_t column : columns) labels.push_back(Label(column));
+  return fmt::format("{} may each be the {}", fmt::join(labels, " and "), RulesOf(role).name);
+}
+
+void ColumnNames::ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const {
+  std::vector<std::string> choices;
+  choices.reserve(columns.size());
   for (const std::size_t column : columns) {
-    labels += fmt::format("{}{}", labels.empty() ? "" : " and ", Label(column));
+    choices.push_back(fmt::format("{} {}", RulesOf(role).option, column + 1));
   }
-  return labels;
+  Refuse("{}: {}: give {}", Header(), MayEachBe(role, columns), fmt::join(choices, " or "));
 }
 
 std::string ColumnNames::Listing() const {
   if (std::ranges::all_of(table_.columns, [](auto& column) { return column.name.empty(); })) {
     return fmt::format("the file names none of its {} columns: choose by number", size());
   }
-  std::string listing;
-  for (std::size_t column = 0; column < size(); ++column) {
-    listing += fmt::format("{}'{}' ({})", column == 0 ? "the columns are " : ", ",
-                           ForMessage(table_.columns[column].name), column + 1);
+  std::vector<std::string> listed;
+  listed.reserve(size());
+  for (const TableColumn& column : table_.columns) {
+    listed.push_back(fmt::format("'{}' ({})", ForMessage(column.name), listed.size() + 1));
   }
-  return listing;
+  return fmt::format("the columns are {}", fmt::join(listed, ", "));
 }
 
 std::string ColumnNames::Header() const {
   return fmt::format("{}:{}", table_.file, table_.header_line);
 }
 
-Unit FindUnit(const ColumnNames& names, const RoleRules& rules, const Expression& columns,
-              std::vector<std::string>& notes) {
-  const std::size_t first = columns.terms.front().column;
-  const std::string& file = names.table().file;
-  const auto throw_pressure = [&](const std::string& where, std::string_view unit) {
-    throw InputError(fmt::format(
-        "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is an "
-        "additional force, for which there is --covariate",
-        where, names.Label(first), unit, rules.name));
-  };
-  if (!columns.unit.empty()) {
-    if (const auto unit = rules.find_unit(columns.unit)) return *unit;
-    if (IsPressureUnit(columns.unit)) throw_pressure(file, columns.unit);
-    throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}", file,
-                                 rules.name, ForMessage(columns.unit), rules.unit_symbols()));
-  }
-  const std::string stated = names.UnitOf(first, rules.option);
-  const std::optional<Unit> unit = rules.find_unit(stated);
-  for (const Expression::Term& term : columns.terms) {
-    if (names.UnitOf(term.column, rules.option) == stated) continue;
-    throw InputError(fmt::format(
-        "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
-        "as "
-        "in {} '… [{}]'",
-        file, names.Label(first), names.Label(term.column), rules.option, rules.si_unit));
-  }
-  if (unit) return *unit;
-  const Unit si{.symbol = std::string(rules.si_unit)};
-  if (columns.is_scaled && !stated.empty()) return si;
-  if (stated.empty()) {
-    if (rules.role != Role::kTime || columns.terms.size() > 1) {
-      notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                  file, rules.name, names.Label(first), rules.si_unit, rules.option,
-                                  first + 1, rules.si_unit));
+Quantity ColumnNames::InUnit(Role role, Expression sum, bool is_torsional,
+                             std::vector<std::string>& notes) const {
+  const auto& [name, option, linear, angular] = RulesOf(role);
+  const UnitsOfDimension& units = UnitsOf(is_torsional ? angular : linear);
+  const std::size_t first = sum.terms.front().column;
+  std::string where = table_.file;
+  const auto found = [&](const std::string& symbol) {
+    std::optional<Unit> unit = units.find(symbol);
+    if (!unit && IsPressureUnit(symbol)) {
+      Refuse(
+          "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is "
+          "an additional force, for which there is --covariate",
+          where, Label(first), symbol, name);
     }
-    return si;
+    return unit;
+  };
+  if (!sum.unit.empty()) {
+    if (const auto unit = found(sum.unit)) return {role, std::move(sum), *unit};
+    Refuse("{}: the {} unit '{}' is not known: must be one of {}", where, name,
+           ForMessage(sum.unit), units.symbols());
   }
-  const std::string where = fmt::format("{}:{}", names.Header(), first + 1);
-  if (IsPressureUnit(stated)) throw_pressure(where, stated);
-  throw InputError(fmt::format(
-      "{}: the unit '{}' of {} is not known for the {}: must be one of {}, or choose the unit with "
-      "{} '{} [{}]'",
-      where, ForMessage(stated), names.Label(first), rules.name, rules.unit_symbols(), rules.option,
-      first + 1, rules.si_unit));
+  const std::string stated = UnitOf(first, option);
+  for (const Expression::Term& term : sum.terms) {
+    if (UnitOf(term.column, option) == stated) continue;
+    Refuse(
+        "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
+        "as in {} '… [{}]'",
+        where, Label(first), Label(term.column), option, units.si);
+  }
+  const bool is_of_columns = !sum.is_scaled || units.find(stated);
+  if (!stated.empty() && is_of_columns) {
+    where = fmt::format("{}:{}", Header(), first + 1);
+    if (const auto unit = found(stated)) return {role, std::move(sum), *unit};
+    Refuse(
+        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, or choose the unit "
+        "with {} '{} [{}]'",
+        where, ForMessage(stated), Label(first), name, units.symbols(), option, first + 1,
+        units.si);
+  }
+  if (stated.empty() && (role != Role::kTime || sum.terms.size() > 1)) {
+    notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so", where,
+                                name, Label(first), units.si, option, first + 1, units.si));
+  }
+  return {role, std::move(sum), {.symbol = std::string(units.si)}};
 }
 
 Roles AssignRoles(const ColumnNames& names, const RecordColumns& columns,
                   std::vector<std::string>& notes) {
   return RoleAssigner(names, notes).Assign(columns);
-}
-
-std::optional<std::size_t> FindColumnOf(const ColumnNames& names, Role role,
-                                        const std::vector<bool>& taken) {
-  std::optional<std::size_t> best;
-  int most = 0;
-  for (std::size_t column = 0; column < taken.size(); ++column) {
-    if (taken[column] || !names[column].is_numeric) continue;
-    const int evidence = EvidenceFor(names[column], role);
-    if (evidence <= most) continue;
-    most = evidence;
-    best = column;
-  }
-  return best;
 }
 
 }  // namespace mindahl::io

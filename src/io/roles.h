@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "io/column_name.h"
-#include "io/expression.h"
+#include "io/source.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/record_reader.h"
@@ -16,15 +17,44 @@ namespace mindahl::io {
 
 /// Holds what is asked of the columns of a role.
 struct RoleRules {
-  Role role;
   std::string_view name;  ///< "normal load"
   std::string_view option;
-  std::string_view si_unit;
-  std::optional<Unit> (*find_unit)(std::string_view);
-  std::string (*unit_symbols)();
+  Dimension linear, angular;  // of its units; a joint carries a torque
 };
-/// @param is_torsional  of an angle and a torque
-const RoleRules& RulesOf(Role role, bool is_torsional = false);
+const RoleRules& RulesOf(Role role);
+
+/// Holds a quantity as a linear function of columns: the sum of weight·column, and an offset.
+struct Expression {
+  struct Term {
+    std::size_t column;  ///< from 0
+    double weight;
+  };
+  std::vector<Term> terms;  ///< none where only a unit is given
+  double offset = -0.0;     ///< to which adding -0 makes -0
+  std::string unit;         // "" where none is given
+  bool is_scaled = false;   ///< a factor or an offset is given
+
+  /// True if it is a column as it is.
+  [[nodiscard]] bool is_plain() const {
+    return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
+  }
+};
+
+/// A quantity as a table gives it: a sum of columns, in a unit.
+struct Quantity {
+  Role role;
+  Expression sum;
+  Unit unit;
+
+  [[nodiscard]] std::size_t first_column() const { return sum.terms.front().column; }
+  /// Returns its values, one a row, in its unit.
+  [[nodiscard]] std::vector<double> Values(const CsvTable& table) const;
+  /// Returns them in SI units.
+  /// @throws InputError where one is missing or too large
+  [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
+  /// Returns what is said of a row whose value is not finite in SI units, else "".
+  [[nodiscard]] std::string TooLarge(const CsvTable& table, std::size_t row) const;
+};
 
 /// The names and numbers of a table's columns, for choices and messages.
 class ColumnNames {
@@ -47,11 +77,24 @@ class ColumnNames {
   const Column& operator[](std::size_t column) const { return columns_[column]; }
   [[nodiscard]] const CsvTable& table() const { return table_; }
 
-  /// Returns the columns that the user gives for a role.
+  /// Reads what an option says of a role's columns: a name or a number from 1, "Fx", "3"; with a
+  /// unit in brackets, "3 [kN]", or that alone, "[kN]"; a sum of columns with factors and an
+  /// offset, "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that
+  /// column; in a sum, a column is called by number behind '#'.
   /// @throws InputError for an unknown or ambiguous one
-  [[nodiscard]] Expression Read(const std::string& text, const RoleRules& rules) const;
+  [[nodiscard]] Expression Read(const std::string& text, Role role) const;
+  /// Returns the column of a name, from 0; empty where there is none.
+  /// @throws InputError where it is that of several
+  [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
+  /// Returns what is given, or else the column with the best evidence; none where none has any.
+  [[nodiscard]] Expression Find(const std::string& text, Role role,
+                                const std::vector<bool>& taken) const;
   /// Returns the column, from 0, that the user calls so.
-  [[nodiscard]] std::size_t Chosen(const std::string& text, const RoleRules& rules) const;
+  [[nodiscard]] std::size_t Chosen(const std::string& text, Role role) const;
+  /// Finds the unit of a role's columns: as given, of the header, or SI with a note.
+  /// @throws InputError for a unit that is none of the role's, and for columns in several units
+  [[nodiscard]] Quantity InUnit(Role role, Expression sum, bool is_torsional,
+                                std::vector<std::string>& notes) const;
 
   /// Returns the unit that the file states for a column, "" when it states none.
   /// @throws InputError where header and units row state two different units
@@ -61,41 +104,36 @@ class ColumnNames {
   [[nodiscard]] std::string NameOf(std::size_t column) const;
   /// "'x [mm]' (column 2)", or "column 2" without a header.
   [[nodiscard]] std::string Label(std::size_t column) const;
-  /// "'x' (column 1) and 'd' (column 2)".
-  [[nodiscard]] std::string Labels(const std::vector<std::size_t>& columns) const;
   /// "the columns are 'x' (1), 'F' (2)".
   [[nodiscard]] std::string Listing() const;
   /// "file:line" of the header.
   [[nodiscard]] std::string Header() const;
+  /// Refuses columns, "'x' (column 1) and 'd' (column 2) may each be the displacement: give …".
+  [[noreturn]] void ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const;
+  /// "'x' (column 1) and 'd' (column 2) may each be the displacement".
+  [[nodiscard]] std::string MayEachBe(Role role, const std::vector<std::size_t>& columns) const;
 
  private:
-  [[nodiscard]] std::optional<std::size_t> Named(std::string_view name,
-                                                 const RoleRules& rules) const;
-
   const CsvTable& table_;
   std::vector<Column> columns_;
 };
 
-/// Finds the unit of a role's columns: as given, of the header, or SI with a note.
-/// @throws InputError for a unit that is none of the role's, and for columns in several units
-Unit FindUnit(const ColumnNames& names, const RoleRules& rules, const Expression& columns,
-              std::vector<std::string>& notes);
-
-/// The columns of a record; none where there is no such quantity.
+/// The columns of a record, by role from the displacement to the normal load; none where there is
+/// no such quantity.
 struct Roles {
   bool is_torsional = false;
-  Expression displacement, force, time, normal_load;
+  std::array<Expression, 4> columns;
+
+  Expression& operator[](Role role) { return columns.at(static_cast<std::size_t>(role)); }
 };
+
+/// Returns what is asked of the columns of a role.
+const std::string& AskedOf(const RecordColumns& columns, Role role);
 
 /// Assigns the columns of a record, as they are given, else by the evidence of unit, name and
 /// numbers.
 /// @throws InputError where evidence is missing or contradicts, with the columns and the option
 Roles AssignRoles(const ColumnNames& names, const RecordColumns& columns,
                   std::vector<std::string>& notes);
-
-/// Returns the column with the best evidence for a role; empty where none has any.
-/// @param taken  columns that are something else
-std::optional<std::size_t> FindColumnOf(const ColumnNames& names, Role role,
-                                        const std::vector<bool>& taken);
 
 }  // namespace mindahl::io

@@ -9,11 +9,9 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
@@ -71,15 +69,8 @@ bool IsGb18030(std::string_view text) {
   return longest >= 4;
 }
 
-/// Returns the number of zero bytes in the even or the odd places.
-std::ptrdiff_t ZeroesAt(std::size_t parity, std::string_view text) {
-  std::ptrdiff_t count = 0;
-  for (std::size_t at = parity; at < text.size(); at += 2) count += text[at] == '\0' ? 1 : 0;
-  return count;
-}
-
 [[noreturn]] void ThrowCannotRead(const std::string& name, const char* reason) {
-  throw InputError(fmt::format("cannot read '{}': {}", name, reason));
+  Refuse("cannot read '{}': {}", name, reason);
 }
 
 /// The reader of standard input, which nobody closes.
@@ -127,103 +118,89 @@ std::size_t Utf8LengthAt(std::string_view text, std::size_t at) {
 std::string EncodingOf(std::string_view head) {
   if (head.starts_with(kUtf16Little)) return "UTF-16LE";
   if (head.starts_with(kUtf16Big)) return "UTF-16BE";
-  if (head.find('\0') != std::string_view::npos) {
-    const std::ptrdiff_t even = ZeroesAt(0, head);
-    const std::ptrdiff_t odd = ZeroesAt(1, head);
+  std::array<std::ptrdiff_t, 2> zeroes{};  // in even and odd places
+  for (std::size_t at = 0; at < head.size(); ++at) zeroes[at % 2] += head[at] == '\0' ? 1 : 0;
+  if (const auto [even, odd] = zeroes; even + odd > 0) {
     if (even == 0 && 4 * odd >= std::ssize(head)) return "UTF-16LE";
-    if (odd == 0 && 4 * even >= std::ssize(head)) return "UTF-16BE";
-    return "";
+    return odd == 0 && 4 * even >= std::ssize(head) ? "UTF-16BE" : "";
   }
   if (IsUtf8(head)) return "";
   return IsShiftJis(head) ? "CP932" : IsGb18030(head) ? "GB18030" : "WINDOWS-1252";
 }
 
 LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
-    : name_(NameOfInput(path)), encoding_(std::move(encoding)) {
-  is_standard_input_ = path == kStandardInput;
-  file_.reset(is_standard_input_ ? StandardInput() : gzopen(path.c_str(), "rb"));
+    : name_(NameOfInput(path)),
+      encoding_(std::move(encoding)),
+      file_(path == kStandardInput ? StandardInput() : gzopen(path.c_str(), "rb"),
+            {.is_shared = path == kStandardInput}) {
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
-}
-
-void LinePieces::CloseGzip::operator()(gzFile_s* file) const { gzclose(file); }
-
-LinePieces::~LinePieces() {
-  if (is_standard_input_) [[maybe_unused]]
-    gzFile_s* const standard_input = file_.release();
-  if (decoder_ != nullptr) ::iconv_close(decoder_);
-}
-
-std::string_view LinePieces::Next() {
-  text_.erase(0, given_);
-  std::size_t searched = 0;
-  std::size_t end = std::string::npos;  // of the last line's end
-  while (end == std::string::npos && !at_end_) {
-    if (text_.size() > kLongestLine) {
-      throw InputError(
-          fmt::format("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
-                      kLongestLine));
-    }
-    searched = text_.size();
-    ReadMore();
-    end = std::string_view(text_).substr(searched).rfind('\n');
-  }
-  given_ = at_end_ ? text_.size() : searched + end + 1;
-  return std::string_view(text_).substr(0, given_);
-}
-
-/// Appends the next bytes of the file to the text.
-void LinePieces::ReadMore() {
-  const std::size_t before = text_.size();
-  std::size_t size = 0;
-  if (begun_ && decoder_ == nullptr) {
-    text_.resize(before + kPiece);
-    size = ReadBytes(text_.data() + before);
-    text_.resize(before + size);
+  ReadBytes(undecoded_);
+  FindEncoding();
+  if (decoder_ != nullptr) {
+    Decode();
   } else {
-    bytes_read_.resize(kPiece);
-    size = ReadBytes(bytes_read_.data());
-    bytes_read_.resize(size);
-    if (!begun_) Begin();
-    if (decoder_ == nullptr) text_ += bytes_read_;
-    if (decoder_ != nullptr) Decode();
+    text_.swap(undecoded_);
   }
-  if (before == 0 && std::string_view(text_).starts_with(kUtf8Mark) && bytes_ == size) {
-    text_.erase(0, kUtf8Mark.size());
+  if (text_.starts_with(kUtf8Mark)) text_.erase(0, kUtf8Mark.size());
+  if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) {
+    ThrowZeroByte(fmt::format(":{}", 1 + std::count(text_.data(), text_.data() + zero, '\n')));
   }
-  std::string_view added = std::string_view(text_).substr(std::min(before, text_.size()));
-  if (const std::size_t zero = added.find('\0'); zero != std::string_view::npos) {
-    const bool is_first = bytes_ == size;
-    const auto line = 1 + std::ranges::count(added.substr(0, zero), '\n');
-    throw InputError(fmt::format("{}{}: is not text, it holds a zero byte: export it as CSV", name_,
-                                 is_first ? fmt::format(":{}", line) : ""));
-  }
-  if (bytes_ == size)
-    ends_lines_in_cr_ = added.find('\n') == added.npos && added.find('\r') != added.npos;
+  ends_lines_in_cr_ = text_.find('\n') == text_.npos && text_.find('\r') != text_.npos;
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
 }
 
-std::size_t LinePieces::ReadBytes(char* to) {
-  const int count = gzread(file_.get(), to, kPiece);
+void LinePieces::CloseGzip::operator()(gzFile_s* file) const {
+  if (!is_shared) gzclose(file);
+}
+
+void LinePieces::CloseDecoder::operator()(void* decoder) const { ::iconv_close(decoder); }
+
+std::string_view LinePieces::Next() {
+  text_.erase(0, given_);
+  while (text_.rfind('\n') == std::string::npos && !at_end_) {
+    if (text_.size() > kLongestLine) {
+      Refuse("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
+             kLongestLine);
+    }
+    const std::size_t before = text_.size();
+    ReadBytes(decoder_ != nullptr ? undecoded_ : text_);
+    if (decoder_ != nullptr) Decode();
+    if (text_.find('\0', before) != std::string::npos) ThrowZeroByte("");
+    if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
+  }
+  given_ = at_end_ ? text_.size() : text_.rfind('\n') + 1;
+  return std::string_view(text_).substr(0, given_);
+}
+
+/// Appends the next bytes of the file to a text.
+void LinePieces::ReadBytes(std::string& to) {
+  const std::size_t before = to.size();
+  to.resize(before + kPiece);
+  const int count = gzread(file_.get(), to.data() + before, kPiece);
   int error = Z_OK;
   const char* const reason = gzerror(file_.get(), &error);
   if (count < 0 || (error != Z_OK && error != Z_STREAM_END)) {
     ThrowCannotRead(name_, error == Z_ERRNO ? std::strerror(errno) : reason);
   }
+  to.resize(before + static_cast<std::size_t>(count));
   at_end_ = static_cast<std::size_t>(count) < kPiece;
   bytes_ += static_cast<std::uintmax_t>(count);
-  return static_cast<std::size_t>(count);
 }
 
-void LinePieces::Begin() {
-  begun_ = true;
-  const std::string_view head = std::string_view(bytes_read_).substr(0, 1 << 16);
-  if (head.empty()) throw InputError(fmt::format("{}: the file is empty", name_));
+void LinePieces::ThrowZeroByte(const std::string& line) const {
+  Refuse("{}{}: is not text, it holds a zero byte: export it as CSV", name_, line);
+}
+
+/// Opens the decoder, where the text is not in UTF-8, by the file's first bytes.
+void LinePieces::FindEncoding() {
+  const std::string_view head = std::string_view(undecoded_).substr(0, 1 << 16);
+  if (head.empty()) Refuse("{}: the file is empty", name_);
   if (head.starts_with("PK\x03\x04") || head.starts_with("\xD0\xCF\x11\xE0")) {
-    throw InputError(
-        fmt::format("{}: is a workbook of a spreadsheet: save its sheet as CSV there, "
-                    "or read it by mindahl.read_excel() in Python",
-                    name_));
+    Refuse(
+        "{}: is a workbook of a spreadsheet: save its sheet as CSV there, or read it by "
+        "mindahl.read_excel() in Python",
+        name_);
   }
   const bool is_found = encoding_.empty();
   if (is_found) encoding_ = EncodingOf(head);
@@ -231,37 +208,35 @@ void LinePieces::Begin() {
   const iconv_t decoder = ::iconv_open("UTF-8", encoding_.c_str());
   // iconv_open() answers with (iconv_t)-1.
   if (decoder == reinterpret_cast<iconv_t>(-1)) {  // NOLINT(performance-no-int-to-ptr)
-    throw InputError(
-        fmt::format("--encoding {}: {} cannot be read this way: {}: give a name of iconv --list, "
-                    "as latin1, sjis or utf-16",
-                    encoding_, name_, std::strerror(errno)));
+    Refuse(
+        "--encoding {}: {} cannot be read this way: {}: give a name of iconv --list, as latin1, "
+        "sjis or utf-16",
+        encoding_, name_, std::strerror(errno));
   }
-  decoder_ = decoder;
+  decoder_.reset(decoder);
   if (is_found && !encoding_.starts_with("UTF-16")) {
-    const std::string_view called = encoding_ == "CP932"     ? "Shift-JIS"
-                                    : encoding_ == "GB18030" ? "GB18030"
-                                                             : "Latin-1 (Windows-1252)";
-    note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding",
-                        name_, called);
+    note_ =
+        fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding", name_,
+                    encoding_ == "CP932"          ? "Shift-JIS"
+                    : encoding_ == "WINDOWS-1252" ? "Latin-1 (Windows-1252)"
+                                                  : encoding_);
   }
 }
 
 /// Decodes all whole characters that were read.
 void LinePieces::Decode() {
-  undecoded_ += bytes_read_;
   char* from = undecoded_.data();
   std::size_t left = undecoded_.size();
   std::array<char, 1 << 14> decoded{};
   while (left > 0) {
     char* to = decoded.data();
     std::size_t room = decoded.size();
-    const std::size_t result = ::iconv(decoder_, &from, &left, &to, &room);
+    const std::size_t result = ::iconv(decoder_.get(), &from, &left, &to, &room);
     text_.append(decoded.data(), decoded.size() - room);
     if (result != static_cast<std::size_t>(-1) || errno == E2BIG) continue;
     if (errno == EINVAL && !at_end_) break;  // a character that goes on in the next block
-    throw InputError(
-        fmt::format("{}: byte {} is not valid in {}: give the encoding of the file with --encoding",
-                    name_, bytes_ - left + 1, encoding_));
+    Refuse("{}: byte {} is not valid in {}: give the encoding of the file with --encoding", name_,
+           bytes_ - left + 1, encoding_);
   }
   undecoded_.erase(0, undecoded_.size() - left);
 }
@@ -269,23 +244,12 @@ void LinePieces::Decode() {
 std::optional<std::string> Sha256OfFile(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  const auto close = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"), close);
-  if (!file) ThrowCannotRead(path.string(), std::strerror(errno));
-  SHA2_CTX context;
-  SHA256Init(&context);
-  constexpr std::size_t kBlock = 1 << 16;
-  std::vector<std::uint8_t> block(kBlock);
-  for (std::size_t count = kBlock; count == kBlock;) {
-    count = std::fread(block.data(), 1, kBlock, file.get());
-    SHA256Update(&context, block.data(), count);
+  std::string digest(SHA256_DIGEST_STRING_LENGTH, '\0');
+  if (SHA256File(path.c_str(), digest.data()) == nullptr) {
+    ThrowCannotRead(path.string(), std::strerror(errno));
   }
-  if (std::ferror(file.get()) != 0) ThrowCannotRead(path.string(), std::strerror(errno));
-  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
-  SHA256Final(digest.data(), &context);
-  std::string text;
-  for (const std::uint8_t byte : digest) text += fmt::format("{:02x}", byte);
-  return text;
+  digest.pop_back();  // the zero byte at its end
+  return digest;
 }
 
 }  // namespace mindahl::io

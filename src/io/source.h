@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +9,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "mindahl/core/error.h"
 
 struct gzFile_s;  // NOLINT(readability-identifier-naming): zlib's
 
@@ -14,6 +19,12 @@ namespace mindahl::io {
 
 /// Bytes of the longest line that is read as a row of a record.
 inline constexpr std::size_t kLongestLine = 16U << 20U;
+
+/// @throws InputError of a text always
+template <typename... Parts>
+[[noreturn]] void Refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
+  throw InputError(fmt::format(text, std::forward<Parts>(parts)...));
+}
 
 /// Returns what messages call the file.
 std::string NameOfInput(const std::filesystem::path& path);
@@ -35,18 +46,16 @@ class LinePieces {
  public:
   static constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
 
+  /// Reads the first piece.
   /// @param encoding  a name of iconv; "" for EncodingOf() the first bytes
-  /// @throws InputError where the file cannot be opened, and for a name that iconv does not know
+  /// @throws InputError as Next(), where the file cannot be opened or is a workbook of a
+  ///   spreadsheet, and for a name that iconv does not know
   explicit LinePieces(const std::filesystem::path& path, std::string encoding = {});
-  ~LinePieces();
-  LinePieces(const LinePieces&) = delete;
-  LinePieces& operator=(const LinePieces&) = delete;
 
   /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
   ///   until the next call
   /// @throws InputError where the file cannot be read, is not in its encoding, holds a zero byte,
-  /// is
-  ///   a workbook of a spreadsheet, or has a line of more than kLongestLine
+  ///   or has a line of more than kLongestLine
   std::string_view Next();
 
   /// Returns the number of bytes that were read.
@@ -56,24 +65,25 @@ class LinePieces {
 
  private:
   struct CloseGzip {
+    bool is_shared;  ///< standard input, which nobody closes
     void operator()(gzFile_s* file) const;
   };
-  void ReadMore();
-  std::size_t ReadBytes(char* to);
-  void Begin();
+  struct CloseDecoder {
+    void operator()(void* decoder) const;
+  };
+  void ReadBytes(std::string& to);
+  void FindEncoding();
   void Decode();
+  [[noreturn]] void ThrowZeroByte(const std::string& line) const;
 
   std::string name_;
   std::string encoding_;
   std::unique_ptr<gzFile_s, CloseGzip> file_;
-  bool is_standard_input_ = false;
-  void* decoder_ = nullptr;  // iconv_t
-  std::string bytes_read_;
-  std::string undecoded_;  // bytes of a character that is cut
+  std::unique_ptr<void, CloseDecoder> decoder_;  // iconv_t
+  std::string undecoded_;                        // bytes that were read
   std::string text_;
   std::size_t given_ = 0;  // bytes of it that were returned
   std::uintmax_t bytes_ = 0;
-  bool begun_ = false;
   bool ends_lines_in_cr_ = false;
   bool at_end_ = false;
   std::string note_;

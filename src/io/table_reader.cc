@@ -7,30 +7,20 @@
 #include "io/source.h"
 
 namespace mindahl::io {
-namespace {
 
-std::vector<std::size_t> ColumnsOfNumbers(const Layout& layout) {
-  std::vector<std::size_t> columns;
-  for (std::size_t column = 0; column < layout.columns; ++column) {
-    if (layout.holds_numbers[column]) columns.push_back(column);
-  }
-  return columns;
-}
-
-}  // namespace
-
-TableReader::TableReader(const Layout& layout, std::string file, bool skip_broken)
-    : TableReader(layout, std::move(file), ColumnsOfNumbers(layout), skip_broken) {}
-
-TableReader::TableReader(const Layout& layout, std::string file, std::vector<std::size_t> wanted,
-                         bool skip_broken)
+TableReader::TableReader(const Layout& layout, std::string file, bool skip_broken,
+                         std::vector<std::size_t> wanted)
     : layout_(layout),
       wanted_(std::move(wanted)),
       places_(layout.columns, -1),
-      values_(wanted_.size()),
-      last_clock_(wanted_.size()),
       line_(layout.data_line - 1),
       skip_broken_(skip_broken) {
+  const bool reads_all = wanted_.empty();
+  for (std::size_t column = 0; column < layout.columns && reads_all; ++column) {
+    if (layout.holds_numbers[column]) wanted_.push_back(column);
+  }
+  values_.resize(wanted_.size());
+  last_clock_.resize(wanted_.size());
   for (std::size_t k = 0; k < wanted_.size(); ++k) places_[wanted_[k]] = static_cast<int>(k);
   table_.file = std::move(file);
   table_.header_line = layout.header_line;
@@ -61,7 +51,7 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
   return fmt::format("{}:{}:{}: {}", table_.file, row_line_, column + 1, fault);
 }
 
-void TableReader::Refuse(const std::string& fault) {
+void TableReader::RefuseRow(const std::string& fault) {
   if (skip_broken_) {
     skipped_.Add(row_line_, fault);
   } else {
@@ -82,10 +72,8 @@ void TableReader::Read(std::string_view text) {
 void TableReader::ReadRow(std::string_view row) {
   cell_faults_.clear();
   if (!ReadCells(row)) return;
-  if (has_repeated_header_ || !gap_fault_.empty()) {
-    EndGap(has_repeated_header_);
-    if (!fault_.empty()) return;
-  }
+  EndGap();
+  if (!fault_.empty()) return;
   for (CellFault& cell : cell_faults_) {
     TableColumn& column = table_.columns[wanted_[cell.place]];
     std::string& first = cell.is_missing ? column.missing : column.fault;
@@ -141,7 +129,7 @@ bool TableReader::ReadCells(std::string_view row) {
                                    : ""));
   }
   if (cells.is_open()) {
-    Refuse(
+    RefuseRow(
         fmt::format("{}:{}: a quotation mark opened here is never closed", table_.file, row_line_));
     return false;
   }
@@ -156,7 +144,7 @@ bool TableReader::ReadCells(std::string_view row) {
                                  count == 1 ? "" : "s", layout_.columns))});
   }
   if ((!cell_faults_.empty() || !too_many.empty()) && BelongsToHeader(row)) return false;
-  if (!too_many.empty()) Refuse(too_many);
+  if (!too_many.empty()) RefuseRow(too_many);
   return too_many.empty();
 }
 
@@ -198,8 +186,8 @@ double TableReader::ValueOf(std::size_t place, std::string_view text) {
 bool TableReader::BelongsToHeader(std::string_view row) {
   const std::string_view text = Trimmed(row);
   if ((!layout_.names_row.empty() && text == Trimmed(layout_.names_row)) ||
-      (has_repeated_header_ && text == Trimmed(layout_.units_row))) {
-    has_repeated_header_ = true;
+      (gap_ && gap_->empty() && text == Trimmed(layout_.units_row))) {
+    gap_.emplace();
     return true;
   }
   // Its first column of numbers has a text.
@@ -213,25 +201,20 @@ bool TableReader::BelongsToHeader(std::string_view row) {
       ReadCell(first, layout_.has_decimal_comma()).kind != Cell::Kind::kText) {
     return false;
   }
-  has_repeated_header_ = false;
-  if (!gap_fault_.empty()) return true;
-  gap_fault_ = At(column, DescribeCellFault(first, Cell::Kind::kText));
+  if (gap_ && !gap_->empty()) return true;
+  gap_ = At(column, DescribeCellFault(first, Cell::Kind::kText));
   if (!layout_.names_row.empty()) {
-    gap_fault_ += fmt::format("; a further block of rows must have the columns of line {} above it",
-                              layout_.header_line);
+    *gap_ += fmt::format("; a further block of rows must have the columns of line {} above it",
+                         layout_.header_line);
   }
   return true;
 }
 
-/// Ends the text above a row of numbers, which repeated the header or is at fault.
-void TableReader::EndGap(bool repeats) {
-  if (repeats) {
-    table_.blocks.push_back(table_.rows());
-  } else if (!gap_fault_.empty()) {
-    Refuse(gap_fault_);
-  }
-  has_repeated_header_ = false;
-  gap_fault_.clear();
+/// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
+void TableReader::EndGap() {
+  if (gap_ && gap_->empty()) table_.blocks.push_back(table_.rows());
+  if (gap_ && !gap_->empty()) RefuseRow(*gap_);
+  gap_.reset();
 }
 
 }  // namespace mindahl::io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,18 +15,19 @@ namespace mindahl::io {
 /// Fills a table from the rows of a text that comes in pieces.
 class TableReader {
  public:
-  /// @param wanted       columns to read, from 0, each once; the others stay empty
   /// @param skip_broken  rows that are at fault are left out
-  TableReader(const Layout& layout, std::string file, std::vector<std::size_t> wanted,
-              bool skip_broken);
-  /// Reads all columns of numbers.
-  TableReader(const Layout& layout, std::string file, bool skip_broken);
+  /// @param wanted       columns to read, from 0, each once: those of numbers where none is given;
+  ///   the others stay empty
+  TableReader(const Layout& layout, std::string file, bool skip_broken,
+              std::vector<std::size_t> wanted = {});
 
   /// Reads further rows, up to one that is at fault.
   /// @param text  of whole lines; the first piece without what is above the data
   void Read(std::string_view text);
   /// Notes that there are no further rows: text below the data is a fault.
-  void Finish() { EndGap(/*repeats=*/false); }
+  void Finish() {
+    if (gap_ && !gap_->empty()) EndGap();
+  }
 
   /// Returns the fault of the row at which reading ended; "" where there is none.
   [[nodiscard]] const std::string& fault() const { return fault_; }
@@ -38,8 +40,8 @@ class TableReader {
   void ReadRow(std::string_view row);
   bool ReadCells(std::string_view row);
   bool BelongsToHeader(std::string_view row);
-  void EndGap(bool repeats);
-  void Refuse(const std::string& fault);
+  void EndGap();
+  void RefuseRow(const std::string& fault);
   [[nodiscard]] std::string At(std::size_t column, std::string_view fault) const;
   double ValueOf(std::size_t place, std::string_view text);
 
@@ -58,8 +60,8 @@ class TableReader {
   std::size_t row_line_ = 0;
   char mark_ = '\0';  // the decimal mark, once one was seen
   std::size_t mark_line_ = 0;
-  std::string gap_fault_;  // of the first row of text since the last row of numbers
-  bool has_repeated_header_ = false;
+  /// Text since the last row of numbers: its fault, "" of a header that is repeated.
+  std::optional<std::string> gap_;
   bool skip_broken_;
   LeftOutRows skipped_;
   std::string fault_;

@@ -37,7 +37,7 @@ inline constexpr std::array kWords = {
             "forza di attrito|forza tangenziale|força de atrito|força tangencial|摩擦力|切向力"},
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
-            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重"},
+            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重|ロードセル"},
     WordRow{Role::kForce, 2, false,
             "load|loadcell|last|charge|carga|carico|weight|gewicht|载荷|荷载"},
     WordRow{Role::kForce, 2, true,
@@ -79,7 +79,8 @@ inline constexpr std::array kWords = {
 
 // Commanded, raw and statistical quantities are weaker evidence than measured ones.
 inline constexpr std::string_view kLesserWords =
-    "setpoint|set|command|cmd|commanded|target|desired|reference|ref|control|soll|sollwert|"
+    "setpoint|set|goal|demand|command|cmd|commanded|target|desired|reference|ref|control|soll|"
+    "sollwert|"
     "consigne|"
     "consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
 

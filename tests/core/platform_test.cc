@@ -31,20 +31,17 @@ TEST(PeakMemory, IsThatOfTheProcess) {
 }
 
 TEST(RunProgram, SucceedsWhereItsStatusIsNought) {
-  const std::string messages = ::testing::TempDir() + "messages_of_a_program";
-  bool succeeded = false;
-  EXPECT_EQ(RunProgram({"true"}, messages, succeeded), 0);
-  EXPECT_TRUE(succeeded);
-  EXPECT_EQ(RunProgram({"sh", "-c", "echo cannot >&2; exit 3"}, messages, succeeded), 0);
-  EXPECT_FALSE(succeeded);
-  std::string line;
-  std::getline(std::ifstream(messages), line);
-  EXPECT_EQ(line, "cannot");
-  succeeded = true;
-  EXPECT_EQ(RunProgram({"sh", "-c", "kill $$"}, messages, succeeded), 0);
-  EXPECT_FALSE(succeeded);
-  EXPECT_EQ(RunProgram({"no such program"}, messages, succeeded), ENOENT);
-  std::filesystem::remove(messages);
+  ProgramOutput written;
+  EXPECT_EQ(RunProgram({"cat"}, "a line\n", written), 0);
+  EXPECT_TRUE(written.succeeded);
+  EXPECT_EQ(written.output, "a line\n");
+  EXPECT_EQ(RunProgram({"sh", "-c", "echo cannot >&2; exit 3"}, "", written), 0);
+  EXPECT_FALSE(written.succeeded);
+  EXPECT_EQ(written.messages, "cannot\n");
+  written.succeeded = true;
+  EXPECT_EQ(RunProgram({"sh", "-c", "kill $$"}, "", written), 0);
+  EXPECT_FALSE(written.succeeded);
+  EXPECT_EQ(RunProgram({"no such program"}, "", written), ENOENT);
 }
 
 }  // namespace

@@ -202,11 +202,6 @@ int mkdir(const char* path, mode_t mode) {
   return static_cast<int>(::syscall(SYS_mkdirat, AT_FDCWD, path, mode));
 }
 
-char* mkdtemp(char* pattern) {
-  if (Fails(kDirectory)) return nullptr;
-  return Next<char* (*)(char*)>("mkdtemp")(pattern);
-}
-
 int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
                    void* argument) {
   if (Fails(kThread)) return EAGAIN;

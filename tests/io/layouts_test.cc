@@ -93,11 +93,22 @@ ScaleOfAnHx711 2 3 1.5e-3 9.80665 0.01 | ms,dist_mm,weight_g¶0,1.5,1000¶10,2,1
 TwoForcesAndDepths 4 5 1.5e-6 2.5e-6 0.1 | 
   Depth (nm)→Load (µN)→Time (s)→Lateral Displacement (µm)→Lateral Force (µN)¶100→500→0→1.5→2.5¶
   101→500→0.1→2→3¶
+AbaqusWithLabelsOfPoints 2 3 0 2.5 - | ¶   X    U:U1 PI: P N: 1    RF:RF1 PI: P N: 1¶¶  0.  0.  2.5¶
+    1.  2.  3.5¶  2.  -2.  -3.5¶  3.  2.  3.5¶
+BluehillWithATableOfResults 2 3 1.5e-3 2.5 0.9 | "Results"¶"","Load (N)","Extension (mm)"¶"1","10","7"¶
+  ¶"Time","Extension","Load"¶"(s)","(mm)","(N)"¶"0","1.5","2.5"¶"0.1","2","3"¶"0.2","1.5","2.5"¶
+  "0.3","2","3"¶"0.4","1.5","2.5"¶"0.5","2","3"¶"0.6","1.5","2.5"¶"0.7","2","3"¶"0.8","1.5","2.5"¶
+  "0.9","2","3"¶
+RobotWithActualValues 2 3 1.5 2.5 1.0 torsional | t,actual_q_0,actual_tau_0,actual_current¶0,1.5,2.5,1¶
+  1,2,3,2¶
+WideLettersAndBrackets 2 3 1.5e-3 2.5 1.0 | 時間（ｓ）,変位【ｍｍ】,荷重［Ｎ］¶0,1.5,2.5¶1,2,3¶
+ServoWithGoals 2 4 1.5 2.5 1.0 | t,Present Position,Goal Position,Present Load¶0,1.5,9,2.5¶1,2,9,3¶
+RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение, мм;Сила, кН¶0;1,5;2,5¶1;2;3¶
 )layouts";
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 42U);
+  EXPECT_EQ(layouts.size(), 48U);
   for (const Strings& layout : layouts) {
     std::istringstream head(layout[0]);
     std::string name;
@@ -145,6 +156,15 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
               HasSubstr("leave out commas that separate thousands"));
   EXPECT_THAT(Refusal("x;F\n1;1,234.5\n2;1,300.5\n"),
               HasSubstr("loop.csv:2:2: '1,234.5' is not a number"));
+  const std::string wave = "0,1,2\n1,2,3\n2,1,2\n3,2,3\n";
+  EXPECT_THAT(Refusal("Source,CH1,CH2\nSecond,Volt,Volt\n" + wave),
+              HasSubstr("no column for the displacement: the columns are"));
+  EXPECT_THAT(Refusal("X,XYData-1,RF:RF1\n" + wave),
+              HasSubstr("'X' (column 1) only grows while 'RF:RF1' (column 3) goes to and fro"));
+  EXPECT_THAT(Refusal("t,ay [g],az [g]\n" + wave),
+              HasSubstr("no column for the displacement: the columns are"));
+  EXPECT_THAT(Refusal("stamp:\n  secs: 1\nposition: [1.5]\n---\nposition: [2]\n"),
+              HasSubstr("write it by rostopic echo -p"));
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 

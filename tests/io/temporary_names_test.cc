@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <csignal>
 
-#include "io/unfinished_output.h"
 #include "mindahl/io/output_file.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
@@ -12,24 +11,13 @@
 namespace mindahl::io::temporary_names_test {
 namespace {
 
-TEST(TemporaryName, GoesWithItsObjectUnlessItIsKept) {
-  const TemporaryDirectory directory;
-  for (const bool kept : {false, true}) {
-    {
-      TemporaryName name(directory.Write("begun", "half").string());
-      if (kept) name.Keep();
-    }
-    EXPECT_EQ(directory.FileCount(), kept ? 1u : 0u);
-  }
-}
-
 /// Restores what signals do by default: a test started in the background of a script ignores
 /// SIGINT, one started by nohup SIGHUP, and so would the program.
 void RestoreDefaultSignals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
 }
 
-TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
+TEST(TemporaryFiles, GoWithTheProgramThatASignalEnds) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TemporaryDirectory directory;
     std::array<int, 2> ready{};
@@ -39,15 +27,11 @@ TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
     if (child == 0) {
       RestoreDefaultSignals();
       RemoveTemporaryFilesOnSignals();
-      const TemporaryName scratch((directory.path() / "scratch").string());
-      std::filesystem::create_directory(scratch.name());
-      const TemporaryName within(directory.Write("scratch/output", "half").string());
-      TemporaryName kept(directory.Write("kept", "whole").string());
-      const TemporaryName begun(directory.Write("begun", "half").string());
-      { const TemporaryName gone(directory.Write("gone", "").string()); }
-      kept.Keep();
-      (void)!::write(ready[1], "!", 1);
-      for (;;) ::pause();
+      const std::string content(1U << 20U, '7');
+      for (std::size_t written = 0;; ++written) {
+        WriteFileAtomically(directory.path() / "whole", content);
+        if (written == 0) (void)!::write(ready[1], "!", 1);
+      }
     }
     char byte = 0;
     ASSERT_EQ(::read(ready[0], &byte, 1), 1);
@@ -57,9 +41,8 @@ TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
-    EXPECT_FALSE(std::filesystem::exists(directory.path() / "begun"));
-    EXPECT_FALSE(std::filesystem::exists(directory.path() / "scratch"));
-    EXPECT_TRUE(std::filesystem::exists(directory.path() / "kept"));
+    EXPECT_EQ(directory.FileCount(), 1U);
+    EXPECT_EQ(FileContent(directory.path() / "whole").size(), 1U << 20U);
   }
 }
 
@@ -106,7 +89,7 @@ TEST(DeferredSignals, InterruptWhatWaitsForInput) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
-TEST(TemporaryName, LeavesASignalThatIsIgnoredAlone) {
+TEST(TemporaryFiles, LeaveASignalThatIsIgnoredAlone) {
   const int status = StatusOf([] {
     std::signal(SIGHUP, SIG_IGN);
     RemoveTemporaryFilesOnSignals();

@@ -20,21 +20,15 @@ struct NamedColumn {
 /// The name of standard input where a file is asked for; ./- is a file of that name.
 inline constexpr std::string_view kStandardInput = "-";
 
-/// Limits the size of a file that is read whole. A file beyond it is refused as soon as that
-/// shows, not when it has been read.
+/// Limits the memory [bytes] for a table that is read whole, and its fit. A file beyond it is
+/// refused as soon as that shows, not when it has been read.
 struct ReadLimits {
-  std::uintmax_t rows = std::numeric_limits<std::uintmax_t>::max();
-  /// Memory [bytes] for the table and its fit: kMemoryOfRow a row and kMemoryOfText a byte.
   std::uintmax_t memory = std::numeric_limits<std::uintmax_t>::max();
 
-  /// Memory [bytes] of a fit per row, and of reading it per byte of text, measured for records of
-  /// three columns: 1.14 kB a row of 59 bytes.
-  static constexpr std::uintmax_t kMemoryOfRow = 1000;
-  static constexpr std::uintmax_t kMemoryOfText = 3;
-
-  /// @returns the memory [bytes] that so much takes
+  /// @returns the memory [bytes] of a fit per row, and of reading it per byte of text, measured for
+  ///   records of three columns: 1.14 kB a row of 59 bytes
   static std::uintmax_t MemoryOf(std::uintmax_t rows, std::uintmax_t text) {
-    return kMemoryOfRow * rows + kMemoryOfText * text;
+    return 1000 * rows + 3 * text;
   }
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 namespace mindahl::io {
@@ -42,13 +43,15 @@ class DeferredSignals {
 /// Ends the program as a signal that was noted would have; does nothing where there was none.
 void RaiseNotedSignal();
 
+class OutputFile;
+
 /// A file that grows by whole blocks while a run goes on. What was appended stays, whatever ends
 /// the run: a block that cannot be written whole is cut off again.
 class AppendedFile {
  public:
   /// Opens the file, or makes it, and cuts it off after its first `kept` bytes.
   /// @throws InputError "cannot write '<path>': <reason>"
-  AppendedFile(std::filesystem::path path, std::uintmax_t kept);
+  AppendedFile(const std::filesystem::path& path, std::uintmax_t kept);
   ~AppendedFile();
   AppendedFile(const AppendedFile&) = delete;
   AppendedFile& operator=(const AppendedFile&) = delete;
@@ -63,8 +66,7 @@ class AppendedFile {
   void Finish();
 
  private:
-  std::filesystem::path path_;
-  int descriptor_;
+  std::unique_ptr<OutputFile> file_;
   std::uintmax_t size_;
 };
 
