@@ -2,34 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace mindahl::identification {
 
 namespace {
-
-/// Opens an end that is no number.
-void RequireFiniteEnd(std::optional<double>& end) {
-  if (end && !std::isfinite(*end)) end.reset();
-}
-
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 }  // namespace
 
 void SetInterval(ParameterEstimate& estimate, Ends ends) {
-  RequireFiniteEnd(ends.lower);
-  RequireFiniteEnd(ends.upper);
-  estimate.lower95 = ends.lower;
-  estimate.upper95 = ends.upper;
+  const auto closed = [](double end) {
+    return std::isfinite(end) ? std::optional(end) : std::nullopt;
+  };
+  estimate.lower95 = closed(ends.lower.value_or(-kUnbounded));
+  estimate.upper95 = closed(ends.upper.value_or(kUnbounded));
 }
 
 void Include(ParameterEstimate& estimate, Ends ends) {
-  RequireFiniteEnd(ends.lower);
-  RequireFiniteEnd(ends.upper);
-  const bool is_closed_below = estimate.lower95 && ends.lower;
-  const bool is_closed_above = estimate.upper95 && ends.upper;
-  estimate.lower95 =
-      is_closed_below ? std::optional(std::min(*estimate.lower95, *ends.lower)) : std::nullopt;
-  estimate.upper95 =
-      is_closed_above ? std::optional(std::max(*estimate.upper95, *ends.upper)) : std::nullopt;
+  // Of an end that is no number these are what they are given first.
+  const double lower =
+      std::min(ends.lower.value_or(-kUnbounded), estimate.lower95.value_or(-kUnbounded));
+  const double upper =
+      std::max(ends.upper.value_or(kUnbounded), estimate.upper95.value_or(kUnbounded));
+  SetInterval(estimate, {.lower = lower, .upper = upper});
 }
 
 void WithdrawInterval(ParameterEstimate& estimate) {
