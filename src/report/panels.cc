@@ -72,7 +72,7 @@ PlotSeries Series(const Report& report, std::size_t r, const ScaledUnit& unit_of
 }
 
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
-constexpr std::size_t kMostNamed = 8;  // a legend of many files would be longer than the page
+constexpr std::size_t kMostNamed = 8;   // a legend of many files would be longer than the page
 
 /// Returns where the last cycle of a record begins that is too long for all of its fit to be drawn:
 /// a line through some of its samples would cut corners.
