@@ -103,8 +103,7 @@ struct RunConstants {
 
 MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch& branch, double shape_exponent) {
   const double beta = 1 - shape_exponent;
-  return {branch.origin, branch.rate, branch.reach, beta,
-          beta == 0 ? 0.0 : 1 / beta};
+  return {branch.origin, branch.rate, branch.reach, beta, beta == 0 ? 0.0 : 1 / beta};
 }
 
 struct Sample {

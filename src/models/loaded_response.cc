@@ -5,8 +5,8 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
-#include "models/normalized_response.h"
 #include "models/load_zones.h"
+#include "models/normalized_response.h"
 
 namespace mindahl::models {
 namespace {
@@ -193,8 +193,8 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
   const double at_rest = history.before.empty() ? unloaded : 0.0;
   backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
     Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
-           ShareOfWidth<std::decay_t<decltype(shape)>>{shape, law.shape_exponent}, at_rest,
-           plain_, [&](std::size_t i, double force) { t[i] = force; });
+           ShareOfWidth<std::decay_t<decltype(shape)>>{shape, law.shape_exponent}, at_rest, plain_,
+           [&](std::size_t i, double force) { t[i] = force; });
   });
 }
 

@@ -5,8 +5,8 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
+#include "models/normalized_response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::asymmetry_test {

@@ -1,8 +1,8 @@
 
 
 #include "../support/histories.h"
-#include "models/normalized_response.h"
 #include "mindahl/models/variable_load.h"
+#include "models/normalized_response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::loaded_response_test {

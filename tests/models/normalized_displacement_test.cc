@@ -1,7 +1,7 @@
 
 
-#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
+#include "models/normalized_response.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "models/normalized_response.h"
 #include "mindahl/models/response.h"
+#include "models/normalized_response.h"
 
 namespace mindahl::models {
 

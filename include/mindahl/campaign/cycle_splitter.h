@@ -63,10 +63,10 @@ class CycleSplitter {
   double gate_;
   std::size_t together_;
   loop::ReversalFinder finder_;
-  io::Samples kept_;                // from the cycle's first sample on
-  std::size_t dropped_ = 0;         // samples before them
-  std::size_t begin_ = 0;           // of the cycle, in those
-  std::size_t turns_ = 0;           // turning points since the cycle's first, with it
+  io::Samples kept_;         // from the cycle's first sample on
+  std::size_t dropped_ = 0;  // samples before them
+  std::size_t begin_ = 0;    // of the cycle, in those
+  std::size_t turns_ = 0;    // turning points since the cycle's first, with it
   std::size_t cycles_ = 0;
   std::size_t summed_ = 0;  // of the samples that are kept, those in the checksum
   std::uint64_t checksum_;
