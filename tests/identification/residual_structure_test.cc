@@ -10,7 +10,7 @@ using namespace loop;
 
 ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
   const std::vector<std::size_t> reversals = FindReversals(displacement, 0.0);
-  ScaledRecord record(std::pmr::get_default_resource());
+  ScaledRecord record;
   record.displacement.assign(displacement.begin(), displacement.end());
   record.force.resize(displacement.size());
   record.counts.assign(displacement.size(), 1);
