@@ -63,7 +63,7 @@ void CallEverySecond(void (*handler)(int));
 void CallInASecond();
 void EndBySignal(int signal);
 
-/// What a program wrote.
+/// Holds what a program wrote.
 struct ProgramOutput {
   std::string output, messages;
   bool succeeded = false;  // it ended by itself, with status 0

@@ -51,7 +51,7 @@ struct FitRequest {
   bool join = false;                                      // the files are pieces of one record
   std::optional<std::uint64_t> max_memory{};              // [bytes]; else what the process may have
   std::optional<identification::Interval> time_window{};  // [s]
-  /// As given, without what the members below add; no model: --model auto.
+  /// Holds the options as given, without what the members below add; no model: --model auto.
   identification::FitOptions fit{.model = nullptr};
   bool compare = false;                       // all models, with and without a rig
   std::optional<RigRequest> rig_stiffness{};  // empty: rigid
