@@ -178,7 +178,7 @@ int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOu
     }
   }
   if (error == 0) error = WriteFile(::fileno(streams[0].get()), input);
-  if (error == 0) std::rewind(streams[0].get());
+  if (error == 0 && std::fseek(streams[0].get(), 0, SEEK_SET) != 0) error = errno;
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
@@ -206,7 +206,7 @@ int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOu
   const auto content = [](std::FILE* file) {
     std::string text;
     std::array<char, 4096> block{};
-    std::rewind(file);
+    if (std::fseek(file, 0, SEEK_SET) != 0) return text;
     while (const std::size_t size = std::fread(block.data(), 1, block.size(), file)) {
       text.append(block.data(), size);
     }

@@ -225,6 +225,7 @@ double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
     const ParameterEstimate* estimate = fit.Find(name);
     if (estimate == nullptr) {
       std::vector<std::string> names;
+      names.reserve(fit.parameters.size());
       for (const ParameterEstimate& known : fit.parameters) names.push_back(known.name);
       throw InvalidArgument(fmt::format("parameter '{}' is not fitted: must be one of {}", name,
                                         fmt::join(names, ", ")));
