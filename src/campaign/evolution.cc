@@ -135,11 +135,14 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
     constexpr std::size_t kFewRows = 20;  // no test of a change has power over so few
+    const std::string first = report::Quantity(course.first, evolution.unit, 3);
     if (!course.changed() && evolution.course.bins().size() < kFewRows) {
-      text += FromTo(course.first, course.last, evolution.unit) + ", in too few rows to test";
+      const bool is_one = first == report::Quantity(course.last, evolution.unit, 3);
+      text += is_one ? first : FromTo(course.first, course.last, evolution.unit);
+      text += ", in too few rows to test";
     } else if (!course.changed()) {
       // The first and the last cycle differ by scatter only, so one value stands for both.
-      text += report::Quantity(course.first, evolution.unit, 3) + " throughout, but for scatter";
+      text += first + " throughout, but for scatter";
     } else {
       text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);
     }

@@ -216,7 +216,9 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
       continue;
     }
     begins_block_ = false;
-    for (std::vector<double>& of : values) of[kept] = of[row];
+    if (kept < row) {
+      for (std::vector<double>& of : values) of[kept] = of[row];
+    }
     ++kept;
     if (time == nullptr && interval_ > 0) {
       samples.time.push_back(static_cast<double>(rows_) * interval_);
