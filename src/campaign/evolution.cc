@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mindahl/report/units.h"
+#include "report/statements.h"
 
 namespace mindahl::campaign {
 
@@ -55,10 +56,6 @@ std::string FromTo(double from, double to, const std::string& unit) {
           : 0;
   return fmt::format("{:.{}f} → {:.{}f}{}{}", from / scaled.factor, decimals, to / scaled.factor,
                      decimals, scaled.name.empty() ? "" : " ", scaled.name);
-}
-
-std::string ChanceWords(double p_value) {
-  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
 }
 
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
@@ -164,7 +161,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
         {std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
          fmt::format("{}: {}, {}{}, {}", evolution.quantity->name, when,
                      FromTo(from, to, evolution.unit), change.empty() ? "" : " (" + change + ")",
-                     ChanceWords(p_value))});
+                     report::ChanceText(p_value, 1))});
   };
   for (const Evolution& evolution : evolutions) {
     for (const Trend& trend : evolution.description.trends) {

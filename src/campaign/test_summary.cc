@@ -11,6 +11,7 @@
 
 #include "core/probability.h"
 #include "mindahl/core/error.h"
+#include "report/statements.h"
 
 namespace mindahl::campaign {
 
@@ -49,8 +50,8 @@ std::string InWords(const EnergyCounts& counts) {
 
 std::string Repeats::InWords() const {
   if (!p_value) return "without stated errors";
-  return exceed_errors() ? fmt::format("more than the errors, p {:.1g}", *p_value)
-                         : fmt::format("as the errors say, p {:.2g}", *p_value);
+  return fmt::format("{}, {}", exceed_errors() ? "more than the errors" : "as the errors say",
+                     report::ChanceText(*p_value, 2));
 }
 
 double Repeats::mean_error() const {

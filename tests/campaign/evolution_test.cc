@@ -51,15 +51,15 @@ TEST(Headline, NeverFallsByMoreThanAHundredPercent) {
       Of("sigma", "N/m", {.first = 2.0, .last = -3.0, .steps = {{9, 2.0, -3.0, 1e-9}}})};
   EXPECT_EQ(Headline(turned), "σ 2.00 → -3.00 N/m");
   EXPECT_THAT(ChangeStatements(turned),
-              ElementsAre("sigma: a step at cycle 9, 2.00 → -3.00 N/m, p 1e-09"));
+              ElementsAre("sigma: a step at cycle 9, 2.00 → -3.00 N/m, p = 1e-09"));
 }
 
 TEST(ChangeStatements, NameEachStepAndTrend) {
   EXPECT_THAT(ChangeStatements(RunIn()),
               ElementsAre("friction_coefficient: cycles 1 to 480, 0.352 → 0.600 (+70 %), p < 1e-12",
                           "slip_force: cycles 1 to 480, 35.2 → 60.0 N (+70 %), p < 1e-12",
-                          "sigma: a step at cycle 61, 50.0 → 80.0 N/µm (+60 %), p 0.003",
-                          "contact_radius: a step at cycle 61, 250 → 400 µm (+60 %), p 0.003"));
+                          "sigma: a step at cycle 61, 50.0 → 80.0 N/µm (+60 %), p = 0.003",
+                          "contact_radius: a step at cycle 61, 250 → 400 µm (+60 %), p = 0.003"));
 }
 
 TEST(ChangeStatements, OfManyAreTheLargest) {

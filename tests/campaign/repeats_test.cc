@@ -35,6 +35,11 @@ TEST(Repeats, WithoutStatedErrorsHaveTheirScatterOnly) {
   EXPECT_EQ(repeats->InWords(), "without stated errors");
 }
 
+TEST(Repeats, ThatExceedTheirErrorsByFarHaveNoChanceOfZero) {
+  EXPECT_EQ(DescribeRepeats(Numbers{10, 12}, Numbers{1e-3, 1e-3})->InWords(),
+            "more than the errors, p < 1e-12");
+}
+
 TEST(Repeats, AverageOutWhatScattersAndNotWhatTheyHaveInCommon) {
   // Deviation 1 of three, more than is stated: 1/√3, and 2 that all have.
   const auto repeats =
