@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <memory_resource>
 #include <random>
 #include <span>
 #include <stdexcept>
@@ -105,8 +104,7 @@ void Search(benchmark::State& state) {
   const FitOptions& options = OfSteadyCycles();
   Fitter fitter(options);
   const loop::RecordView view(Cycles().front().record);
-  const loop::PreparedRecords prepared =
-      loop::Prepare({&view, 1}, options.preparation, std::pmr::get_default_resource());
+  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   const identification::ScaledRecords data = identification::Scale(prepared, options);
   const identification::Problem problem{
       &data, options.model, models::InitialState::kSteady,

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <bit>
-#include <memory_resource>
 #include <optional>
 #include <utility>
 
@@ -132,8 +131,7 @@ io::Samples ReadHead(io::RecordStream& stream) {
 }
 
 Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
-  std::pmr::monotonic_buffer_resource memory;
-  const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation, &memory);
+  const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation);
   const loop::PreparedRecord& record = prepared.records.front();
   const Reading reading{.gate = record.gate_choice,
                         .gate_is_given = fit.preparation.reversal_gate.has_value(),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory_resource>
 #include <utility>
 
 #include "core/nearest_name.h"
@@ -46,7 +45,7 @@ loop::PreparedRecords PrepareAsFit(std::span<const loop::RecordView> records,
                                    const FitOptions& options, const FitResult& fit) {
   loop::PreparationOptions preparation = options.preparation;
   preparation.force_sense = fit.force_sense;
-  return loop::Prepare(records, preparation, std::pmr::get_default_resource());
+  return loop::Prepare(records, preparation);
 }
 
 }  // namespace

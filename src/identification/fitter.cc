@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <memory_resource>
 #include <optional>
 #include <span>
 #include <string>
@@ -79,7 +78,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     RecordFit& fit = result.records[r];
     fit.gate = prepared.gate_choice;
     fit.glitches = prepared.glitches;
-    fit.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
+    fit.reversals = prepared.reversals;
     fit.measures = prepared.measures;
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
@@ -89,7 +88,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
     fit.displacement_noise =
         data.is_forced() ? noise.force * data.length : prepared.displacement_noise;
-    fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
+    fit.counts = prepared.counts;
     fit.left_out = prepared.left_out;
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;
@@ -183,8 +182,7 @@ struct Fitter::State {
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   RequireInitialStates(given, records.size());
-  loop::PreparedRecords prepared =
-      loop::Prepare(records, given.preparation, std::pmr::get_default_resource());
+  loop::PreparedRecords prepared = loop::Prepare(records, given.preparation);
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
   AddColumns(given, prepared, /*with_others=*/depth >= Depth::kIntervals, data);

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory_resource>
 #include <string_view>
 #include <utility>
 
@@ -174,8 +173,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  const loop::PreparedRecords prepared =
-      loop::Prepare(views, options.preparation, std::pmr::get_default_resource());
+  const loop::PreparedRecords prepared = loop::Prepare(views, options.preparation);
   ScaledRecords data = Scale(prepared, options);
   if (records.size() > 1 && !data.is_load_series) {
     throw InvalidArgument(

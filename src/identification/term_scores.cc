@@ -36,8 +36,8 @@ double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
 
 /// Prepares the records, less the samples that do not count under one of the terms.
 loop::PreparedRecords PreparedFor(std::span<const loop::RecordView> records,
-                                  const FitOptions& options, Arena& arena) {
-  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
+                                  const FitOptions& options) {
+  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
   LeaveOutBeyondLags(options, prepared);
   return prepared;
 }
@@ -88,7 +88,7 @@ TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptio
 TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
                        const FitOptions& with_all)
     : covariates_(with_all.covariates),
-      prepared_(PreparedFor(records, with_all, arena_)),
+      prepared_(PreparedFor(records, with_all)),
       data_(Scale(prepared_, options)) {
   AddColumns(with_all, prepared_, /*with_others=*/false, data_);
 }

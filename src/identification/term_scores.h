@@ -12,7 +12,6 @@
 #include "identification/held_out.h"
 #include "identification/inference/local.h"
 #include "identification/problem/problem.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
@@ -91,7 +90,6 @@ class TermScores {
                                                   const std::vector<Eigen::Index>& added) const;
   void PutValues(std::size_t choice, const Step& step, std::map<std::string, double>& to) const;
 
-  Arena arena_;
   std::vector<std::string> covariates_;
   loop::PreparedRecords prepared_;
   ScaledRecords data_;

@@ -12,10 +12,9 @@
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
-std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
-                                            std::span<const std::size_t> reversals,
-                                            std::pmr::memory_resource* scratch) {
-  std::pmr::vector<std::size_t> points(scratch);
+std::vector<std::size_t> TurningPoints(std::span<const double> displacement,
+                                       std::span<const std::size_t> reversals) {
+  std::vector<std::size_t> points;
   points.reserve(reversals.size() + 2);
   points.assign(reversals.begin(), reversals.end());
   if (points.empty()) return points;
@@ -104,9 +103,8 @@ Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last
 /// Returns the swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
 /// run-out.
 /// Without two turning points the whole record is one.
-std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points,
-                                   std::pmr::memory_resource* scratch) {
-  std::pmr::vector<Swing> swings(scratch);
+std::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points) {
+  std::vector<Swing> swings;
   if (points.size() < 2) {
     swings.push_back(MeasureSwing(record, 0, record.size() - 1));
     return swings;
@@ -132,10 +130,9 @@ double MeanOf(std::span<const Swing> swings, double Swing::*member) {
 /// Returns the typical extreme of the swings of one direction, the larger by `compare` of the two
 /// directions. Medians: a spike in one swing must not make the peak force.
 template <typename Compare>
-double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare,
-                    std::pmr::memory_resource* scratch) {
-  std::pmr::vector<double> rising(scratch);
-  std::pmr::vector<double> falling(scratch);
+double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare) {
+  std::vector<double> rising;
+  std::vector<double> falling;
   rising.reserve(swings.size());
   falling.reserve(swings.size());
   for (const Swing& swing : swings) (swing.rising ? rising : falling).push_back(swing.*member);
@@ -158,23 +155,20 @@ double SquaredSteps(std::span<const double> values) {
 
 /// Returns the standard deviation of the mean energy of closed cycles that noise of both channels
 /// makes.
-double NoiseOfMeanEnergy(const RecordView& record, std::size_t cycles,
-                         std::pmr::memory_resource* scratch) {
+double NoiseOfMeanEnergy(const RecordView& record, std::size_t cycles) {
   const double of_force =
-      NoiseByDifferences(record.force, 2, scratch) * std::sqrt(SquaredSteps(record.displacement));
+      NoiseByDifferences(record.force, 2) * std::sqrt(SquaredSteps(record.displacement));
   const double of_displacement =
-      NoiseByDifferences(record.displacement, 2, scratch) * std::sqrt(SquaredSteps(record.force));
+      NoiseByDifferences(record.displacement, 2) * std::sqrt(SquaredSteps(record.force));
   return std::hypot(of_force, of_displacement) / static_cast<double>(cycles);
 }
 
 }  // namespace
 
-std::pmr::vector<double> CycleEnergies(const RecordView& record,
-                                       std::span<const std::size_t> reversals,
-                                       std::pmr::memory_resource* scratch) {
-  std::pmr::vector<double> energies(scratch);
-  const std::pmr::vector<std::size_t> points =
-      TurningPoints(record.displacement, reversals, scratch);
+std::vector<double> CycleEnergies(const RecordView& record,
+                                  std::span<const std::size_t> reversals) {
+  std::vector<double> energies;
+  const std::vector<std::size_t> points = TurningPoints(record.displacement, reversals);
   energies.reserve(points.size());
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     energies.push_back(CycleEnergy(record, points[k], points[k + 2]));
@@ -182,12 +176,11 @@ std::pmr::vector<double> CycleEnergies(const RecordView& record,
   return energies;
 }
 
-LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
-                         std::pmr::memory_resource* scratch) {
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals) {
   const std::span<const double> x = record.displacement;
   LoopMeasures measures;
-  const std::pmr::vector<std::size_t> points = TurningPoints(x, reversals, scratch);
-  const std::pmr::vector<Swing> swings = MainSwings(record, points, scratch);
+  const std::vector<std::size_t> points = TurningPoints(x, reversals);
+  const std::vector<Swing> swings = MainSwings(record, points);
   const double highest = MeanOf(swings, &Swing::highest);
   const double lowest = MeanOf(swings, &Swing::lowest);
   measures.amplitude = (highest - lowest) / 2;
@@ -195,10 +188,10 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   // Most loops peak where they turn; some before, when the force relaxes in a dwell.
   const double lower_end = MeanOf(swings, &Swing::lower_end_force);
   const double upper_end = MeanOf(swings, &Swing::upper_end_force);
-  const double greatest_force = std::max(
-      {lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>(), scratch)});
-  const double least_force = std::min(
-      {lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>(), scratch)});
+  const double greatest_force =
+      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>())});
+  const double least_force =
+      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>())});
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 
@@ -209,17 +202,15 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   return measures;
 }
 
-int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
-               std::pmr::memory_resource* scratch) {
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals) {
   const CycleRules rules;
   const Extremes displacement = ExtremesOf(record.displacement);
   const Extremes force = ExtremesOf(record.force);
   const double rectangle =
       (displacement.greatest - displacement.least) * (force.greatest - force.least);
-  const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
+  const std::vector<double> energies = CycleEnergies(record, reversals);
   if (!energies.empty() && std::abs(Mean(energies)) > rules.thin * rectangle &&
-      std::abs(Mean(energies)) >
-          rules.deviations * NoiseOfMeanEnergy(record, energies.size(), scratch)) {
+      std::abs(Mean(energies)) > rules.deviations * NoiseOfMeanEnergy(record, energies.size())) {
     return SignOf(Mean(energies));
   }
   const double mean_displacement = Mean(record.displacement);

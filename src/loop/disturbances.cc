@@ -110,13 +110,12 @@ double EncoderStep(std::span<const double> displacement) {
   return IsQuantised(displacement, step) ? step : 0.0;
 }
 
-double EstimateDisplacementNoise(std::span<const double> displacement,
-                                 std::pmr::memory_resource* scratch) {
-  std::pmr::vector<double> anew(scratch);  // without repeats
+double EstimateDisplacementNoise(std::span<const double> displacement) {
+  std::vector<double> anew;  // without repeats
   anew.reserve(displacement.size());
   std::ranges::unique_copy(displacement, std::back_inserter(anew));
   if (anew.size() < 4) return 0.0;
-  const double noise = NoiseByDifferences(anew, 3, scratch);
+  const double noise = NoiseByDifferences(anew, 3);
   return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
 }
 
@@ -164,9 +163,9 @@ using Readings = std::span<const double>;
 
 /// Returns the usual step [unit of the column], which nine tenths of those that are not zero do not
 /// exceed; 0 where all are zero.
-double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
+double UsualStep(Readings values) {
   constexpr double kUsualShare = 0.9;
-  std::pmr::vector<double> steps(scratch);
+  std::vector<double> steps;
   steps.reserve(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double step = std::abs(values[i] - values[i - 1]);
@@ -182,15 +181,14 @@ double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
 /// A column, what is wrong in it, and the column with lines over that.
 class MendedChannel {
  public:
-  MendedChannel(Readings values, std::pmr::memory_resource* memory)
-      : values_(values), mended_(memory), glitches_(memory), memory_(memory) {}
+  explicit MendedChannel(Readings values) : values_(values) {}
 
   [[nodiscard]] Readings values() const { return mended_.empty() ? values_ : Readings(mended_); }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
   /// Returns the usual step of the column as it is when this is first called.
   double usual_step() {
-    if (!usual_step_) usual_step_ = UsualStep(values(), memory_);
+    if (!usual_step_) usual_step_ = UsualStep(values());
     return *usual_step_;
   }
 
@@ -223,7 +221,7 @@ class MendedChannel {
     return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
   }
   [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
-  std::pmr::vector<double> TakeMended() { return std::move(mended_); }
+  std::vector<double> TakeMended() { return std::move(mended_); }
 
  private:
   /// Draws a line between the samples about [begin, end); a level one at the record's ends.
@@ -239,10 +237,9 @@ class MendedChannel {
   }
 
   Readings values_;
-  std::pmr::vector<double> mended_;
-  std::pmr::vector<Glitch> glitches_;
+  std::vector<double> mended_;
+  std::vector<Glitch> glitches_;
   std::optional<double> usual_step_;
-  std::pmr::memory_resource* memory_;
 };
 
 /// Returns how far 0 lies outside the range of two values.
@@ -251,14 +248,13 @@ double OutsideOf(double one, double other) {
 }
 
 /// Returns the steps [unit of the column] of neighbours of which neither reads 0 and 0.
-double UsualStepWithoutZeros(Readings values, const RecordView& record,
-                             std::pmr::memory_resource* scratch) {
-  std::pmr::vector<double> kept(scratch);
+double UsualStepWithoutZeros(Readings values, const RecordView& record) {
+  std::vector<double> kept;
   kept.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (record.displacement[i] != 0 || record.force[i] != 0) kept.push_back(values[i]);
   }
-  return UsualStep(kept, scratch);
+  return UsualStep(kept);
 }
 
 /// Successive samples: [begin, end).
@@ -270,11 +266,11 @@ struct Run {
 };
 
 /// Returns the samples that read 0 and 0.
-std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
+std::vector<Run> ZeroRuns(const RecordView& record) {
   const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
     return x[i] == 0 && force[i] == 0;
   };
-  std::pmr::vector<Run> runs(scratch);
+  std::vector<Run> runs;
   const std::size_t size = record.size();
   bool any = false;
   for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
@@ -290,12 +286,12 @@ std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resour
 }
 
 void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChannel& displacement,
-                  MendedChannel& force, std::pmr::memory_resource* scratch) {
-  const std::pmr::vector<Run> runs = ZeroRuns(record, scratch);
+                  MendedChannel& force) {
+  const std::vector<Run> runs = ZeroRuns(record);
   if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
   const Readings x = record.displacement;
-  const double step_of_x = UsualStepWithoutZeros(x, record, scratch);
-  const double step_of_force = UsualStepWithoutZeros(record.force, record, scratch);
+  const double step_of_x = UsualStepWithoutZeros(x, record);
+  const double step_of_force = UsualStepWithoutZeros(record.force, record);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
@@ -470,12 +466,11 @@ void FindHeld(MendedChannel& channel, const MendedChannel& other, const GlitchRu
 
 }  // namespace
 
-Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
-                   std::pmr::memory_resource* memory) {
+Mended FindAndMend(const RecordView& record, const GlitchRules& rules) {
   constexpr int kPasses = 3;
-  MendedChannel displacement(record.displacement, memory);
-  MendedChannel force(record.force, memory);
-  FindDropouts(record, rules, displacement, force, memory);
+  MendedChannel displacement(record.displacement);
+  MendedChannel force(record.force);
+  FindDropouts(record, rules, displacement, force);
   for (MendedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
@@ -485,7 +480,7 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
   FindFlatDropouts(force, displacement, rules);
   FindHeld(displacement, force, rules);
   FindHeld(force, displacement, rules);
-  Mended mended(memory);
+  Mended mended;
   for (MendedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     channel->TakeBackIfCommon(Glitch::kHeld, rules.most);

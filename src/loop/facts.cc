@@ -384,8 +384,7 @@ void Summarise(LoopFacts& facts) {
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   const CycleRules rules;
   LoopFacts facts;
-  const std::pmr::vector<std::size_t> turns =
-      TurningPoints(record.displacement, reversals, std::pmr::get_default_resource());
+  const std::vector<std::size_t> turns = TurningPoints(record.displacement, reversals);
   const Points points = turns;
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, points.subspan(k, 3)));

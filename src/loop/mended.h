@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory_resource>
 #include <vector>
 
 #include "loop/rules.h"
@@ -20,12 +19,9 @@ enum class Glitch : std::uint8_t {
 /// A record without its glitches: lines over the samples that are left out. All empty where there
 /// is no glitch; a channel is also empty where there is none in it.
 struct Mended {
-  explicit Mended(std::pmr::memory_resource* memory)
-      : glitches(memory), displacement(memory), force(memory) {}
-
-  std::pmr::vector<Glitch> glitches;
-  std::pmr::vector<double> displacement;  // [m]
-  std::pmr::vector<double> force;         // [N]
+  std::vector<Glitch> glitches;
+  std::vector<double> displacement;  // [m]
+  std::vector<double> force;         // [N]
 };
 
 /// Finds the samples that no contact and no drive has made.
@@ -46,9 +42,7 @@ struct Mended {
 /// two samples no spike is found.
 ///
 /// @param record  valid
-/// @param memory  of the result and of scratch
 /// Cost: linear in the samples.
-Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
-                   std::pmr::memory_resource* memory);
+Mended FindAndMend(const RecordView& record, const GlitchRules& rules);
 
 }  // namespace mindahl::loop

@@ -45,32 +45,27 @@ double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& opt
 }
 
 /// Standard deviation [m] of a displacement's noise where the record has to be treated as noisy.
-double DisplacementNoise(const PreparedRecord& prepared, const PreparationOptions& options,
-                         std::pmr::memory_resource* memory) {
+double DisplacementNoise(const PreparedRecord& prepared, const PreparationOptions& options) {
   if (options.excitation == Channel::kForce) return 0.0;
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
   const bool is_coarse = prepared.encoder_step > CycleRules().coarse * (highest / 2 - lowest / 2);
-  return prepared.gate_choice.gate > 0 || is_coarse
-             ? EstimateDisplacementNoise(displacement, memory)
-             : 0.0;
+  return prepared.gate_choice.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
 }
 
 void Smooth(PreparedRecord& prepared) {
   if (!(prepared.displacement_noise > 0)) return;
   const std::span<const double> displacement = prepared.readings().displacement;
   prepared.smoother.emplace(displacement, prepared.displacement_noise);
-  const std::vector<double> smoothed = prepared.smoother->Smooth(displacement);
-  prepared.smoothed.assign(smoothed.begin(), smoothed.end());
-  const std::vector<std::size_t> moved = MoveReversals(prepared.smoothed, prepared.reversals);
-  prepared.reversals.assign(moved.begin(), moved.end());
+  prepared.smoothed = prepared.smoother->Smooth(displacement);
+  prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
 }
 
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
-void LeaveOutGlitches(PreparedRecord& prepared, std::pmr::memory_resource* memory) {
+void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
-  Mended mended = FindAndMend(prepared.record, {}, memory);
+  Mended mended = FindAndMend(prepared.record, {});
   if (mended.glitches.empty()) return;
   GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
@@ -86,16 +81,15 @@ void LeaveOutGlitches(PreparedRecord& prepared, std::pmr::memory_resource* memor
   prepared.mended_force = std::move(mended.force);
 }
 
-void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
-               std::pmr::memory_resource* memory) {
+void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
   const RecordView readings = prepared.readings();
   const std::span<const double> excitation =
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
-  if (!options.reversal_gate) choice = ChooseReversalGate(excitation, memory);
+  if (!options.reversal_gate) choice = ChooseReversalGate(excitation);
   choice.gate = options.reversal_gate.value_or(
       std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
-  FindReversals(excitation, choice.gate, prepared.reversals);
+  prepared.reversals = FindReversals(excitation, choice.gate);
   choice.count = prepared.reversals.size();
   if (!choice.certain) return;
   choice.other_gate = choice.gate;
@@ -191,30 +185,30 @@ std::size_t PreparedRecords::counted() const {
   return count;
 }
 
-PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
-                        std::pmr::memory_resource* memory) {
+PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options) {
   RequireOptions(records.size(), options);
   for (const RecordView& record : records) {
     Validate(record);
     if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   }
-  PreparedRecords result(memory);
+  PreparedRecords result;
   result.excitation = options.excitation;
   result.records.reserve(records.size());
   int votes = 0;
   for (const RecordView& record : records) {
-    PreparedRecord& prepared = result.records.emplace_back(record, memory);
-    LeaveOutGlitches(prepared, memory);
-    FindTurns(prepared, options, memory);
-    if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals, memory);
+    PreparedRecord& prepared = result.records.emplace_back();
+    prepared.record = record;
+    LeaveOutGlitches(prepared);
+    FindTurns(prepared, options);
+    if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals);
   }
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records[r];
-    prepared.measures = MeasureLoop(prepared.readings(), prepared.reversals, memory);
+    prepared.measures = MeasureLoop(prepared.readings(), prepared.reversals);
     prepared.measures.centre_force *= result.force_sense;
     prepared.encoder_step = EncoderStep(prepared.readings().displacement);
-    prepared.displacement_noise = DisplacementNoise(prepared, options, memory);
+    prepared.displacement_noise = DisplacementNoise(prepared, options);
     Smooth(prepared);
     LeaveOut(prepared, r, options);
   }

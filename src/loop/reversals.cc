@@ -13,28 +13,20 @@
 namespace mindahl::loop {
 
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate) {
-  std::pmr::vector<std::size_t> reversals;
-  FindReversals(displacement, gate, reversals);
-  return {reversals.begin(), reversals.end()};
-}
-
-void FindReversals(std::span<const double> displacement, double gate,
-                   std::pmr::vector<std::size_t>& reversals) {
   RequireNonNegative("reversal gate [m]", gate);
-  reversals.clear();
+  std::vector<std::size_t> reversals;
   ReversalFinder finder(gate);
   for (const double x : displacement) {
     if (const std::optional<std::size_t> reversal = finder.Add(x)) reversals.push_back(*reversal);
   }
+  return reversals;
 }
 
 namespace {
 
 /// Returns the extremes, with the record's ends.
-std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement,
-                                            std::pmr::memory_resource* scratch) {
-  std::pmr::vector<std::size_t> points(scratch);
-  FindReversals(displacement, 0.0, points);
+std::vector<std::size_t> LocalExtremes(std::span<const double> displacement) {
+  std::vector<std::size_t> points = FindReversals(displacement, 0.0);
   if (displacement.empty()) return points;
   points.insert(points.begin(), 0);
   points.push_back(displacement.size() - 1);
@@ -43,11 +35,10 @@ std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement
 
 }  // namespace
 
-std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
-                                           std::pmr::memory_resource* scratch) {
+std::vector<Excursion> FindExcursions(std::span<const double> displacement) {
   // Points that are still open are kept in front of those not yet visited.
-  std::pmr::vector<std::size_t> points = LocalExtremes(displacement, scratch);
-  std::pmr::vector<Excursion> excursions(scratch);
+  std::vector<std::size_t> points = LocalExtremes(displacement);
+  std::vector<Excursion> excursions;
   excursions.reserve(points.size());
   std::size_t open = 0;
   const auto excursion = [&](std::size_t i, std::size_t reversals) {
@@ -87,8 +78,8 @@ namespace {
 using Excursions = std::span<const Excursion>;
 
 /// Returns the median duration [samples] of the strokes at least half as wide as the widest.
-double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
-  std::pmr::vector<std::size_t> durations(scratch);
+double MainDuration(Excursions excursions) {
+  std::vector<std::size_t> durations;
   durations.reserve(excursions.size());
   for (const Excursion& excursion : excursions) {
     if (excursion.range >= excursions.back().range / 2) durations.push_back(excursion.duration());
@@ -98,8 +89,8 @@ double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
 
 /// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
 double ReachOfNoise(std::span<const double> displacement, double full_range,
-                    const ReversalRules& rules, std::pmr::memory_resource* scratch) {
-  const double noise = EstimateDisplacementNoise(displacement, scratch);
+                    const ReversalRules& rules) {
+  const double noise = EstimateDisplacementNoise(displacement);
   if (noise > rules.rough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
   return rules.beyond * 2 * noise *
@@ -124,15 +115,14 @@ enum class Look : unsigned char {
 /// Looks at excursions one by one.
 class Judge {
  public:
-  Judge(std::span<const double> displacement, Excursions excursions, const ReversalRules& rules,
-        std::pmr::memory_resource* scratch)
+  Judge(std::span<const double> displacement, Excursions excursions, const ReversalRules& rules)
       : displacement_(displacement),
         rules_(rules),
-        main_duration_(MainDuration(excursions, scratch)),
+        main_duration_(MainDuration(excursions)),
         main_range_(excursions.back().range / 2) {
     // Without a brief one there is no noise to be estimated.
     if (std::ranges::any_of(excursions, [&](const Excursion& one) { return IsBrief(one); })) {
-      reach_ = ReachOfNoise(displacement, excursions.back().range, rules, scratch);
+      reach_ = ReachOfNoise(displacement, excursions.back().range, rules);
       any_brief_ = true;
     }
   }
@@ -268,10 +258,10 @@ ReversalGate Doubted(Excursions excursions, double gate, double other_gate) {
 
 /// Chooses the gate by what the excursions look like, one by one.
 ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excursions,
-                           const ReversalRules& rules, std::pmr::memory_resource* scratch) {
-  const Judge judge(displacement, excursions, rules, scratch);
+                           const ReversalRules& rules) {
+  const Judge judge(displacement, excursions, rules);
   if (!judge.any_brief()) return Under(excursions, 0.0);
-  std::pmr::vector<Look> looks(scratch);
+  std::vector<Look> looks;
   looks.reserve(excursions.size());
   for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
   DoubtEnds(excursions, judge, rules, looks);
@@ -292,12 +282,11 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
 
 }  // namespace
 
-ReversalGate ChooseReversalGate(std::span<const double> displacement,
-                                std::pmr::memory_resource* scratch) {
+ReversalGate ChooseReversalGate(std::span<const double> displacement) {
   const ReversalRules rules;
-  const std::pmr::vector<Excursion> excursions = FindExcursions(displacement, scratch);
+  const std::vector<Excursion> excursions = FindExcursions(displacement);
   if (excursions.size() < 2) return Under(excursions, 0.0);
-  const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules, scratch);
+  const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules);
   // An encoder that counts to and fro is at rest, however long that takes it.
   const double flicker = rules.counts * EncoderStep(displacement);
   const bool flickers = excursions.front().range <= flicker;

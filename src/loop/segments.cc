@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <memory_resource>
 #include <optional>
 #include <ranges>
 #include <span>

@@ -6,10 +6,9 @@
 
 namespace mindahl::loop {
 
-double NoiseByDifferences(std::span<const double> values, std::size_t order,
-                          std::pmr::memory_resource* scratch) {
+double NoiseByDifferences(std::span<const double> values, std::size_t order) {
   if (values.size() <= order) return 0.0;
-  std::pmr::vector<double> differences(values.begin(), values.end(), scratch);
+  std::vector<double> differences(values.begin(), values.end());
   double variance = 1.0;  // of a difference over the noise's
   for (std::size_t k = 1; k <= order; ++k) {
     for (std::size_t i = 0; i + k < values.size(); ++i)

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <memory_resource>
 #include <span>
 
 namespace mindahl::loop {
@@ -46,8 +45,7 @@ inline constexpr double kDeviationOverMedian = 1.482602218505602;
 /// Returns the standard deviation of white noise by the median size of the differences of an order,
 /// of which what is smooth, turns and knees leave little; 0 for too few values. The variance of a
 /// difference of order k is C(2k, k) times the noise's.
-double NoiseByDifferences(std::span<const double> values, std::size_t order,
-                          std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+double NoiseByDifferences(std::span<const double> values, std::size_t order);
 
 /// Returns the least distance [m] between neighbours that differ; 0 where none do.
 inline double SmallestStep(std::span<const double> displacement) {

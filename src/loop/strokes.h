@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory_resource>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,16 +36,14 @@ inline double LargestStep(std::span<const double> displacement, const Excursion&
 /// (ASTM E1049 describes an equivalent one), the record's ends being extremes; what is left widens
 /// up to the widest and then narrows, and goes one reversal at a time, from its ends. Cost: n, and
 /// m log m for m extremes.
-std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
-                                           std::pmr::memory_resource* scratch);
+std::vector<Excursion> FindExcursions(std::span<const double> displacement);
 
 /// Returns the number of reversals that FindReversals finds under the gate [m].
 std::size_t CountReversals(std::span<const Excursion> excursions, double gate);
 
 /// Returns the reversals, with the record's first and last sample where they lie at an extreme.
-std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
-                                            std::span<const std::size_t> reversals,
-                                            std::pmr::memory_resource* scratch);
+std::vector<std::size_t> TurningPoints(std::span<const double> displacement,
+                                       std::span<const std::size_t> reversals);
 
 /// Least and greatest mean over a twentieth of the stroke: what the force keeps to, not its noise.
 std::pair<double, double> MovingMeanRange(std::span<const double> force);
@@ -61,14 +58,11 @@ double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last
 /// @throws InvalidArgument where an energy exceeds the largest double
 /// Summed in long double: where it has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
 /// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the cycle's n samples.
-std::pmr::vector<double> CycleEnergies(
-    const RecordView& record, std::span<const std::size_t> reversals,
-    std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+std::vector<double> CycleEnergies(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// @param record     valid, not empty
 /// @param reversals  as from FindReversals on the same record
-LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
-                         std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// Returns +1 for a force with the displacement's sign, −1 for the opposite (load cell on the other
 /// body): the sign of the mean energy of the closed cycles, which no offset changes; that of the
@@ -76,8 +70,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 /// the rectangle round it or five standard deviations of what noise of both channels makes of its
 /// energy, so that noise would decide. 0 when neither has a sign (constant force or displacement).
 /// @param record  valid, not empty
-int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
-               std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// Returns a quarter of the travel [m] over three turning points.
 inline double CycleAmplitude(std::span<const double> displacement,

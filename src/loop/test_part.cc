@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <memory_resource>
 #include <optional>
 #include <ranges>
 #include <span>
@@ -59,8 +58,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
 /// Finds the widest strokes that others repeat.
 std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement,
                                                    const TestPartRules& rules) {
-  const std::pmr::vector<Excursion> excursions =
-      FindExcursions(displacement, std::pmr::get_default_resource());
+  const std::vector<Excursion> excursions = FindExcursions(displacement);
   std::size_t last = excursions.size();
   for (std::size_t tried = 0; last > 0 && tried < rules.classes; ++tried) {
     const double widest = excursions[last - 1].range;
@@ -126,8 +124,7 @@ std::size_t Resting(const Displacements& displacements, double reach) {
 /// Returns the number of samples of a usual stroke; 0 where there is none.
 double UsualStroke(std::span<const double> displacement, double gate) {
   const std::vector<std::size_t> reversals = FindReversals(displacement, gate);
-  const std::pmr::vector<std::size_t> points =
-      TurningPoints(displacement, reversals, std::pmr::get_default_resource());
+  const std::vector<std::size_t> points = TurningPoints(displacement, reversals);
   std::vector<double> lengths;
   for (std::size_t k = 1; k < points.size(); ++k) {
     lengths.push_back(static_cast<double>(points[k] - points[k - 1]));

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <memory_resource>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,7 +27,7 @@ class Stages {
       : records(std::move(given)),
         options(std::move(fit_options)),
         views(records.begin(), records.end()),
-        prepared(loop::Prepare(views, options.preparation, std::pmr::get_default_resource())),
+        prepared(loop::Prepare(views, options.preparation)),
         data(ScaledRecordsOf(prepared, options)),
         problem{&data, options.model, state, identification::Parameters(data, options, state)} {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},

@@ -1,5 +1,4 @@
 
-#include <memory_resource>
 
 #include "loop/strokes.h"
 #include "mindahl/loop/reversals.h"
@@ -10,9 +9,7 @@
 namespace mindahl::loop::excursions_test {
 namespace {
 
-std::pmr::vector<Excursion> Excursions(const History& history) {
-  return FindExcursions(history, std::pmr::get_default_resource());
-}
+std::vector<Excursion> Excursions(const History& history) { return FindExcursions(history); }
 
 TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
   Generator generator(1);

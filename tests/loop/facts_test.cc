@@ -1,7 +1,5 @@
 #include "mindahl/loop/facts.h"
 
-#include <memory_resource>
-
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/measured.h"
@@ -281,7 +279,7 @@ TEST(MeasureFacts, RejectsInvalidRecordAndSign) {
 
 LoopFacts FactsOfPrepared(const Record& record) {
   const std::vector<RecordView> views = {record};
-  const PreparedRecords prepared = Prepare(views, {}, std::pmr::get_default_resource());
+  const PreparedRecords prepared = Prepare(views, {});
   return MeasureFacts(prepared.records[0], prepared.force_sense);
 }
 

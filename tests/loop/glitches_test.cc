@@ -1,5 +1,4 @@
 
-#include <memory_resource>
 #include <type_traits>
 
 #include "loop/mended.h"
@@ -62,16 +61,11 @@ void Count(History& values, double step) {
   for (double& value : values) value = step * std::round(value / step);
 }
 
-std::pmr::vector<Glitch> FindGlitches(const Record& record) {
-  return FindAndMend(record, {}, std::pmr::get_default_resource()).glitches;
-}
+std::vector<Glitch> FindGlitches(const Record& record) { return FindAndMend(record, {}).glitches; }
 
 GlitchCount CountIn(const Record& record) {
   const RecordView view = record;
-  return Prepare({&view, 1}, {.reversal_gate = 0.0, .force_sense = 1},
-                 std::pmr::get_default_resource())
-      .records.front()
-      .glitches;
+  return Prepare({&view, 1}, {.reversal_gate = 0.0, .force_sense = 1}).records.front().glitches;
 }
 
 /// Between one and so many.
@@ -185,7 +179,7 @@ TEST(FindGlitches, FindsSpikesOfOneToThreeSamplesWhereTheyAre) {
         for (History Record::*channel : {&Record::displacement, &Record::force}) {
           Record record = Noisy();
           for (std::size_t k = 0; k < samples; ++k) (record.*channel)[at + k] += height;
-          const std::pmr::vector<Glitch> glitches = FindGlitches(record);
+          const std::vector<Glitch> glitches = FindGlitches(record);
           ASSERT_EQ(glitches.size(), record.size()) << at << ' ' << samples << ' ' << height;
           for (std::size_t i = 0; i < record.size(); ++i) {
             EXPECT_EQ(glitches[i], i >= at && i < at + samples ? Glitch::kSpike : Glitch::kNone)
@@ -207,7 +201,7 @@ TEST(FindGlitches, FindsDropoutsOfAnyLengthAlsoAtTheEnds) {
     zeros.push_back(i);
   }
   for (const std::size_t i : zeros) record.displacement[i] = record.force[i] = 0.0;
-  const std::pmr::vector<Glitch> glitches = FindGlitches(record);
+  const std::vector<Glitch> glitches = FindGlitches(record);
   const GlitchCount count = CountIn(record);
   EXPECT_EQ(count.dropouts, zeros.size());
   EXPECT_EQ(count.total(), zeros.size());
@@ -271,7 +265,7 @@ TEST(FindAndMend, InterpolatesLinearlyInChannelsWithGlitches) {
   Record record = Noisy();
   record.force[300] = 50;
   record.force[301] = 51;
-  const Mended mended = FindAndMend(record, {}, std::pmr::get_default_resource());
+  const Mended mended = FindAndMend(record, {});
   EXPECT_TRUE(mended.displacement.empty());
   ASSERT_EQ(mended.force.size(), record.size());
   const double rise = record.force[302] - record.force[299];
@@ -306,7 +300,7 @@ struct Rule {
 };
 
 bool HasGlitch(const Record& record, const GlitchRules& rules) {
-  return !FindAndMend(record, rules, std::pmr::get_default_resource()).glitches.empty();
+  return !FindAndMend(record, rules).glitches.empty();
 }
 
 /// A triangle in steps of 1 and −1 with a force that follows it.
@@ -373,7 +367,7 @@ const std::vector<Rule>& Rules() {
              record.displacement[200 + pulse * apart] += 50;
              record.displacement[201 + pulse * apart] += 50;
            }
-           const Mended mended = FindAndMend(record, rules, std::pmr::get_default_resource());
+           const Mended mended = FindAndMend(record, rules);
            return !mended.glitches.empty() && mended.glitches[200] != Glitch::kNone;
          };
          return !has(5) && has(9);

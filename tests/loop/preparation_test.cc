@@ -1,7 +1,5 @@
 #include "mindahl/loop/preparation.h"
 
-#include <memory_resource>
-
 #include "mindahl/loop/facts.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
@@ -27,7 +25,7 @@ Record Made(int cycles = 3) {
 
 PreparedRecords PrepareAll(const std::vector<Record>& records, const PreparationOptions& options) {
   const std::vector<RecordView> views(records.begin(), records.end());
-  return Prepare(views, options, std::pmr::get_default_resource());
+  return Prepare(views, options);
 }
 
 TEST(Preparation, OneMaskLeavesOutWhatWindowSkippedCyclesAndMasksDo) {

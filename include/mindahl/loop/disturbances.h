@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -15,9 +14,7 @@ namespace mindahl::loop {
 /// steps q, at least q/√12. Samples that repeat the one before say nothing new and are passed over.
 ///   σ_δ = 1.4826·median|x_i − 3x_{i−1} + 3x_{i−2} − x_{i−3}|/√20
 /// 0 for fewer than four different samples. Efficiency about 0.4: 2 % at 5000 samples.
-double EstimateDisplacementNoise(
-    std::span<const double> displacement,
-    std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+double EstimateDisplacementNoise(std::span<const double> displacement);
 
 /// Returns the step [m] of the encoder that a displacement was read from: neighbours differ by
 /// whole steps or not at all. 0 where it was not.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -68,26 +67,18 @@ struct PreparationOptions {
 
 /// One record as every later stage sees it.
 struct PreparedRecord {
-  explicit PreparedRecord(const RecordView& view, std::pmr::memory_resource* memory)
-      : record(view),
-        mended_displacement(memory),
-        mended_force(memory),
-        reversals(memory),
-        counts(memory),
-        smoothed(memory) {}
-
-  RecordView record;                             ///< measured record; must outlive this
-  GlitchCount glitches;                          ///< glitches left out, by kind
-  std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
-  std::pmr::vector<double> mended_force;         ///< [N]; likewise
-  ReversalGate gate_choice;  ///< [unit of the excitation]; `certain` where it was given
-  std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  LoopMeasures measures;                    ///< with the force's sign that of the displacement
-  double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
-  double displacement_noise = 0.0;          ///< [m]; 0 where readings are not smoothed
-  std::pmr::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
-  std::size_t left_out = 0;                 ///< samples that do not count
-  std::pmr::vector<double> smoothed;        ///< [m]; empty where readings count as exact
+  RecordView record;                        ///< measured record; must outlive this
+  GlitchCount glitches;                     ///< glitches left out, by kind
+  std::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
+  std::vector<double> mended_force;         ///< [N]; likewise
+  ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given
+  std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
+  LoopMeasures measures;               ///< with the force's sign that of the displacement
+  double encoder_step = 0.0;           ///< [m]; 0 where the displacement is no encoder's
+  double displacement_noise = 0.0;     ///< [m]; 0 where readings are not smoothed
+  std::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
+  std::size_t left_out = 0;            ///< samples that do not count
+  std::vector<double> smoothed;        ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
   std::optional<DisplacementSmoother> smoother;
 
@@ -108,9 +99,7 @@ struct PreparedRecord {
 };
 
 struct PreparedRecords {
-  explicit PreparedRecords(std::pmr::memory_resource* memory) : records(memory) {}
-
-  std::pmr::vector<PreparedRecord> records;
+  std::vector<PreparedRecord> records;
   Channel excitation = Channel::kDisplacement;
   int force_sense = 1;  ///< ±1, of all records
 
@@ -123,11 +112,9 @@ struct PreparedRecords {
 /// reversals, sign of force, smoothing and the mask of samples that count: what
 /// depends on no model.
 /// @param records  not empty; their memory must outlive the result
-/// @param memory   of the result and of scratch; must outlive it
 /// @throws InvalidArgument for records or options that break a rule, where a record has no normal
 ///   load for a window, has no cycle or sample of those asked for, or nothing is left of one
 /// Nothing else is allocated unless a displacement is smoothed.
-PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
-                        std::pmr::memory_resource* memory);
+PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options);
 
 }  // namespace mindahl::loop

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -77,9 +76,6 @@ class ReversalFinder {
 /// @throws InvalidArgument when the gate is negative or not finite
 /// Cost: one pass.
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate);
-/// Finds the same into a vector whose memory is used again.
-void FindReversals(std::span<const double> displacement, double gate,
-                   std::pmr::vector<std::size_t>& reversals);
 
 /// A gate, the reversals that it leaves, and whether another would have had as good a claim.
 struct ReversalGate {
@@ -108,8 +104,6 @@ struct ReversalGate {
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.
-ReversalGate ChooseReversalGate(
-    std::span<const double> displacement,
-    std::pmr::memory_resource* scratch = std::pmr::get_default_resource());
+ReversalGate ChooseReversalGate(std::span<const double> displacement);
 
 }  // namespace mindahl::loop

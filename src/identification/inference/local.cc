@@ -89,10 +89,9 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   return at;
 }
 
-Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
-                                  std::pmr::memory_resource* memory) {
-  std::pmr::vector<std::span<const double>> residuals(memory);
-  std::pmr::vector<std::span<const unsigned char>> counts(memory);
+Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual) {
+  std::vector<std::span<const double>> residuals;
+  std::vector<std::span<const unsigned char>> counts;
   residuals.reserve(data.records.size());
   counts.reserve(data.records.size());
   std::size_t begin = 0;
@@ -104,17 +103,15 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
   return EstimateAutocorrelation(residuals, counts);
 }
 
-double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
-                        std::pmr::memory_resource* memory) {
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual) {
   return static_cast<double>(data.counted) /
-         AutocorrelationOf(data, residual, memory).SquaredCorrelations();
+         AutocorrelationOf(data, residual).SquaredCorrelations();
 }
 
-double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
-                        std::pmr::memory_resource* memory) {
-  std::pmr::vector<double> residual(problem.size(), memory);
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response) {
+  std::vector<double> residual(problem.size());
   EvaluateResidual(problem, theta, response, residual);
-  return EffectiveSamples(*problem.data, residual, memory);
+  return EffectiveSamples(*problem.data, residual);
 }
 
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -49,18 +48,14 @@ struct DisplacementEffect {
 
 /// Autocorrelation of the residuals of all records, one after the other.
 /// @param residual  of every sample
-Autocorrelation AutocorrelationOf(
-    const ScaledRecords& data, std::span<const double> residual,
-    std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual);
 
 /// Returns the effective number of samples of residuals, weighted or not, one record after the
 /// other: those that count, over the variance inflation from autocorrelation.
-double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
-                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
 
 /// Returns the same of a solution's residuals. Binds the response to the problem.
-double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
-                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response);
 
 /// JᵀRJ of all records; where the displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of
 /// LocalUncertainty.

@@ -60,8 +60,8 @@ DisplacementErrors::DisplacementErrors(const loop::PreparedRecords& records,
     for (std::size_t r = 0; r < data.records.size(); ++r) {
       const ScaledRecord& record = data.records[r];
       Drawn& drawn = draw.emplace_back();
-      drawn.displacement.assign(record.displacement.begin(), record.displacement.end());
-      drawn.reversals.assign(record.reversals.begin(), record.reversals.end());
+      drawn.displacement = record.displacement;
+      drawn.reversals = record.reversals;
       if (!(records.records[r].displacement_noise > 0)) continue;
       drawn.displacement = records.records[r].smoother->Smooth(
           DrawReading(records.records[r], data.length, record.displacement, draws));
@@ -83,8 +83,7 @@ Eigen::MatrixXd DisplacementErrors::ForceErrors(const Problem& problem,
   drawn.data = &data;
   for (std::size_t k = 0; k < draws_.size(); ++k) {
     for (std::size_t r = 0; r < data.records.size(); ++r) {
-      data.records[r].displacement.assign(draws_[k][r].displacement.begin(),
-                                          draws_[k][r].displacement.end());
+      data.records[r].displacement = draws_[k][r].displacement;
       data.records[r].reversals = draws_[k][r].reversals;
     }
     response.Bind(drawn);

@@ -336,7 +336,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::size_t size = prepared.size();
     ScaledRecord& target = scaled.records.emplace_back();
     target.imposed = records.excitation;
-    target.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
+    target.reversals = prepared.reversals;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
     if (!time.empty() && last > first) RequireScale("half duration [s]", last / 2 - first / 2);
@@ -358,7 +358,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
       target.time[i] = (at - first) / units.half_duration - 1;
       target.root_weight[i] = prepared.counts[i] != 0 ? 1.0 : 0.0;
     }
-    target.counts.assign(prepared.counts.begin(), prepared.counts.end());
+    target.counts = prepared.counts;
     if (time.empty()) continue;
     const double unit = scaled.records.front().units.half_duration;
     target.velocity = DerivativeOf(target.displacement, target, unit);
