@@ -431,6 +431,13 @@ bool Slides(const LoopFacts& facts) {
   return facts.energy_ratio >= rules.energy_ratio || (even && std::abs(*even - 1) < rules.uneven);
 }
 
+bool RanAway(const LoopFacts& facts, double slip_force) {
+  constexpr double kFarthest = 1.25;
+  if (!Slides(facts)) return false;
+  const double ratio = slip_force / std::abs(*facts.half_gap);
+  return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
+}
+
 bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;

@@ -330,11 +330,7 @@ bool KnowsSlipForce(const FitResult& fit) {
 bool LosesSlipForce(const FitResult& before, const FitResult& after) {
   if (!KnowsSlipForce(before)) return false;
   if (!KnowsSlipForce(after)) return true;
-  constexpr double kMost = 1.25;
-  const loop::LoopFacts& facts = after.WidestRecord().facts;
-  if (!loop::Slides(facts) || !facts.half_gap) return false;
-  const double share = after.law.slip_force / std::abs(*facts.half_gap);
-  return share > kMost || share < 1 / kMost;
+  return loop::RanAway(after.WidestRecord().facts, after.law.slip_force);
 }
 
 /// Fits the record again with the term that explains most of what the law misses, where the law

@@ -72,6 +72,10 @@ std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
 /// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
 bool Slides(const LoopFacts& facts);
 
+/// True if a slip force [N] ran away from a loop that slides: it is more than a quarter off the
+/// half gap that was measured.
+bool RanAway(const LoopFacts& facts, double slip_force);
+
 /// True if a measured loop reaches its slip force at the ends of the stroke, however much of it a
 /// rig takes up: its energy is 0.85 of 4·T*·sliding amplitude or more. Mindlin's contact has it
 /// from 1.2 times its gross-slip displacement on, one with α = 1 at T* = 0.993 Tc; an ellipse has

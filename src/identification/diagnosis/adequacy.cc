@@ -27,13 +27,6 @@ double WhiteVariance(const FitResult& result) {
 
 namespace {
 
-/// True if a slip force [N] is more than a quarter off the measured half gap [N].
-bool RanAway(double slip_force, double half_gap) {
-  constexpr double kFarthest = 1.25;
-  const double ratio = slip_force / std::abs(half_gap);
-  return !(ratio <= kFarthest && ratio >= 1 / kFarthest);
-}
-
 /// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
 /// of both directions come back, of what does not repeat with them; else what differs between
 /// neighbouring samples.
@@ -51,7 +44,7 @@ double NoiseVariance(const FitResult& result) {
 }  // namespace
 
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
-  if (!loop::Slides(facts) || !RanAway(with, *facts.half_gap)) return false;
+  if (!loop::RanAway(facts, with)) return false;
   const auto distance = [&](double slip_force) {
     return std::abs(slip_force / *facts.half_gap - 1);
   };

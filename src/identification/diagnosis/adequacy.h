@@ -11,12 +11,11 @@
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/facts.h"
 
-/// Whether a model describes a record, and how large the force is that it misses, against what was
-/// measured without a model: never against a fitted slip force, which may be as wrong as the model.
+/// Judges whether a model describes a record, and compares the force that it misses with what was
+/// measured without a model: never with a fitted slip force, which may be as wrong as the model.
 namespace mindahl::identification {
 
-/// True if, of a loop that slides, Tc ran away from the half gap that was measured, no nearer than
-/// before: it is more than a quarter off.
+/// True if Tc ran away from a loop that slides, and is no nearer to its half gap than before.
 /// @param without  Tc [N] of the smaller model
 /// @param with     of the larger one
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
@@ -62,8 +61,7 @@ bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds);
 /// is judged by T*.
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);
 
-/// A misfit that is no noise and as large as failing_misfit, wherever it comes back; or a force in
-/// which no loop is seen.
+/// True if the misfit is no noise and as large as failing_misfit, or no loop is seen in the force.
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification
