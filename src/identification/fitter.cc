@@ -12,6 +12,7 @@
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inferred_fit.h"
@@ -222,11 +223,7 @@ bool Fitter::State::MayContinue() const {
 void Fitter::State::Continue(const RecordView& record, Depth depth) {
   if (MayContinue()) {
     FitOptions continued = options;
-    for (const ParameterEstimate& estimate : result.parameters) {
-      if (estimate.status == ParameterStatus::kFree) {
-        continued.start[estimate.name] = estimate.value;
-      }
-    }
+    StartFrom(result, continued);
     const double last_rms = result.rms;
     FitWithin({&record, 1}, depth, continued);
     const double as_good = options.thresholds.similar_misfit * last_rms;

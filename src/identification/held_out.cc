@@ -99,6 +99,14 @@ void HoldInitialStates(const FitResult& fit, FitOptions& options) {
   }
 }
 
+void StartFrom(const FitResult& fit, FitOptions& options) {
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.status != ParameterStatus::kFixed) {
+      options.start[parameter.name] = parameter.value;
+    }
+  }
+}
+
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   options.model = fit.model;
   HoldInitialStates(fit, options);

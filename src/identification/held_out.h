@@ -59,6 +59,9 @@ std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::siz
 /// Gives the options the initial states that a fit found.
 void HoldInitialStates(const FitResult& fit, FitOptions& options);
 
+/// Gives the options the values that a fit found, for a search to begin with.
+void StartFrom(const FitResult& fit, FitOptions& options);
+
 /// Returns options under which the fit is found again from where it is.
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 

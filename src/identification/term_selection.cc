@@ -171,15 +171,6 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   });
 }
 
-/// Gives the options the values of what a fit has found, to begin with.
-void StartFrom(const FitResult& fit, FitOptions& options) {
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.status != ParameterStatus::kFixed) {
-      options.start[parameter.name] = parameter.value;
-    }
-  }
-}
-
 /// Holds the law that another candidate of a round gives in place of the one that was added.
 struct Alternative {
   std::string name;
