@@ -73,7 +73,6 @@ bool IsDate(const Numbers& text) {
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
-  constexpr double kDay = 86'400.0;
   const Numbers read = TakeNumbers(text);
   if (!read.between.ends_with("::") || read.count % 3 != 0) return std::nullopt;
   double midnight = 0.0;

@@ -8,6 +8,8 @@
 
 namespace mindahl::io {
 
+inline constexpr double kDay = 86'400.0;  // [s]
+
 /// Returns the text without the blanks and tabs around it.
 std::string_view Trimmed(std::string_view text);
 

@@ -17,8 +17,6 @@
 namespace mindahl::io {
 namespace {
 
-constexpr double kDay = 86'400.0;
-
 bool IsNumber(double value) { return !std::isnan(value); }
 
 /// The unit that a time has without stating it: "millis", or that of a stamp since 1970.

@@ -15,7 +15,7 @@
 namespace mindahl::io {
 namespace {
 
-// By role.
+// The rows are in the order of Role.
 constexpr std::array kRules = {
     RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle},
     RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque},

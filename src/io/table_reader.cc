@@ -166,11 +166,10 @@ double TableReader::ValueOf(std::size_t place, std::string_view text) {
     mark_line_ = row_line_;
   }
   if (cell.kind == Cell::Kind::kClock) {
-    constexpr double kDayLength = 86'400.0;
     // A time of day without a date that is 12 h or more before the last is of the next day.
     double& last = last_clock_[place];
-    while (cell.value < kDayLength && cell.value + kDayLength / 2 < last) {
-      cell.value += kDayLength;
+    while (cell.value < kDay && cell.value + kDay / 2 < last) {
+      cell.value += kDay;
     }
     last = cell.value;
     table_.columns[column].is_clock = true;

@@ -462,7 +462,7 @@ std::vector<Line> DetailLines(const Report& report) {
 
 namespace {
 
-constexpr std::size_t kColumns = 100;
+constexpr std::size_t kTextWidth = 100;
 constexpr std::size_t kLabel = 14;  // where texts begin
 
 /// True for a number, or what stands before one: what comes after it belongs to it.
@@ -488,7 +488,7 @@ std::string Wrapped(std::string_view text) {
     }
     const std::string_view word = text.substr(begin, end - begin);
     const std::size_t width = CharactersIn(word);
-    if (column > kLabel && column + 1 + width > kColumns) {
+    if (column > kLabel && column + 1 + width > kTextWidth) {
       wrapped += '\n' + std::string(kLabel, ' ');
       column = kLabel;
     } else if (column > kLabel) {

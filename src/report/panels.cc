@@ -229,15 +229,15 @@ std::string ResidualsCsv(const Report& report) {
   const bool is_of_force = report.fit.response == loop::Channel::kForce;
   const bool is_timed = std::ranges::none_of(
       report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
-  constexpr std::size_t kCount = 6;
-  const std::array<std::string, kCount> names = {
+  constexpr std::size_t kColumns = 6;
+  const std::array<std::string, kColumns> names = {
       "file",
       "time [s]",
       WithUnit("displacement", report.units.displacement),
       WithUnit("force", report.units.force),
       WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response),
       WithUnit("residual", report.units.response)};
-  std::array<std::vector<double>, kCount> cells;
+  std::array<std::vector<double>, kColumns> cells;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const loop::Record& record = report.records[r].record;
     const identification::RecordFit& fit = report.fit.records[r];
@@ -251,7 +251,7 @@ std::string ResidualsCsv(const Report& report) {
     }
   }
   std::vector<io::CsvColumn> columns;
-  for (std::size_t k = 0; k < kCount; ++k) {
+  for (std::size_t k = 0; k < kColumns; ++k) {
     const bool is_needed = k == 0 ? report.records.size() > 1 : k != 1 || is_timed;
     if (is_needed) columns.push_back({names.at(k), cells.at(k)});
   }
