@@ -86,7 +86,7 @@ std::vector<double> ValuesOf(const py::handle& array) {
   return {values.data(), values.data() + values.size()};
 }
 
-/// What a record is, for pickle and copy.
+/// Returns the state of a record, for pickle and copy.
 py::tuple PickledRecord(const NamedRecord& record) {
   const io::RecordFile& file = record.file;
   py::list values;

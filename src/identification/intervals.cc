@@ -20,7 +20,8 @@ void SetInterval(ParameterEstimate& estimate, Ends ends) {
 }
 
 void Include(ParameterEstimate& estimate, Ends ends) {
-  // Of an end that is no number these are what they are given first.
+  // std::min and std::max return their first argument where it is NaN, and SetInterval() opens that
+  // end.
   const double lower =
       std::min(ends.lower.value_or(-kUnbounded), estimate.lower95.value_or(-kUnbounded));
   const double upper =

@@ -127,7 +127,7 @@ Errors Compare(const Trial& trial, const FitResult& fit) {
   errors.converged = fit.converged;
   errors.termination = fit.solver.message;
   if (fit.parameters.empty()) return errors;
-  // By Dahl's law the errors of the contact are those of the Masing law of the same loop.
+  // A fit of Dahl's law is compared with the contact through the Masing law of the same loop.
   const models::BranchLaw found =
       trial.IsDahl() ? models::MasingEquivalent(fit.law, trial.amplitude) : fit.law;
   errors.of_contact = {

@@ -191,7 +191,7 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
       largest = std::max(largest, overshoot.back());
     }
   }
-  // As if every sample lay on the steepest part of its branch.
+  // The largest shift: every sample is taken to lie on the steepest part of its branch.
   const double shift = static_cast<double>(data.counted) * std::exp(best.theta[kStiffness]) *
                        largest / std::sqrt(best.sum_of_squares);
   if (!(shift > thresholds.turning_point_shift)) return std::nullopt;

@@ -113,7 +113,8 @@ void FillIdentified(const FitResult& fit, const KnownContact& known, Kind kind,
     return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
   };
   const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
-  // Of a given contact radius, p₀ does not follow from the fit; a little further E would not end.
+  // The step shows whether the quantity grows with the parameter. It is small because E may have no
+  // value further away. Where the contact radius is given, p₀ does not depend on the fit.
   constexpr double kFurther = 1 + 1e-6;
   const double trend = way(kFurther * parameter.value).value_or(0.0);
   std::vector<Influence> of;

@@ -260,7 +260,7 @@ FitOptions MakeFitOptions(const FitRequest& request) {
 }
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
-  // Where the contact slips as a whole, an asymmetry of a cycle is an offset of its force.
+  // A cycle of gross slip does not distinguish an asymmetry from an offset of the force.
   const bool is_asymmetric = std::ranges::find(request.terms, "asymmetry") != request.terms.end();
   for (const auto& [is_given, option] :
        {std::pair(request.compare, "--compare"),

@@ -457,7 +457,7 @@ struct Setting {
 
 class ColumnOfDeparture : public ::testing::TestWithParam<Setting> {};
 
-/// Of each column.
+/// Returns the departure of each column.
 std::vector<const Departure*> DeparturesOf(const DepartureColumns& columns) {
   std::vector<const Departure*> of(static_cast<std::size_t>(columns.columns.cols()));
   for (const OmittedTerm& term : columns.terms) {

@@ -83,7 +83,7 @@ struct ValidationRow {
   std::size_t failures = 0;      ///< not converged, or an error above the tolerance
   std::size_t undetermined = 0;  ///< a parameter reported as not identifiable
   double tolerance = 0.0;        ///< noise-free: on the errors; with noise: in standard errors
-  /// Of |σ/(8a/G*) − 1|, |α − 1/3| and |Tc/(μN) − 1|.
+  /// Holds the errors |σ/(8a/G*) − 1|, |α − 1/3| and |Tc/(μN) − 1|.
   std::array<ErrorSpread, kValidatedParameters.size()> errors = {};
   double worst_standardized =
       0.0;  ///< with noise: largest distance of the truth in standard errors

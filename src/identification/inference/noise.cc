@@ -270,7 +270,7 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
   if (count < 2 || pooled < degrees * kOnlyRounding * kOnlyRounding) return 1.0;
   const double statistic = degrees * std::log(pooled / degrees) - logarithms;
   const double correction = 1 + (reciprocals - 1 / degrees) / (3 * (count - 1));
-  // Of records with one variance it is zero but for rounding.
+  // Rounding may make the statistic of records with equal variances negative.
   return PValueOfChiSquared(std::max(statistic, 0.0) / correction, count - 1);
 }
 

@@ -118,7 +118,7 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
     last = held.solution().theta;
     return root;
   });
-  // Where α reaches its bound, the bound ends the interval and the data do not.
+  // With α at its upper bound, the bound limits Tc and the data do not: the interval stays open.
   const Parameter& shape = problem.parameters[kShape];
   const bool by_shape = towards > 0 && parameter == kSlipForce && !shape.fixed &&
                         SideOf(shape, last[kShape]) == BoundSide::kUpper;
@@ -244,7 +244,7 @@ ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& re
   }
   ParameterEstimate& slip_force = parameters[kSlipForce];
   if (slip_force.status == ParameterStatus::kFixed || slip_force.upper95) return parameters;
-  // Where α reaches its bound, the likelihood does not determine the lower end either.
+  // With α at its upper bound, the likelihood does not determine the lower end of Tc either.
   const bool by_bound = parameters[kShape].status == ParameterStatus::kAtUpperBound;
   if (by_bound) SetInterval(slip_force, {.lower = 0.0});
   ParameterEstimate& shape = parameters[kShape];
