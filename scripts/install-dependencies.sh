@@ -6,7 +6,7 @@
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
-#   install-dependencies.sh --clang     also the other compiler
+#   install-dependencies.sh --clang     also the other compiler and clang-tidy
 #   install-dependencies.sh --readers   also what reads other files and runs the notebooks, in Python
 #   install-dependencies.sh --workflow  also what runs campaigns, and a Slurm for them
 #   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
@@ -28,7 +28,7 @@ for group in "$@"; do
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;
-    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
+    --checks) packages+=(clang-format doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers)
       packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox)
@@ -36,7 +36,7 @@ for group in "$@"; do
       node_packages+=(@mujoco/mujoco@3)  # no Debian package: Google's WebAssembly build
       ;;
     --coverage) packages+=(gcovr) ;;
-    --clang) packages+=(clang-19) ;;
+    --clang) packages+=(clang-19 clang-tidy-19) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --readers)
       packages+=(

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
-# their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; how
+# their checks too; clang-tidy, and with clang's static analyzer; the intervals' coverage over a thousand loops a row; how
 # often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
 # another seed every night; a campaign through Slurm; the Debian packages, used on a clean root; a wheel
 # that is complete.
@@ -18,6 +18,7 @@ part() {
 part ./scripts/test.sh ci
 part ./scripts/slurm.sh
 part ./scripts/test.sh asan-full
+part ./scripts/tidy.sh
 part ./scripts/tidy.sh --thorough
 part ./scripts/clang.sh
 part ./scripts/fuzz.sh --seconds 600
