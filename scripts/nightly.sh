@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
-# their checks too; clang-tidy, and with clang's static analyzer; the intervals' coverage over a thousand loops a row; how
-# often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
-# another seed every night; a campaign through Slurm; the Debian packages, used on a clean root; a wheel
-# that is complete.
+# their checks too; clang-tidy, and with clang's static analyzer; the intervals' coverage over a
+# thousand loops a row; how often a corrupted loop is fitted wrongly without a word; the mapping over
+# thousands of contacts with another seed every night; a campaign through Slurm; the Debian packages,
+# used on a clean root; a wheel that is complete.
 # Some hours on two cores. Every part runs, whatever became of those before.
 set -uo pipefail
 cd "$(dirname "$0")/.."
