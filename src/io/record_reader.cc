@@ -151,6 +151,7 @@ ChosenColumn RecordBuilder::Choose(const ColumnNames& names, Role role, Expressi
 /// Finds from where the time counts, and its unit where it states none.
 void RecordBuilder::FindOrigin(const ColumnNames& names, Expression& time) {
   const std::size_t first = time.terms.front().column;
+  const bool is_as_written = time.terms.front().weight == 1.0 && !time.is_scaled;
   const TableColumn& column = names.table().columns[first];
   const auto number = std::ranges::find_if(column.values, IsNumber);
   const double start = number == column.values.end() ? 0.0 : *number;
@@ -162,11 +163,11 @@ void RecordBuilder::FindOrigin(const ColumnNames& names, Expression& time) {
     time.unit = "s";
     time_origin_ = kDay * std::floor(start / kDay);
     note("holds times of day: taken as seconds since midnight of the first one's day");
-  } else if (const std::string stated = time.is_plain() ? names.UnitOf(first, "--time") : "";
+  } else if (const std::string stated = is_as_written ? names.UnitOf(first, "--time") : "";
              !stated.empty()) {
     const auto unit = TimeUnit(stated);
     if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
-  } else if (time.unit.empty() && time.is_plain()) {
+  } else if (time.unit.empty() && is_as_written) {
     time.unit = ImpliedTimeUnit(names[first].name.evidence.word, start);
     if (time.unit.empty()) {
       time.unit = "s";

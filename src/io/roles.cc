@@ -101,7 +101,10 @@ class RoleAssigner {
     const bool finds_displacement = IsMissing(Role::kDisplacement);
     const bool finds_force = IsMissing(Role::kForce);
     FindPair();
-    if (!asked.sample_rate) TakeFound(Role::kTime, taken_);
+    if (!asked.sample_rate && IsMissing(Role::kTime)) {
+      TakeFound(Role::kTime, taken_);
+      AddNanoseconds();
+    }
     // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
     std::vector<bool> taken = taken_;
     for (const std::string& covariate : asked.covariates) {
@@ -144,15 +147,36 @@ class RoleAssigner {
     if (!IsMissing(role)) return;
     const Expression found = names_.Find("", role, taken);
     if (!found.terms.empty()) return Take(found.terms.front().column, role);
-    for (std::size_t text = 0; text < taken.size() && role == Role::kTime; ++text) {
-      if (!names_[text].name.evidence.names(role) || names_[text].is_numeric) continue;
-      notes_.push_back(
-          fmt::format("{}: time {} holds no numbers: left out", file_, names_.Label(text)));
+    for (std::size_t named = 0; named < taken.size() && role == Role::kTime; ++named) {
+      if (taken[named] || !names_[named].name.evidence.names(role)) continue;
+      notes_.push_back(fmt::format(
+          "{}: time {} {}: left out", file_, names_.Label(named),
+          names_[named].is_numeric ? "has a unit that is none of a time" : "holds no numbers"));
     }
     const std::string& unit = roles_[role].unit;
     if (unit.empty()) return;
     Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
            unit, RulesOf(role).name);
+  }
+
+  /// Adds to a stamp of whole seconds, "header.stamp.sec", the column of its nanoseconds.
+  void AddNanoseconds() {
+    if (IsMissing(Role::kTime)) return;
+    const std::size_t seconds = ColumnOf(Role::kTime);
+    const auto name = [&](std::size_t column) { return LowerCase(names_[column].name.name); };
+    const std::string stamp = name(seconds);
+    if (!stamp.ends_with("sec") && !stamp.ends_with("secs")) return;
+    const std::string stem = stamp.substr(0, stamp.rfind("sec"));
+    for (std::size_t column = 0; column < taken_.size(); ++column) {
+      const bool is_of_stamp = name(column) == stem + "nano" + stamp.substr(stem.size()) ||
+                               name(column) == stem + "n" + stamp.substr(stem.size());
+      if (!is_of_stamp || taken_[column] || !names_[column].is_numeric) continue;
+      taken_[column] = true;
+      roles_[Role::kTime].terms.push_back({column, 1e-9});
+      notes_.push_back(fmt::format("{}: time {} with the nanoseconds of {}", file_,
+                                   names_.Label(seconds), names_.Label(column)));
+      return;
+    }
   }
 
   struct Candidate {

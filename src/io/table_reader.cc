@@ -29,6 +29,12 @@ TableReader::TableReader(const Layout& layout, std::string file, bool skip_broke
   for (std::size_t column = 0; column < layout.columns; ++column) {
     if (!layout.names.empty()) table_.columns[column].name = layout.names[column];
     if (!layout.units.empty()) table_.columns[column].unit = layout.units[column];
+    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+    if (column == 0 || !layout.mostly_numbers[column - 1] || layout.mostly_numbers[column])
+      continue;
+    const std::string& name = table_.columns[column].name;
+    std::string& unit = table_.columns[column - 1].unit;
+    if (unit.empty() && LooksLikeUnit(name)) unit = name;
   }
   if (layout.preamble_rows > 0) {
     table_.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", table_.file,

@@ -34,6 +34,11 @@ PlotJugglerWithAJointThatRests 2 3 0 2.5 1.5 |
 RosTextWithStampsInNanosecondsAndNames 5 6 1.5 2.5 1.0 | 
   %time,field.header.seq,field.header.frame_id,field.name0,field.position0,field.effort0¶
   1709633472000000000,1,,joint1,1.5,2.5¶1709633473000000000,2,,joint1,2.5,3.5¶
+RosTextWithStampsInTwoColumns 3 4 1.5 2.5 1.0 | 
+  header.stamp.sec,header.stamp.nanosec,position,effort¶1709633472,750000000,1.5,2.5¶
+  1709633473,0,2.5,3.5¶
+UnitsInColumnsOfTheirOwn 3 5 1.5e-3 2.5 0.1 | Zeit;s;Disp;mm;Force;N¶0,0;s;1,5;mm;2,5;N¶
+  0,1;s;2,5;mm;3,5;N¶
 AbaqusReport 2 3 0 2.5 - | ¶             X                U:U1            RF:RF1     ¶¶
      0.              0.       2.5¶  10.E-03       2.E-03      3.5¶  20.E-03      -2.E-03     -3.5¶
     30.E-03       2.E-03      3.5¶
@@ -108,7 +113,7 @@ RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение,
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 48U);
+  EXPECT_EQ(layouts.size(), 50U);
   for (const Strings& layout : layouts) {
     std::istringstream head(layout[0]);
     std::string name;

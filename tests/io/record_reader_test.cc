@@ -106,6 +106,9 @@ TEST(RecordReader, NotesWhatItAssumes) {
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
   EXPECT_EQ(Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
             (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
+  EXPECT_EQ(Notes("time [week],x [m],F [N]\n1,1.5,2.5\n2,3.5,4.5\n"),
+            (Strings{"loop.csv: time 'time [week]' (column 1) has a unit that is none of a time: "
+                     "left out"}));
 }
 
 // A text, the columns of displacement and force that are chosen, and what is said of loop.csv.
