@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 
@@ -45,6 +48,13 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
 }
 
 void RequireWritable(const OutputPath& output) {
+  constexpr std::array<std::string_view, 10> kNotWritten = {
+      ".parquet", ".feather", ".arrow", ".xlsx", ".xls", ".ods", ".h5", ".hdf5", ".mat", ".npz"};
+  const std::string ending = LowerCase(fs::path(output.path).extension().string());
+  if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
+    throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
+                                 output.option, output.path, ending));
+  }
   std::error_code ignored;
   if (fs::is_directory(output.path, ignored)) {
     throw InputError(
