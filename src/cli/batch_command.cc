@@ -43,10 +43,6 @@ struct BatchCommandOptions {
 void RequireReportDirectory(const BatchCommandOptions& options) {
   const std::string& directory = options.report_directory;
   if (directory.empty()) return;
-  for (const auto& [option, path] :
-       {std::pair("--output", options.output), {"--json", options.json_path}}) {
-    RequireDistinctOutputs({option, path}, {"--report", directory});
-  }
   std::error_code error;
   std::filesystem::create_directory(directory, error);
   if (!error && std::filesystem::is_directory(directory)) return;
@@ -54,8 +50,7 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
                                directory, error ? error.message() : "it is a file"));
 }
 
-std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command,
-                                     const Console& console) {
+std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command) {
   const std::vector<std::string>& files = options.request.files;
   std::vector<std::string> pages;
   pages.reserve(files.size());
@@ -71,7 +66,7 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
     return [&, k](const report::Report& report) {
       io::WriteFileAtomically(
           std::filesystem::path(options.report_directory) / pages[k],
-          report::ToPage(report, ProvenanceOfOneFit(command, console, files[k])));
+          report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
       return pages[k];
     };
   };
@@ -82,13 +77,10 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
-  RequireOutputPaths(
-      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}},
-      console, request.files);
-  if (!options.overwrite) RequireNotThere({"--output", options.output}, "--overwrite");
+  if (!options.overwrite) RequireNotThere("--output", options.output, "--overwrite");
   MakeFitOptions(request);  // before a directory is made
   RequireReportDirectory(options);
-  const std::vector<BatchEntry> fits = FitInThreads(options, command, console);
+  const std::vector<BatchEntry> fits = FitInThreads(options, command);
   for (const BatchEntry& fit : fits) {
     for (const std::string& note : fit.notes) {
       console.err << fmt::format("mindahl batch: note: {}\n", note);
@@ -99,7 +91,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {
     io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
-                            IndexPage(fits, ProvenanceOf(command, console, request.files)));
+                            IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, fits, options.output);
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
@@ -135,7 +127,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
-  command.callback([options, &command, &console] { RunBatch(*options, command, console); });
+  OnRun(command, [options, &command, &console] { RunBatch(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

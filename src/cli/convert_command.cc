@@ -205,12 +205,6 @@ std::string ToText(const ConvertedContact& made) {
 }
 
 void RunConvert(const ConvertOptions& options, Console& console) {
-  if (options.json_path == "-" && options.input_lines_path == "-") {
-    throw InputError("--json - and --input-lines - both write to standard output: give a file");
-  }
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
-                      {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
-                     console, {options.fit});
   const ConvertedContact converted = MakeConversion(options);
   if (!options.input_lines_path.empty()) {
     std::string lines;
@@ -273,7 +267,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
   outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  command.callback([options, &console] { RunConvert(*options, console); });
+  OnRun(command, [options, &console] { RunConvert(*options, console); });
 }
 
 }  // namespace mindahl::cli

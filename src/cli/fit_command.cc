@@ -67,15 +67,10 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
-                      {"--residuals", options.residuals_path},
-                      {"--plot", options.plot_path},
-                      {"--report", options.report_path}},
-                     console, request.files);
   request::Validate(request);
   const report::Report report = request::FitRecords(request, request::ReadRecords(request));
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
-  const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
+  const auto provenance = [&] { return ProvenanceOf(command, console.command_line, InputsOf(command)); };
   WriteFitOutputs(options, report, provenance, console);
 }
 
@@ -109,7 +104,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
-  command.callback([options, &command, &console] { RunFit(*options, command, console); });
+  OnRun(command, [options, &command, &console] { RunFit(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "cli/options.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
+#include "mindahl/io/plot.h"
 
 namespace mindahl::cli {
 
@@ -44,8 +46,16 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
   return place(first) == place(second);
 }
 
-void RequireWritable(const OutputPath& output) {
+/// An output of the command line.
+struct Output {
+  std::string option;
+  std::string path;
+  bool is_directory = false;
+};
+
+void RequireWritable(const Output& output) {
   std::error_code ignored;
+  if (output.is_directory) return;
   if (fs::is_directory(output.path, ignored)) {
     throw InputError(
         fmt::format("{}: cannot write '{}': it is a directory", output.option, output.path));
@@ -57,31 +67,59 @@ void RequireWritable(const OutputPath& output) {
   }
 }
 
-}  // namespace
+/// Returns the options of a command and of the program whose value is called so.
+std::vector<const CLI::Option*> OptionsOfType(const CLI::App& command, std::string_view type) {
+  const auto is_given = [&](const CLI::Option* option) {
+    return option->count() > 0 && option->get_type_name() == type;
+  };
+  std::vector<const CLI::Option*> options = command.get_options(is_given);
+  const std::vector<const CLI::Option*> of_program = command.get_parent()->get_options(is_given);
+  options.insert(options.end(), of_program.begin(), of_program.end());
+  return options;
+}
 
-void RequireOutputPaths(std::initializer_list<OutputPath> outputs, const Console& console,
-                        const std::vector<std::string>& files) {
-  std::vector<std::string> inputs = console.inputs;
-  inputs.insert(inputs.end(), files.begin(), files.end());
-  std::vector<OutputPath> checked;
-  for (const OutputPath& output : outputs) {
-    if (output.path.empty() || (output.dash_is_stdout && output.path == "-")) continue;
-    RequireWritable(output);
-    for (const std::string& input : inputs) {
-      if (input.empty() || !IsSameFile(output.path, input)) continue;
-      throw InputError(
-          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
-                      output.option, output.path, input));
+void RequireOutputs(const CLI::App& command) {
+  const std::vector<std::string> inputs = InputsOf(command);
+  std::vector<Output> checked;
+  for (const char* type : {"PATH", "DIR"}) {
+    for (const CLI::Option* option : OptionsOfType(command, type)) {
+      const Output output{"--" + NameOf(*option), option->results().back(),
+                          type == std::string_view("DIR")};
+      if (output.path.empty()) continue;
+      const bool is_stdout = output.path == "-";
+      if (!is_stdout) RequireWritable(output);
+      if (output.option == "--plot") io::RequirePlotName(output.path);
+      for (const std::string& input : inputs) {
+        if (is_stdout || !IsSameFile(output.path, input)) continue;
+        throw InputError(
+            fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
+                        output.option, output.path, input));
+      }
+      for (const Output& other : checked) {
+        if (!(is_stdout ? other.path == "-" : IsSameFile(other.path, output.path))) continue;
+        throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                                     other.option, output.option, output.path));
+      }
+      checked.push_back(output);
     }
-    for (const OutputPath& other : checked) RequireDistinctOutputs(other, output);
-    checked.push_back(output);
   }
 }
 
-void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second) {
-  if (first.path.empty() || second.path.empty() || !IsSameFile(first.path, second.path)) return;
-  throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
-                               first.option, second.option, second.path));
+}  // namespace
+
+std::vector<std::string> InputsOf(const CLI::App& command) {
+  std::vector<std::string> inputs;
+  for (const CLI::Option* option : OptionsOfType(command, "FILE")) {
+    inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  }
+  return inputs;
+}
+
+void OnRun(CLI::App& command, std::function<void()> run) {
+  command.callback([&command, run = std::move(run)] {
+    RequireOutputs(command);
+    run();
+  });
 }
 
 void RequireDistinctFiles(std::span<const std::string> files) {
@@ -95,10 +133,10 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   }
 }
 
-void RequireNotThere(const OutputPath& output, std::string_view remedy) {
+void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy) {
   std::error_code ignored;
-  if (!fs::is_regular_file(output.path, ignored)) return;  // a device loses nothing
-  throw InputError(fmt::format("{}: {} exists: add {}", output.option, output.path, remedy));
+  if (!fs::is_regular_file(path, ignored)) return;  // a device loses nothing
+  throw InputError(fmt::format("{}: {} exists: add {}", option, path, remedy));
 }
 
 }  // namespace mindahl::cli

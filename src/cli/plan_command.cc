@@ -411,8 +411,6 @@ io::Plot ToPlot(const Plan& plan) {
 }
 
 void RunPlan(const PlanOptions& options, Console& console) {
-  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}, {"--plot", options.plot}},
-                     console, {options.record});
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
   WriteAnswer(options.json, console, plan);
@@ -488,7 +486,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const OptionGroup output(command, "Output");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
-  command.callback([options, &console] { RunPlan(*options, console); });
+  OnRun(command, [options, &console] { RunPlan(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -16,12 +16,8 @@ std::string ShellWord(std::string_view word);
 std::string CommandLine(int argc, const char* const* argv);
 
 /// Returns what is needed to make a result again: the command line, the options given there or in a
-/// configuration file, and digests of the files, that of the configuration among them.
-report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
+/// configuration file, and digests of the files.
+report::Provenance ProvenanceOf(const CLI::App& command, const std::string& command_line,
                                 std::span<const std::string> files);
-
-/// Returns the provenance of one file of a batch: the `fit` that does the same to it alone.
-report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& console,
-                                      const std::string& file);
 
 }  // namespace mindahl::cli

@@ -252,10 +252,6 @@ std::string ToJson(const Tradeoff& study) {
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  RequireOutputPaths({{"--csv", options.csv},
-                      {"--plot", options.plot},
-                      {"--json", options.json, /*dash_is_stdout=*/true}},
-                     console, {options.path});
   TradeoffOptions asked = options;
   if (!options.path.empty()) {
     asked.displacement = io::ImposedColumn(io::ReadCsvTable(options.path),
@@ -305,7 +301,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
-  command.callback([options, &console] { RunTradeoff(*options, console); });
+  OnRun(command, [options, &console] { RunTradeoff(*options, console); });
 }
 
 }  // namespace mindahl::cli
