@@ -64,9 +64,8 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
   const auto page_of = [&](std::size_t k) -> WritePage {
     if (options.report_directory.empty()) return {};
     return [&, k](const report::Report& report) {
-      io::WriteFileAtomically(
-          std::filesystem::path(options.report_directory) / pages[k],
-          report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
+      io::WriteFileAtomically(std::filesystem::path(options.report_directory) / pages[k],
+                              report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
       return pages[k];
     };
   };
@@ -90,8 +89,9 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {
-    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
-                            IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
+    io::WriteFileAtomically(
+        std::filesystem::path(options.report_directory) / "index.html",
+        IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, fits, options.output);
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;

@@ -70,7 +70,9 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   request::Validate(request);
   const report::Report report = request::FitRecords(request, request::ReadRecords(request));
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
-  const auto provenance = [&] { return ProvenanceOf(command, console.command_line, InputsOf(command)); };
+  const auto provenance = [&] {
+    return ProvenanceOf(command, console.command_line, InputsOf(command));
+  };
   WriteFitOutputs(options, report, provenance, console);
 }
 
