@@ -71,8 +71,7 @@ struct TrackedTest {
   std::size_t cycles = 0;
   std::size_t unused_samples = 0;  // at the ends, part of no whole cycle
   std::size_t broken_rows = 0;     // rows skipped
-  double reversal_gate = 0.0;      // [m]
-  bool is_gate_certain = true;
+  loop::ReversalGate gate = {};
   std::size_t fits = 0;
   std::size_t flagged = 0;
   std::size_t resumed = 0;  // fits that the table had already
@@ -147,29 +146,28 @@ std::string ToJson(const TrackedTest& test) {
     flags[flag.name] = found == test.flags.end() ? 0 : found->second;
   }
   const campaign::EnergyCounts& counts = test.energy.counts();
-  return report::Dump(
-      {{"schema", "mindahl.track/1"},
-       {"version", Version()},
-       {"input",
-        {{"files", test.files},
-         {"samples", test.samples},
-         {"cycles", test.cycles},
-         {"unused_samples", test.unused_samples},
-         {"broken_rows", test.broken_rows}}},
-       {"reversals", {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}}},
-       {"output", test.output},
-       {"fits", test.fits},
-       {"flagged", test.flagged},
-       {"flags", std::move(flags)},
-       {"accumulated_energy", test.energy.total()},
-       {"energy_counts",
-        {{"measured", counts.measured},
-         {"replaced", counts.replaced},
-         {"left_out", counts.left_out}}},
-       {"headline", campaign::Headline(test.evolutions)},
-       {"changes", campaign::ChangeStatements(test.evolutions)},
-       {"quantities", QuantityRows(test)},
-       {"notes", test.notes}});
+  return report::Dump({{"schema", "mindahl.track/1"},
+                       {"version", Version()},
+                       {"input",
+                        {{"files", test.files},
+                         {"samples", test.samples},
+                         {"cycles", test.cycles},
+                         {"unused_samples", test.unused_samples},
+                         {"broken_rows", test.broken_rows}}},
+                       {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
+                       {"output", test.output},
+                       {"fits", test.fits},
+                       {"flagged", test.flagged},
+                       {"flags", std::move(flags)},
+                       {"accumulated_energy", test.energy.total()},
+                       {"energy_counts",
+                        {{"measured", counts.measured},
+                         {"replaced", counts.replaced},
+                         {"left_out", counts.left_out}}},
+                       {"headline", campaign::Headline(test.evolutions)},
+                       {"changes", campaign::ChangeStatements(test.evolutions)},
+                       {"quantities", QuantityRows(test)},
+                       {"notes", test.notes}});
 }
 
 /// Returns what was read, fitted and dissipated, one sentence each.
@@ -352,7 +350,6 @@ class TrackRun {
   const CLI::App& command_;
   TrackedTest test_;
   identification::FitOptions fit_;
-  campaign::Reading reading_;  // of the head
   io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
@@ -381,15 +378,16 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
   fit_ = MakeCycleFitOptions(options_.fit);
   const contact::KnownContact& known = options_.fit.contact.known;
   if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-  reading_ = campaign::ChooseReading(head, fit_);
+  const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
+  test_.gate = campaign::ChooseGate(head, fit_);
   const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
   if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-  const double gate = *fit_.preparation.reversal_gate;
-  if (!reading_.gate_is_given && gate > 0) {
+  const loop::ReversalGate& gate = test_.gate;
+  if (!is_gate_given && gate.gate > 0) {
     test_.notes.push_back(
         fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
                     "says another",
-                    gate, reading_.samples));
+                    gate.gate, head.size()));
   }
   campaign::TrackOptions options{
       .fit = fit_,
@@ -398,7 +396,12 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
       .every = options_.every,
       .threads = options_.threads};
   Resume(options);
-  if (const auto doubt = campaign::DoubtAbout(reading_, source)) test_.notes.push_back(*doubt);
+  if (!gate.certain) {
+    test_.notes.push_back(fmt::format(
+        "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
+        "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
+        source, head.size(), gate.count, gate.gate, gate.other_count, gate.other_gate));
+  }
   tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
 }
 
@@ -513,10 +516,13 @@ TrackedTest TrackRun::Track() {
   signals_.reset();
   test_.cycles = tracker_->cycles();
   test_.log = tracker_->log();
-  test_.reversal_gate = *fit_.preparation.reversal_gate;
-  test_.is_gate_certain = reading_.gate.certain;
-  campaign::RequireCycles(test_.cycles, options_.average, reading_, test_.reversal_gate,
-                          fmt::format("{}", fmt::join(test_.files, ", ")));
+  if (test_.cycles == 0) {
+    throw InputError(fmt::format(
+        "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
+        "another column with --displacement, or a smaller --reversal-gate",
+        fmt::join(test_.files, ", "), options_.average > 1 ? ", or fewer than --average says" : "",
+        test_.gate.count, test_.gate.gate));
+  }
   test_.evolutions = test_.courses.Describe(test_.is_torsional);
   return std::move(test_);
 }
