@@ -74,18 +74,16 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
 
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
-  Validate(request.contact);
   RequireDistinctFiles(request.files);
   if (!options.overwrite) RequireNotThere("--output", options.output, "--overwrite");
-  MakeFitOptions(request);  // before a directory is made
+  Validate(request);  // before a directory is made
   RequireReportDirectory(options);
   const std::vector<BatchEntry> fits = FitInThreads(options, command);
   for (const BatchEntry& fit : fits) {
-    for (const std::string& note : fit.notes) {
-      console.err << fmt::format("mindahl batch: note: {}\n", note);
+    Say("batch: note", fit.notes, console);
+    if (!fit.fault.empty()) {
+      Say("batch: warning", {fmt::format("{}: {}", fit.file, fit.fault)}, console);
     }
-    if (fit.fault.empty()) continue;
-    console.err << fmt::format("mindahl batch: warning: {}: {}\n", fit.file, fit.fault);
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {

@@ -83,7 +83,7 @@ std::string ToText(const ContactAnswer& contact) {
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
   const ContactAnswer contact{options.contact, ResolveContact(options.contact)};
-  WarnOfDoubts(options.contact, "contact", console);
+  Say("contact: warning", DoubtsAbout(options.contact), console);
   WriteAnswer(options.json_path, console, contact);
 }
 

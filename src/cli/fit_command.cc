@@ -1,13 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "cli/app.h"
 #include "cli/fit_request.h"
@@ -34,9 +28,12 @@ struct FitCommandOptions {
   bool has_details = false;
 };
 
-/// @param provenance  asked for where a page is written: it reads the files once more
-void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
-                     const std::function<report::Provenance()>& provenance, Console& console) {
+void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
+  const FitRequest& request = options.request;
+  RequireDistinctFiles(request.files);
+  Validate(request);
+  const report::Report report = request::FitRecords(request, request::ReadRecords(request));
+  console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const bool failed = report.failed();  // then there is no curve to draw, no residual to list
   if (failed) {
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
@@ -46,7 +43,9 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
     io::WritePlot(report::ToPlot(report), options.plot_path);
   }
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
+    io::WriteFileAtomically(
+        options.report_path,
+        ToPage(report, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
@@ -54,26 +53,11 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
   if (failed) return;
   if (options.json_path == "-") {
-    for (const std::string& note : report.notes) {
-      console.err << fmt::format("mindahl fit: note: {}\n", note);
-    }
+    Say("fit: note", report.notes, console);
   } else {
     console.out << report::ToText(
         report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
   }
-}
-
-void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
-  const FitRequest& request = options.request;
-  Validate(request.contact);
-  RequireDistinctFiles(request.files);
-  request::Validate(request);
-  const report::Report report = request::FitRecords(request, request::ReadRecords(request));
-  console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
-  const auto provenance = [&] {
-    return ProvenanceOf(command, console.command_line, InputsOf(command));
-  };
-  WriteFitOutputs(options, report, provenance, console);
 }
 
 }  // namespace

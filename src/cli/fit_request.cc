@@ -1,6 +1,7 @@
 #include "cli/fit_request.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 #include <map>
@@ -15,6 +16,7 @@
 #include "cli/options.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
@@ -175,23 +177,6 @@ void AddSelections(CLI::App& command, FitRequest& request) {
                   "leave out what at the ends of a record is not the test, and say which\nrows");
 }
 
-/// Breaks a list of words into lines of a help text, the first of which has `used` characters.
-std::string InLines(const std::vector<std::string>& words, std::size_t used) {
-  constexpr std::size_t kWidth = 70;
-  std::string text;
-  for (const std::string& word : words) {
-    if (used + 1 + word.size() > kWidth) {
-      text += '\n';
-      used = 0;
-    } else if (!text.empty()) {
-      text += ' ';
-    }
-    text += word;
-    used += 1 + word.size();
-  }
-  return text;
-}
-
 std::string DescribeModels() {
   std::string text =
       "law of the friction; auto: mindlin-dahl or dahl, whichever the record supports";
@@ -218,8 +203,12 @@ std::string DescribeParameters() {
     words.push_back(fmt::format("{} [{}],", term.name, term.unit));
   }
   words.back().pop_back();
-  return "hold a parameter at a value in its unit, and add its term:\n" + InLines(words, 0) +
-         "\noffsets and drifts of several files are numbered, force_offset_2";
+  constexpr std::size_t kWidth = 69;  // of a help text
+  const std::vector<std::string_view> views(words.begin(), words.end());
+  return fmt::format(
+      "hold a parameter at a value in its unit, and add its term:\n{}\n"
+      "offsets and drifts of several files are numbered, force_offset_2",
+      fmt::join(LinesOf(views, kWidth), "\n"));
 }
 
 }  // namespace

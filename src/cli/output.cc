@@ -23,6 +23,12 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
   }
 }
 
+void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console) {
+  for (const std::string& sentence : sentences) {
+    console.err << fmt::format("mindahl {}: {}\n", what, sentence);
+  }
+}
+
 namespace fs = std::filesystem;
 
 namespace {

@@ -14,6 +14,10 @@ namespace mindahl::cli {
 /// @throws InputError when the file cannot be written
 void WriteText(std::string_view text, const std::string& path, Console& console);
 
+/// Says sentences on standard error.
+/// @param what  "fit: note"
+void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console);
+
 /// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
 /// JSON goes there.
 /// @param answer  as ToJson() and ToText() take it

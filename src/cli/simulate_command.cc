@@ -330,7 +330,7 @@ std::string MethodHelp() {
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
   const Simulation simulation = Simulate(options);
-  WarnOfDoubts(options.law.contact, "simulate", console);
+  Say("simulate: warning", DoubtsAbout(options.law.contact), console);
   WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
 }
 

@@ -98,25 +98,38 @@ Json ValueAt(const BatchEntry& entry, std::string_view pointer) {
   return entry.fit->json.at(at);
 }
 
-Json ValueOf(const BatchEntry& entry, std::string_view column) {
-  const auto found = std::ranges::find(kBatchColumns, column, &ColumnRow::name);
-  return found == kBatchColumns.end() ? Json(nullptr) : ValueAt(entry, found->pointer);
-}
-
 std::string WarningsOf(const BatchEntry& entry) {
   std::vector<std::string> codes;
   for (const Json& warning : ValueAt(entry, "/warnings")) codes.push_back(warning["code"]);
   return fmt::format("{}", fmt::join(codes, " "));
 }
 
-std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
+Json TableRows(std::span<const BatchEntry> entries) {
+  Json rows = Json::array();
+  for (const BatchEntry& entry : entries) {
+    Json row = {{"file", entry.file}, {"done", entry.done}};
+    for (const ColumnRow& column : kBatchColumns) {
+      row[column.name] = ValueAt(entry, column.pointer);
+    }
+    row["warnings"] = WarningsOf(entry);
+    row["fault"] = entry.fault;
+    row["version"] = Version();
+    row["sha256"] = entry.sha256;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// @param rows  the table's, of the same fits
+std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits, const Json& rows,
                                            const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;  // by which repeats scatter
   std::vector<double> common;  // of an interval that is wider than by its own error
-  for (const BatchEntry& fit : fits) {
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const BatchEntry& fit = fits[k];
     const auto number = [&](std::string_view name, const char* suffix) {
-      const Json value = ValueOf(fit, fmt::format("{}{}", name, suffix));
+      const Json value = rows[k].value(fmt::format("{}{}", name, suffix), Json());
       return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
     };
     const std::optional<double> value = number(quantity.name, "");
@@ -126,7 +139,7 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
       values.push_back(*value);
       continue;
     }
-    const Json verdict = ValueOf(fit, fmt::format("{}_verdict", parameter));
+    const Json& verdict = rows[k].at(fmt::format("{}_verdict", parameter));
     const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
     const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
     std::optional<double> own = number(parameter, "_error");
@@ -146,9 +159,10 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
 
 /// Returns what repeats of a test say of each quantity.
 Json RepeatRows(std::span<const BatchEntry> entries) {
+  const Json table = TableRows(entries);
   Json rows = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    const auto found = RepeatsOf(entries, quantity);
+    const auto found = RepeatsOf(entries, table, quantity);
     if (!found) continue;
     rows[quantity.name] = {{"files", found->count},
                            {"mean", found->mean},
@@ -253,26 +267,6 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
 bool AllDone(std::span<const BatchEntry> entries) {
   return std::ranges::all_of(entries, &BatchEntry::done);
 }
-
-namespace {
-
-Json TableRows(std::span<const BatchEntry> entries) {
-  Json rows = Json::array();
-  for (const BatchEntry& entry : entries) {
-    Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) {
-      row[column.name] = ValueAt(entry, column.pointer);
-    }
-    row["warnings"] = WarningsOf(entry);
-    row["fault"] = entry.fault;
-    row["version"] = Version();
-    row["sha256"] = entry.sha256;
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-}  // namespace
 
 std::string TableCsv(std::span<const BatchEntry> entries) {
   return report::TableCsv(TableRows(entries));

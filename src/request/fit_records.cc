@@ -490,7 +490,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .fit = std::move(asked.fit),
                              .options = asked.options,
                              .known = known,
-                             .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
                              .notes = std::move(notes),
                              .compared = std::move(compared),
