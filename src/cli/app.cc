@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "cli/toml.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"

@@ -16,7 +16,6 @@
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/report/page.h"

@@ -23,7 +23,7 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "report/names.h"
+#include "report/statements.h"
 #include "report/table.h"
 
 namespace mindahl::cli {

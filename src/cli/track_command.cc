@@ -24,7 +24,6 @@
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"

@@ -14,7 +14,7 @@
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/terms.h"
 #include "report/fields.h"
-#include "report/names.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 

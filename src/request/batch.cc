@@ -31,10 +31,6 @@ using report::Dump;
 using report::Json;
 using report::NumberOrNull;
 
-struct FitDocument {
-  Json json;
-};
-
 namespace {
 
 /// A column of the table, and where `fit --json` has it.
@@ -92,26 +88,23 @@ constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
                                   Repeated{"half_gap", "", "N"},
                                   Repeated{"energy_per_cycle", "", "J"}};
 
-Json ValueAt(const BatchEntry& entry, std::string_view pointer) {
-  const Json::json_pointer at{std::string(pointer)};
-  if (!entry.fit || !entry.fit->json.contains(at)) return nullptr;
-  return entry.fit->json.at(at);
-}
-
-std::string WarningsOf(const BatchEntry& entry) {
-  std::vector<std::string> codes;
-  for (const Json& warning : ValueAt(entry, "/warnings")) codes.push_back(warning["code"]);
-  return fmt::format("{}", fmt::join(codes, " "));
+Json DocumentOf(const BatchEntry& entry) {
+  return entry.fit.empty() ? Json() : Json::parse(entry.fit);
 }
 
 Json TableRows(std::span<const BatchEntry> entries) {
   Json rows = Json::array();
   for (const BatchEntry& entry : entries) {
+    const Json fit = DocumentOf(entry);
+    const auto value_at = [&](std::string_view pointer) {
+      const Json::json_pointer at{std::string(pointer)};
+      return fit.contains(at) ? fit.at(at) : Json();
+    };
     Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) {
-      row[column.name] = ValueAt(entry, column.pointer);
-    }
-    row["warnings"] = WarningsOf(entry);
+    for (const ColumnRow& column : kBatchColumns) row[column.name] = value_at(column.pointer);
+    std::vector<std::string> codes;
+    for (const Json& warning : value_at("/warnings")) codes.push_back(warning["code"]);
+    row["warnings"] = fmt::format("{}", fmt::join(codes, " "));
     row["fault"] = entry.fault;
     row["version"] = Version();
     row["sha256"] = entry.sha256;
@@ -215,7 +208,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
     Validate(own);
     const report::Report report = FitRecords(own, read(own));
     entry.notes = report.notes;
-    entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
+    entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
     entry.parameters = report.fit.parameters;
@@ -289,7 +282,7 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
     files.push_back({{"file", entry.file},
                      {"done", entry.done},
                      {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-                     {"fit", entry.fit ? entry.fit->json : Json()}});
+                     {"fit", DocumentOf(entry)}});
   }
   return Dump({{"schema", "mindahl.batch/1"},
                {"version", Version()},
@@ -322,13 +315,6 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
        {"repeats", report::TableData("over the fitted files in which the quantity is known",
                                      RepeatRows(entries))},
        {"provenance", report::ProvenanceData(provenance)}});
-}
-
-std::string FitJson(const BatchEntry& entry) { return entry.fit ? Dump(entry.fit->json) : ""; }
-
-void SetFitJson(BatchEntry& entry, const std::string& json) {
-  entry.fit.reset();
-  if (!json.empty()) entry.fit = std::make_shared<FitDocument>(FitDocument{Json::parse(json)});
 }
 
 }  // namespace mindahl::request

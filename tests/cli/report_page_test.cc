@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "cli/command_line.h"
-#include "cli/provenance.h"
+#include "cli/output.h"
 #include "io/source.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
