@@ -75,7 +75,7 @@ const FitOptions& OfSteadyCycles() {
   static const FitOptions options = [] {
     FitOptions made;
     made.initial_state = models::InitialState::kSteady;
-    campaign::ChooseReading(Campaign(), made);
+    campaign::ChooseGate(Campaign(), made);
     return made;
   }();
   return options;

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   // Gate and sense are found once, as `mindahl track` does.
   identification::FitOptions options;
   options.initial_state = models::InitialState::kSteady;
-  campaign::ChooseReading(record, options);
+  campaign::ChooseGate(record, options);
   const std::vector<Cycle> cycles = CyclesOf(record, *options.preparation.reversal_gate);
   if (cycles.empty()) {
     std::cerr << argv[1] << ": no cycle from one turning point to the next but one\n";

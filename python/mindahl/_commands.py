@@ -192,9 +192,7 @@ def plan(
     record: Any = None, *, sigma: Optional[float] = None, alpha: Optional[float] = None,
     slip_force: Optional[float] = None, rig_stiffness: Optional[float] = None,
     force_noise: Optional[float] = None, displacement_noise: float = 0.0,
-    autocorrelation: float = 0.0, load_exponent: Optional[float] = None,
-    amplitude: Union[None, float, Sequence[float]] = None,
-    load_ratio: Union[None, float, Sequence[float]] = None, cycles: float = 3.0,
+    amplitude: Union[None, float, Sequence[float]] = None, cycles: float = 3.0,
     samples_per_cycle: int = 200, initial_state: str = "both",
     with_: Union[None, str, Sequence[str]] = None,
     want: Optional[Mapping[str, Union[float, str]]] = None, **contact: Optional[Uncertain],
@@ -205,10 +203,9 @@ def plan(
         sigma [N/m], alpha [-] (1/3), slip_force Tc [N]; or friction, normal_load, ... of contact();
         record: a file, data frame, Record or (displacement [m], force [N]), whose fit gives contact
             and noise; alpha is used where it does not determine one.
-    rig_stiffness: of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations;
-        autocorrelation of the force noise [-], in [0, 1). load_exponent: p of sigma ~ N^p [-].
-    amplitude: X [m], one or several; by default 13 around the onset of slip. load_ratio: loads
-        relative to the contact's own [-], one loop at each. cycles >= 1, samples_per_cycle >= 4.
+    rig_stiffness: of a rig in series [N/m]. force_noise [N], displacement_noise [m]: standard deviations.
+    amplitude: X [m], one or several; by default 13 around the onset of slip. cycles >= 1,
+        samples_per_cycle >= 4.
     initial_state: "virgin", "steady" or "both". with_: further terms to fit, "rig_stiffness",
         "plateau_slope", "viscous", "force_drift".
     want: parameter to wanted standard error, in its unit or in percent: {"slip_force": "1%"}.
@@ -217,13 +214,9 @@ def plan(
     Raises InputError (a ValueError) naming what is missing, ValueError for a value out of range.
     """
     given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
-    given.update(amplitude=_several(amplitude), load_ratio=_several(load_ratio))
+    given["amplitude"] = list(amplitude) if isinstance(amplitude, tuple) else amplitude
     files = [] if record is None else [("record", columns_by_name(record) or record)]
     return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
-
-
-def _several(values: Any) -> Any:
-    return list(values) if isinstance(values, tuple) else values
 
 
 def command(name: str, *files: Any, **options: Any) -> Report:

@@ -103,7 +103,8 @@ FitRequest RequestOf(const std::vector<std::string>& words) {
 void AddFit(py::module_& module) {
   py::class_<FitRequest>(module, "FitRequest")
       .def(py::init(&RequestOf), py::arg("words"))
-      .def("covariate_columns", &request::CovariateColumns)
+      .def("covariate_columns",
+           [](const FitRequest& request) { return request::MakeFitOptions(request).covariates; })
       .def("check", [](const FitRequest& request) { request::MakeFitOptions(request); });
   py::class_<LogLikelihood>(module, "LogLikelihood",
                             R"(ln L of the free parameters of a fit but for a constant.

@@ -22,7 +22,7 @@ namespace {
 /// Returns which columns the options of a fit choose.
 io::RecordColumns ColumnsOf(const request::FitRequest& request) {
   io::RecordColumns columns = request.columns;
-  columns.covariates = request::CovariateColumns(request);
+  columns.covariates = request::MakeFitOptions(request).covariates;
   return columns;
 }
 

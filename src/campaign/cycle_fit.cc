@@ -238,7 +238,7 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
   return fmt::to_string(row);
 }
 
-CycleTableEntry ReadCycleTableRow(std::string_view line, bool is_torsional) {
+CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
   const std::span<const CycleNumber> numbers = CycleNumbers(is_torsional);
   // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
@@ -246,26 +246,25 @@ CycleTableEntry ReadCycleTableRow(std::string_view line, bool is_torsional) {
   if (cells.size() != columns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
-  CycleTableEntry entry;
-  entry.fit.number = CellValue<std::size_t>(cells[0]);
-  entry.fit.first_line = CellValue<std::size_t>(cells[1]);
-  entry.fit.samples = CellValue<std::size_t>(cells[2]);
+  CycleFit fit;
+  fit.number = CellValue<std::size_t>(cells[0]);
+  fit.first_line = CellValue<std::size_t>(cells[1]);
+  fit.samples = CellValue<std::size_t>(cells[2]);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (!cells[3 + k].empty()) numbers[k].of(entry.fit) = CellValue<double>(cells[3 + k]);
+    if (!cells[3 + k].empty()) numbers[k].of(fit) = CellValue<double>(cells[3 + k]);
   }
   const std::string_view regime = cells[columns - 4];
-  if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
-  entry.accumulated_energy = CellValue<double>(cells[columns - 3]);
+  if (!regime.empty()) fit.slips_grossly = regime == kGross;
   if (const std::string_view flags = cells[columns - 2]; !flags.empty()) {
-    for (const std::string_view flag : PartsOf(flags, ' ')) entry.fit.flags.emplace_back(flag);
+    for (const std::string_view flag : PartsOf(flags, ' ')) fit.flags.emplace_back(flag);
   }
   const std::string_view checksum = cells[columns - 1];
   const auto [end, error] =
-      std::from_chars(checksum.data(), checksum.data() + checksum.size(), entry.fit.checksum, 16);
+      std::from_chars(checksum.data(), checksum.data() + checksum.size(), fit.checksum, 16);
   if (error != std::errc() || end != checksum.data() + checksum.size()) {
     throw InputError(fmt::format("'{}' is no checksum", checksum));
   }
-  return entry;
+  return fit;
 }
 
 }  // namespace mindahl::campaign

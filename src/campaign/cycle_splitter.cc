@@ -130,38 +130,12 @@ io::Samples ReadHead(io::RecordStream& stream) {
   return head;
 }
 
-Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
+loop::ReversalGate ChooseGate(const loop::RecordView& head, FitOptions& fit) {
   const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation);
-  const loop::PreparedRecord& record = prepared.records.front();
-  const Reading reading{.gate = record.gate_choice,
-                        .gate_is_given = fit.preparation.reversal_gate.has_value(),
-                        .samples = head.size()};
-  fit.preparation.reversal_gate = record.gate_choice.gate;
+  loop::ReversalGate gate = prepared.records.front().gate_choice;
+  fit.preparation.reversal_gate = gate.gate;
   fit.preparation.force_sense = prepared.force_sense;
-  return reading;
-}
-
-std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source) {
-  if (reading.gate.certain) return std::nullopt;
-  return fmt::format(
-      "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
-      "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
-      source, reading.samples, reading.gate.count, reading.gate.gate, reading.gate.other_count,
-      reading.gate.other_gate);
-}
-
-void RequireCycles(std::size_t cycles, std::size_t together, const Reading& reading, double gate,
-                   std::string_view source) {
-  if (cycles > 0) return;
-  if (reading.gate.count > 2) {
-    throw InputError(
-        fmt::format("--average {}: {} has only {} reversals, two a cycle: average fewer", together,
-                    source, reading.gate.count));
-  }
-  throw InputError(fmt::format(
-      "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "
-      "column with --displacement, or a smaller --reversal-gate",
-      source, reading.gate.count, gate));
+  return gate;
 }
 
 }  // namespace mindahl::campaign

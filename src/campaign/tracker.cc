@@ -42,7 +42,10 @@ void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> 
   for (Cycle& cycle : cycles_) {
     Log(cycle);
     if (pieces_++ % options_.every != 0) continue;
-    if (fits_++ < options_.skipped) continue;
+    if (fits_++ < options_.skipped) {
+      if (fits_ == options_.skipped) skipped_up_to_ = cycle.checksum;
+      continue;
+    }
     batch_.push_back(std::move(cycle));
     if (batch_.size() == kBatch) Begin();
   }

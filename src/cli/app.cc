@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "cli/toml.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
@@ -203,8 +202,7 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{results, err, kDone, {}, CommandLine(argc, argv)};
-  app.parse_complete_callback([&] { console.inputs = {ConfigFile(app)}; });
+  Console console{results, err, kDone, CommandLine(argc, argv)};
   AddFitCommand(app, console);
   AddSimulateCommand(app, console);
   AddValidateCommand(app, console);

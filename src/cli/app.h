@@ -16,8 +16,7 @@ struct Console {
   std::ostream& out;  // results
   std::ostream& err;  // messages and progress
   int exit_status = 0;
-  std::vector<std::string> inputs = {};  // files that were read already: the configuration
-  std::string command_line = {};         // as a shell takes it
+  std::string command_line = {};  // as a shell takes it
 };
 
 inline constexpr int kDone = 0;

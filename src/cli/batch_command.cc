@@ -16,7 +16,6 @@
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/report/page.h"
@@ -43,10 +42,6 @@ struct BatchCommandOptions {
 void RequireReportDirectory(const BatchCommandOptions& options) {
   const std::string& directory = options.report_directory;
   if (directory.empty()) return;
-  for (const auto& [option, path] :
-       {std::pair("--output", options.output), {"--json", options.json_path}}) {
-    RequireDistinctOutputs({option, path}, {"--report", directory});
-  }
   std::error_code error;
   std::filesystem::create_directory(directory, error);
   if (!error && std::filesystem::is_directory(directory)) return;
@@ -54,8 +49,7 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
                                directory, error ? error.message() : "it is a file"));
 }
 
-std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command,
-                                     const Console& console) {
+std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command) {
   const std::vector<std::string>& files = options.request.files;
   std::vector<std::string> pages;
   pages.reserve(files.size());
@@ -69,9 +63,8 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
   const auto page_of = [&](std::size_t k) -> WritePage {
     if (options.report_directory.empty()) return {};
     return [&, k](const report::Report& report) {
-      io::WriteFileAtomically(
-          std::filesystem::path(options.report_directory) / pages[k],
-          report::ToPage(report, ProvenanceOfOneFit(command, console, files[k])));
+      io::WriteFileAtomically(std::filesystem::path(options.report_directory) / pages[k],
+                              report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
       return pages[k];
     };
   };
@@ -80,26 +73,22 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
 
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
-  Validate(request.contact);
   RequireDistinctFiles(request.files);
-  RequireOutputPaths(
-      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}},
-      console, request.files);
-  if (!options.overwrite) RequireNotThere({"--output", options.output}, "--overwrite");
-  MakeFitOptions(request);  // before a directory is made
+  if (!options.overwrite) RequireNotThere("--output", options.output, "--overwrite");
+  Validate(request);  // before a directory is made
   RequireReportDirectory(options);
-  const std::vector<BatchEntry> fits = FitInThreads(options, command, console);
+  const std::vector<BatchEntry> fits = FitInThreads(options, command);
   for (const BatchEntry& fit : fits) {
-    for (const std::string& note : fit.notes) {
-      console.err << fmt::format("mindahl batch: note: {}\n", note);
+    Say("batch: note", fit.notes, console);
+    if (!fit.fault.empty()) {
+      Say("batch: warning", {fmt::format("{}: {}", fit.file, fit.fault)}, console);
     }
-    if (fit.fault.empty()) continue;
-    console.err << fmt::format("mindahl batch: warning: {}: {}\n", fit.file, fit.fault);
   }
   io::WriteFileAtomically(options.output, TableCsv(fits));
   if (!options.report_directory.empty()) {
-    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
-                            IndexPage(fits, ProvenanceOf(command, console, request.files)));
+    io::WriteFileAtomically(
+        std::filesystem::path(options.report_directory) / "index.html",
+        IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, fits, options.output);
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
@@ -135,7 +124,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "a file fails too");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--output", "--report", "--json", "--help-all"});
-  command.callback([options, &command, &console] { RunBatch(*options, command, console); });
+  OnRun(command, [options, &command, &console] { RunBatch(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

@@ -82,9 +82,8 @@ std::string ToText(const ContactAnswer& contact) {
 
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console);
   const ContactAnswer contact{options.contact, ResolveContact(options.contact)};
-  WarnOfDoubts(options.contact, "contact", console);
+  Say("contact: warning", DoubtsAbout(options.contact), console);
   WriteAnswer(options.json_path, console, contact);
 }
 
@@ -105,7 +104,7 @@ void AddContactCommand(CLI::App& app, Console& console) {
   AddFrictionOption(command, options->contact);
   OptionGroup(command, kPlainGroup)
       .Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  command.callback([options, &console] { RunContact(*options, console); });
+  OnRun(command, [options, &console] { RunContact(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -151,10 +151,4 @@ double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) 
          law.slip_force / rig.stiffness;
 }
 
-void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {
-  for (const std::string& doubt : DoubtsAbout(options)) {
-    console.err << fmt::format("mindahl {}: warning: {}\n", command, doubt);
-  }
-}
-
 }  // namespace mindahl::cli

@@ -43,7 +43,4 @@ void AddLawOptions(CLI::App& command, LawOptions& request);
 /// slip is only approached.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
 
-/// Says on standard error what is hardly meant; `fit` says it with what it identified.
-void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console);
-
 }  // namespace mindahl::cli

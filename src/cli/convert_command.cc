@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -49,11 +50,9 @@ struct ConvertOptions {
 
 /// A contact written for a target.
 struct ConvertedContact {
+  ConvertOptions asked;  // with what a fit says
   models::BranchLaw law;
-  std::string from;
-  convert::TargetRow target;
-  convert::ConversionOptions options = {};
-  convert::NormalContact normal = {};
+  TargetRow target;
   convert::Conversion conversion = {};
   std::vector<Parameter> parameters = {};
 };
@@ -73,6 +72,10 @@ Json ReadFit(const std::string& file) {
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
   throw InputError(fmt::format(
       "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
+}
+
+const models::FrictionModel& ModelOf(const ConvertOptions& request) {
+  return *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl");
 }
 
 /// Takes law and amplitude from a fit where they are not given.
@@ -97,9 +100,8 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
   if (!rig || !request.amplitude) return;
   // The rest of the amplitude is the rig's.
   request.amplitude = models::ContactAmplitude(
-      *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl"),
-      {*request.sigma, request.alpha.value_or(1.0 / 3), *request.slip_force}, {.stiffness = *rig},
-      *request.amplitude);
+      ModelOf(request), {*request.sigma, request.alpha.value_or(1.0 / 3), *request.slip_force},
+      {.stiffness = *rig}, *request.amplitude);
 }
 
 double Require(const std::optional<double>& value, std::string_view option,
@@ -121,7 +123,7 @@ std::string Percent(double error) {
 std::string ErrorAtAmplitude(const ConvertedContact& made) {
   const LoopError& error = made.conversion.at_amplitude;
   return fmt::format("at {:.6g} m the force is within {} of T*, the energy {}",
-                     made.options.amplitude, Percent(error.force),
+                     made.asked.options.amplitude, Percent(error.force),
                      std::isfinite(error.energy) ? "off by " + Percent(error.energy)
                                                  : "lost where the contact loses none");
 }
@@ -135,20 +137,15 @@ ConvertedContact MakeConversion(const ConvertOptions& asked) {
   }
   if (request.from.empty()) request.from = "masing";
   RequireOneOf("--from", request.from, std::array<std::string_view, 2>{"masing", "dahl"});
-  ConvertedContact made{
-      .law = {Require(request.sigma, "--sigma", request), request.alpha.value_or(1.0 / 3),
-              Require(request.slip_force, "--slip-force", request)},
-      .from = request.from,
-      .target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name),
-      .options = request.options,
-      .normal = request.normal};
-  made.options.amplitude = Require(request.amplitude, "--amplitude", request);
-  Validate(made.normal, made.target);
-  const char* const model = made.from == "dahl" ? "dahl" : "mindlin-dahl";
-  made.conversion =
-      convert::Convert({models::FindFrictionModel(model), made.law}, made.target, made.options);
-  made.parameters = ParametersOf(made.conversion, made.target, made.normal);
-  return made;
+  const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
+                                 request.alpha.value_or(1.0 / 3),
+                                 Require(request.slip_force, "--slip-force", request)};
+  request.options.amplitude = Require(request.amplitude, "--amplitude", request);
+  const TargetRow target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
+  Validate(request.normal, target);
+  convert::Conversion made = convert::Convert({&ModelOf(request), law}, target, request.options);
+  std::vector<Parameter> parameters = ParametersOf(made, target, request.normal);
+  return {std::move(request), law, target, std::move(made), std::move(parameters)};
 }
 
 Json ParametersJson(const ConvertedContact& made) {
@@ -177,13 +174,13 @@ std::string ToJson(const ConvertedContact& made) {
   return report::Dump({{"schema", "mindahl.convert/1"},
                        {"version", Version()},
                        {"from",
-                        {{"law", made.from},
+                        {{"law", made.asked.from},
                          {"sigma", made.law.tangential_stiffness},
                          {"alpha", made.law.shape_exponent},
                          {"slip_force", made.law.slip_force}}},
                        {"to", made.target.name},
-                       {"amplitude", made.options.amplitude},
-                       {"tolerance", made.options.tolerance},
+                       {"amplitude", made.asked.options.amplitude},
+                       {"tolerance", made.asked.options.tolerance},
                        {"parameters", ParametersJson(made)},
                        {"elements", ElementsJson(made)},
                        {"error_at_amplitude",
@@ -199,27 +196,19 @@ std::string ToText(const ConvertedContact& made) {
       "{}; {}\n\n{}{}\n{}\n", made.target.title, ErrorAtAmplitude(made),
       report::TableText(ParametersJson(made), kDigits),
       report::TableText(ElementsJson(made), kDigits),
-      within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
-                           Percent(made.options.tolerance), within->lower, within->upper)
-             : fmt::format("not within {} at the amplitude", Percent(made.options.tolerance)));
+      within
+          ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
+                        Percent(made.asked.options.tolerance), within->lower, within->upper)
+          : fmt::format("not within {} at the amplitude", Percent(made.asked.options.tolerance)));
 }
 
 void RunConvert(const ConvertOptions& options, Console& console) {
-  if (options.json_path == "-" && options.input_lines_path == "-") {
-    throw InputError("--json - and --input-lines - both write to standard output: give a file");
-  }
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
-                      {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
-                     console, {options.fit});
   const ConvertedContact converted = MakeConversion(options);
   if (!options.input_lines_path.empty()) {
-    std::string lines;
-    for (const std::string& line :
-         convert::InputLines(converted.conversion, converted.target, converted.normal,
-                             ErrorAtAmplitude(converted))) {
-      lines += line + '\n';
-    }
-    WriteText(lines, options.input_lines_path, console);
+    const std::vector<std::string> lines =
+        convert::InputLines(converted.conversion, converted.target, converted.asked.normal,
+                            ErrorAtAmplitude(converted));
+    WriteText(fmt::format("{}\n", fmt::join(lines, "\n")), options.input_lines_path, console);
   }
   if (!options.json_path.empty()) WriteText(ToJson(converted), options.json_path, console);
   if (options.json_path != "-" && options.input_lines_path != "-") {
@@ -273,7 +262,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");
   outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
-  command.callback([options, &console] { RunConvert(*options, console); });
+  OnRun(command, [options, &console] { RunConvert(*options, console); });
 }
 
 }  // namespace mindahl::cli

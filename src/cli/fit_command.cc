@@ -1,19 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "cli/app.h"
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
@@ -34,9 +27,12 @@ struct FitCommandOptions {
   bool has_details = false;
 };
 
-/// @param provenance  asked for where a page is written: it reads the files once more
-void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
-                     const std::function<report::Provenance()>& provenance, Console& console) {
+void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
+  const FitRequest& request = options.request;
+  RequireDistinctFiles(request.files);
+  Validate(request);
+  const report::Report report = request::FitRecords(request, request::ReadRecords(request));
+  console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const bool failed = report.failed();  // then there is no curve to draw, no residual to list
   if (failed) {
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
@@ -46,7 +42,9 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
     io::WritePlot(report::ToPlot(report), options.plot_path);
   }
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
+    io::WriteFileAtomically(
+        options.report_path,
+        ToPage(report, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   if (!failed && !options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
@@ -54,29 +52,11 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
   if (failed) return;
   if (options.json_path == "-") {
-    for (const std::string& note : report.notes) {
-      console.err << fmt::format("mindahl fit: note: {}\n", note);
-    }
+    Say("fit: note", report.notes, console);
   } else {
     console.out << report::ToText(
         report, options.has_details ? report::Detail::kAll : report::Detail::kAnswer);
   }
-}
-
-void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
-  const FitRequest& request = options.request;
-  Validate(request.contact);
-  RequireDistinctFiles(request.files);
-  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
-                      {"--residuals", options.residuals_path},
-                      {"--plot", options.plot_path},
-                      {"--report", options.report_path}},
-                     console, request.files);
-  request::Validate(request);
-  const report::Report report = request::FitRecords(request, request::ReadRecords(request));
-  console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
-  const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
-  WriteFitOutputs(options, report, provenance, console);
 }
 
 }  // namespace
@@ -109,7 +89,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   AddStrict(group, options->strict, "exit status 3");
   ShowFirst(command, {"--displacement", "--force", "--normal-load", "--select", "--model",
                       "--terms", "--rig-stiffness", "--fix", "--report", "--json", "--help-all"});
-  command.callback([options, &command, &console] { RunFit(*options, command, console); });
+  OnRun(command, [options, &command, &console] { RunFit(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

@@ -1,6 +1,7 @@
 #include "cli/fit_request.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 #include <map>
@@ -15,6 +16,7 @@
 #include "cli/options.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
@@ -30,7 +32,7 @@ using identification::Term;
 
 namespace {
 
-using request::kFitIt;
+constexpr std::string_view kFitIt = "fit";
 
 /// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
 std::string_view UnitOf(std::string_view parameter) {
@@ -65,7 +67,6 @@ template <typename Value, typename Parse>
 void ReadAssignments(const std::vector<std::string>& texts, std::string_view option,
                      std::string_view form, std::map<std::string, Value>& assignments,
                      Parse parse) {
-  assignments.clear();
   for (const std::string& text : texts) {
     const auto [name, value] = Split(text, '=', option, form);
     if (!assignments.emplace(name, parse(value, option, form, UnitOf(name))).second) {
@@ -92,27 +93,38 @@ loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
   return {.first = count(first), .last = count(last)};
 }
 
+/// Holds a parameter at a value, unless another option did.
+void Hold(std::string_view option, const std::string& name, double value,
+          identification::FitOptions& fit) {
+  if (!fit.fixed.emplace(name, value).second) ThrowTwice(option, name);
+}
+
 /// Reads COL, COL=fit or COL=C.
-request::CovariateRequest ParseCovariate(const std::string& text) {
+void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
   constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
   const std::size_t at = text.rfind('=');
   if (text.empty() || at == 0 || at + 1 == text.size()) {
     throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
   }
-  request::CovariateRequest choice{.column = text.substr(0, at)};
-  if (at != std::string::npos && text.substr(at + 1) != kFitIt) {
-    choice.coefficient = ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm);
-  }
-  return choice;
+  fit.covariates.push_back(text.substr(0, at));
+  if (at == std::string::npos || text.substr(at + 1) == kFitIt) return;
+  Hold("--covariate", identification::NameOfCovariate(fit.covariates.back()),
+       ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm), fit);
 }
 
 /// Reads fit, a number, or a number with its standard uncertainty.
-request::RigRequest ParseRig(const std::string& text) {
+void ReadRig(const std::string& text, identification::FitOptions& fit) {
   constexpr std::string_view kOption = "--rig-stiffness";
-  if (text == kFitIt) return {};
+  constexpr const char* kName = "rig_stiffness";
+  if (text == kFitIt) {
+    fit.terms.emplace_back(kName);
+    return;
+  }
   const contact::UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
-  if (stated.standard_error == 0) return {.value = stated.value};
-  return {.value = stated.value, .standard_uncertainty = stated.standard_error};
+  RequirePositive("--rig-stiffness [N/m]", stated.value);
+  if (stated.standard_error == 0) return Hold(kOption, kName, stated.value, fit);
+  fit.terms.emplace_back(kName);
+  fit.priors[kName] = {stated.value, stated.standard_error};
 }
 
 /// Reads "cycles=2:9" and the like, of `--select`; or, of its older names, "2:9" alone.
@@ -165,23 +177,6 @@ void AddSelections(CLI::App& command, FitRequest& request) {
                   "leave out what at the ends of a record is not the test, and say which\nrows");
 }
 
-/// Breaks a list of words into lines of a help text, the first of which has `used` characters.
-std::string InLines(const std::vector<std::string>& words, std::size_t used) {
-  constexpr std::size_t kWidth = 70;
-  std::string text;
-  for (const std::string& word : words) {
-    if (used + 1 + word.size() > kWidth) {
-      text += '\n';
-      used = 0;
-    } else if (!text.empty()) {
-      text += ' ';
-    }
-    text += word;
-    used += 1 + word.size();
-  }
-  return text;
-}
-
 std::string DescribeModels() {
   std::string text =
       "law of the friction; auto: mindlin-dahl or dahl, whichever the record supports";
@@ -208,8 +203,12 @@ std::string DescribeParameters() {
     words.push_back(fmt::format("{} [{}],", term.name, term.unit));
   }
   words.back().pop_back();
-  return "hold a parameter at a value in its unit, and add its term:\n" + InLines(words, 0) +
-         "\noffsets and drifts of several files are numbered, force_offset_2";
+  constexpr std::size_t kWidth = 69;  // of a help text
+  const std::vector<std::string_view> views(words.begin(), words.end());
+  return fmt::format(
+      "hold a parameter at a value in its unit, and add its term:\n{}\n"
+      "offsets and drifts of several files are numbered, force_offset_2",
+      fmt::join(LinesOf(views, kWidth), "\n"));
 }
 
 }  // namespace
@@ -273,19 +272,15 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   group.AddChoice("--offsets", fit.offsets, {{"on", true}, {"off", false}},
                   "fit offsets of force and displacement");
   group.AddRead(
-      "--rig-stiffness",
-      [&options](const std::string& text) { options.rig_stiffness = ParseRig(text); },
+      "--rig-stiffness", [&fit](const std::string& text) { ReadRig(text, fit); },
       "stiffness of the rig in series with the contact [N/m], or fit;\nK+-U or K+-3%: fitted about "
       "K with standard uncertainty U; default rigid",
       "K[+-U]|fit");
   group
       .AddReadAll(
           "--covariate",
-          [&options](const std::vector<std::string>& texts) {
-            options.covariates.clear();
-            for (const std::string& text : texts) {
-              options.covariates.push_back(ParseCovariate(text));
-            }
+          [&fit](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) ReadCovariate(text, fit);
           },
           "additional force C·column, C [N/unit]; default fit; columns by header\nname or 1-based "
           "number; repeatable",

@@ -1,6 +1,7 @@
 #include "cli/output.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,9 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "cli/options.h"
 #include "core/text.h"
+#include "io/source.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
+#include "mindahl/io/plot.h"
 
 namespace mindahl::cli {
 
@@ -21,6 +25,12 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
     console.out << text;
   } else {
     io::WriteFileAtomically(path, text);
+  }
+}
+
+void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console) {
+  for (const std::string& sentence : sentences) {
+    console.err << fmt::format("mindahl {}: {}\n", what, sentence);
   }
 }
 
@@ -47,15 +57,24 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
   return place(first) == place(second);
 }
 
-void RequireWritable(const OutputPath& output) {
-  constexpr std::array<std::string_view, 10> kNotWritten = {
-      ".parquet", ".feather", ".arrow", ".xlsx", ".xls", ".ods", ".h5", ".hdf5", ".mat", ".npz"};
+/// An output of the command line.
+struct Output {
+  std::string option;
+  std::string path;
+  bool is_directory = false;
+};
+
+void RequireWritable(const Output& output) {
+  constexpr std::array<std::string_view, 11> kNotWritten = {
+      ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
+      ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
   const std::string ending = LowerCase(fs::path(output.path).extension().string());
   if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
     throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
                                  output.option, output.path, ending));
   }
   std::error_code ignored;
+  if (output.is_directory) return;
   if (fs::is_directory(output.path, ignored)) {
     throw InputError(
         fmt::format("{}: cannot write '{}': it is a directory", output.option, output.path));
@@ -67,31 +86,59 @@ void RequireWritable(const OutputPath& output) {
   }
 }
 
-}  // namespace
+/// Returns the options of a command and of the program whose value is called so.
+std::vector<const CLI::Option*> OptionsOfType(const CLI::App& command, std::string_view type) {
+  const auto is_given = [&](const CLI::Option* option) {
+    return option->count() > 0 && option->get_type_name() == type;
+  };
+  std::vector<const CLI::Option*> options = command.get_options(is_given);
+  const std::vector<const CLI::Option*> of_program = command.get_parent()->get_options(is_given);
+  options.insert(options.end(), of_program.begin(), of_program.end());
+  return options;
+}
 
-void RequireOutputPaths(std::initializer_list<OutputPath> outputs, const Console& console,
-                        const std::vector<std::string>& files) {
-  std::vector<std::string> inputs = console.inputs;
-  inputs.insert(inputs.end(), files.begin(), files.end());
-  std::vector<OutputPath> checked;
-  for (const OutputPath& output : outputs) {
-    if (output.path.empty() || (output.dash_is_stdout && output.path == "-")) continue;
-    RequireWritable(output);
-    for (const std::string& input : inputs) {
-      if (input.empty() || !IsSameFile(output.path, input)) continue;
-      throw InputError(
-          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
-                      output.option, output.path, input));
+void RequireOutputs(const CLI::App& command) {
+  const std::vector<std::string> inputs = InputsOf(command);
+  std::vector<Output> checked;
+  for (const char* type : {"PATH", "DIR"}) {
+    for (const CLI::Option* option : OptionsOfType(command, type)) {
+      const Output output{"--" + NameOf(*option), option->results().back(),
+                          type == std::string_view("DIR")};
+      if (output.path.empty()) continue;
+      const bool is_stdout = output.path == "-";
+      if (!is_stdout) RequireWritable(output);
+      if (output.option == "--plot") io::RequirePlotName(output.path);
+      for (const std::string& input : inputs) {
+        if (is_stdout || !IsSameFile(output.path, input)) continue;
+        throw InputError(
+            fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
+                        output.option, output.path, input));
+      }
+      for (const Output& other : checked) {
+        if (!(is_stdout ? other.path == "-" : IsSameFile(other.path, output.path))) continue;
+        throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                                     other.option, output.option, output.path));
+      }
+      checked.push_back(output);
     }
-    for (const OutputPath& other : checked) RequireDistinctOutputs(other, output);
-    checked.push_back(output);
   }
 }
 
-void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second) {
-  if (first.path.empty() || second.path.empty() || !IsSameFile(first.path, second.path)) return;
-  throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
-                               first.option, second.option, second.path));
+}  // namespace
+
+std::vector<std::string> InputsOf(const CLI::App& command) {
+  std::vector<std::string> inputs;
+  for (const CLI::Option* option : OptionsOfType(command, "FILE")) {
+    inputs.insert(inputs.end(), option->results().begin(), option->results().end());
+  }
+  return inputs;
+}
+
+void OnRun(CLI::App& command, std::function<void()> run) {
+  command.callback([&command, run = std::move(run)] {
+    RequireOutputs(command);
+    run();
+  });
 }
 
 void RequireDistinctFiles(std::span<const std::string> files) {
@@ -105,10 +152,41 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   }
 }
 
-void RequireNotThere(const OutputPath& output, std::string_view remedy) {
+void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy) {
   std::error_code ignored;
-  if (!fs::is_regular_file(output.path, ignored)) return;  // a device loses nothing
-  throw InputError(fmt::format("{}: {} exists: add {}", output.option, output.path, remedy));
+  if (!fs::is_regular_file(path, ignored)) return;  // a device loses nothing
+  throw InputError(fmt::format("{}: {} exists: add {}", option, path, remedy));
+}
+
+report::Provenance ProvenanceOf(const CLI::App& command, const std::string& command_line,
+                                std::span<const std::string> files) {
+  report::Provenance provenance{.command = command_line, .inputs = {}, .options = {}};
+  for (const std::string& file : files) {
+    provenance.inputs.push_back({.name = file, .sha256 = io::Sha256OfFile(file)});
+  }
+  for (const CLI::Option* option : OptionsOf(command)) {
+    if (option->count() == 0) continue;
+    const bool is_flag = option->get_items_expected_max() == 0;
+    provenance.options.emplace_back(
+        "--" + NameOf(*option),
+        is_flag ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
+  }
+  return provenance;
+}
+
+std::string ShellWord(std::string_view word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,=+@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(word);
+  }
+  return fmt::format("'{}'", CLI::detail::find_and_replace(std::string(word), "'", "'\\''"));
+}
+
+std::string CommandLine(int argc, const char* const* argv) {
+  std::string line = "mindahl";
+  for (int i = 1; i < argc; ++i) line.append(" ").append(ShellWord(argv[i]));
+  return line;
 }
 
 }  // namespace mindahl::cli

@@ -23,7 +23,7 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "report/names.h"
+#include "report/statements.h"
 #include "report/table.h"
 
 namespace mindahl::cli {
@@ -47,7 +47,6 @@ struct PlanOptions {
   Expectation expected;
   std::optional<double> rig_stiffness;
   std::optional<double> force_noise;
-  std::optional<double> load_exponent;
   std::vector<double> amplitudes;
   Protocol protocol;
   std::vector<InitialState> initial_states = {InitialState::kVirgin, InitialState::kSteady};
@@ -145,10 +144,6 @@ void SetExpectation(const PlanOptions& options, Plan& plan) {
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (displacement_noise > 0) expected.displacement_noise = displacement_noise;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
-  if (options.load_exponent && plan.protocol.loads.empty()) {
-    throw InputError("--load-exponent needs --load-ratio: it has no effect with one load");
-  }
-  expected.load_exponent = options.load_exponent.value_or(expected.load_exponent);
   if (options.fits_rig() && std::isinf(expected.rig.stiffness)) {
     throw InputError("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
   }
@@ -221,11 +216,10 @@ struct ShownError {
   bool is_exponent;  // its error as it is; of the others over the value
 };
 
-constexpr std::array<ShownError, 5> kShownErrors = {{{"sigma", "sigma", false},
-                                                     {"alpha", "alpha", true},
-                                                     {"slip_force", "Tc", false},
-                                                     {"load_exponent", "p", true},
-                                                     {"rig_stiffness", "rig", false}}};
+constexpr auto kShownErrors = std::to_array<ShownError>({{"sigma", "sigma", false},
+                                                         {"alpha", "alpha", true},
+                                                         {"slip_force", "Tc", false},
+                                                         {"rig_stiffness", "rig", false}});
 
 /// Returns the error as it is shown; empty beyond 1, where the bound determines little.
 std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
@@ -285,23 +279,15 @@ std::string ToText(const Plan& plan) {
   }
   text += fmt::format("; noise {:.4g} N and {:.4g} m a\nsample", expected.force_noise,
                       expected.displacement_noise);
-  if (expected.autocorrelation > 0) {
-    text += fmt::format(", autocorrelated by {:g} from one to the next", expected.autocorrelation);
-  }
   text += fmt::format("; a sine of {:g} cycles, {} samples each\n", plan.protocol.cycles,
                       plan.protocol.samples_per_cycle);
-  if (!plan.protocol.loads.empty()) {
-    text += fmt::format("at {:g} times the load of this contact, sigma as the load to {:.4g}\n",
-                        fmt::join(plan.protocol.loads, ", "), expected.load_exponent);
-  }
   for (const std::string& note : plan.notes) text += "note: " + note + '\n';
   text += fmt::format(
       "\nstandard errors\n{}"
       "  -: error larger than the value; law: is this loop expected to distinguish Mindlin's "
       "memory\n  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} "
-      "m{}.\n",
-      report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip,
-      plan.protocol.loads.empty() ? "" : " at that load");
+      "m.\n",
+      report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
   text += fmt::format("\nwanted: {}\n", WantedInWords(plan.wanted));
   for (const PlannedLoops& column : plan.columns) {
@@ -354,13 +340,9 @@ std::string ToJson(const Plan& plan) {
         {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
         {"force_noise", expected.force_noise},
         {"displacement_noise", expected.displacement_noise},
-        {"autocorrelation", expected.autocorrelation},
-        {"load_exponent", plan.protocol.loads.empty() ? Json() : Json(expected.load_exponent)},
         {"gross_slip_displacement", plan.slip}}},
       {"protocol",
-       {{"cycles", plan.protocol.cycles},
-        {"samples_per_cycle", plan.protocol.samples_per_cycle},
-        {"load_ratios", plan.protocol.loads}}},
+       {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
       {"loops", LoopsJson(plan)},
       {"wanted", Json::object()},
       {"reached", Json::array()},
@@ -411,8 +393,6 @@ io::Plot ToPlot(const Plan& plan) {
 }
 
 void RunPlan(const PlanOptions& options, Console& console) {
-  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}, {"--plot", options.plot}},
-                     console, {options.record});
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
   WriteAnswer(options.json, console, plan);
@@ -433,8 +413,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       "amplitude would give, and the smallest amplitude that reaches a wanted\n"
       "precision. Exit status 3 when none does.",
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
-       "mindahl plan --record loop.csv --cycles 10 --json plan.json",
-       "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
+       "mindahl plan --record loop.csv --cycles 10 --json plan.json"});
   AddLawOptions(command, options->law);
   const OptionGroup expected(command, "What is expected");
   CLI::Option* const record =
@@ -459,18 +438,10 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       .Add("--displacement-noise", options->expected.displacement_noise,
            "standard deviation of the displacement noise [m], white; default 0", "S")
       ->transform(InUnit("m"));
-  expected.Add("--autocorrelation", options->expected.autocorrelation,
-               "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0",
-               "RHO");
-  expected.Add("--load-exponent", options->load_exponent,
-               "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P");
   const OptionGroup loop(command, "The loop");
   loop.Add("--amplitude", options->amplitudes,
            "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
       ->transform(InUnit("m"));
-  loop.Add("--load-ratio", options->protocol.loads,
-           "loads relative to this contact's own [-], one loop at each: 0.5,1,2", "R")
-      ->delimiter(',');
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
       ->check(WholeNumber(4, 1'000'000));
@@ -488,7 +459,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const OptionGroup output(command, "Output");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
-  command.callback([options, &console] { RunPlan(*options, console); });
+  OnRun(command, [options, &console] { RunPlan(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -329,10 +329,8 @@ std::string MethodHelp() {
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, console,
-                     {options.path, options.force_path});
   const Simulation simulation = Simulate(options);
-  WarnOfDoubts(options.law.contact, "simulate", console);
+  Say("simulate: warning", DoubtsAbout(options.law.contact), console);
   WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
 }
 
@@ -374,8 +372,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       ->check(WholeNumber(1, 1'000'000'000));
   method.Add("--tolerance", options->tolerance,
              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E");
-  plain.Add("-o,--output", options->output, "CSV file; default standard output", "FILE");
-  command.callback([options, &console] { RunSimulate(*options, console); });
+  plain.Add("-o,--output", options->output, "CSV file; default standard output", "PATH");
+  OnRun(command, [options, &console] { RunSimulate(*options, console); });
 }
 
 }  // namespace mindahl::cli

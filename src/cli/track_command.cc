@@ -24,7 +24,6 @@
 #include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "cli/provenance.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
@@ -57,7 +56,6 @@ struct TrackCommandOptions {
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
   std::string json_path;
-  std::string plot_path;
   std::string report_path;
   bool resume = false;
   bool overwrite = false;
@@ -72,8 +70,7 @@ struct TrackedTest {
   std::size_t cycles = 0;
   std::size_t unused_samples = 0;  // at the ends, part of no whole cycle
   std::size_t broken_rows = 0;     // rows skipped
-  double reversal_gate = 0.0;      // [m]
-  bool is_gate_certain = true;
+  loop::ReversalGate gate = {};
   std::size_t fits = 0;
   std::size_t flagged = 0;
   std::size_t resumed = 0;  // fits that the table had already
@@ -84,7 +81,7 @@ struct TrackedTest {
   std::vector<Evolution> evolutions = {};  // of the courses, in the end
   std::vector<std::string> notes = {};     // what was assumed, one sentence each
 
-  /// Adds a fit, in their order, but for its energy: of rows that are made again that counts once.
+  /// Adds a fit whose row is in the table, in their order, but for its energy.
   void Add(const CycleFit& fit) {
     ++fits;
     flagged += fit.flags.empty() ? 0 : 1;
@@ -148,29 +145,28 @@ std::string ToJson(const TrackedTest& test) {
     flags[flag.name] = found == test.flags.end() ? 0 : found->second;
   }
   const campaign::EnergyCounts& counts = test.energy.counts();
-  return report::Dump(
-      {{"schema", "mindahl.track/1"},
-       {"version", Version()},
-       {"input",
-        {{"files", test.files},
-         {"samples", test.samples},
-         {"cycles", test.cycles},
-         {"unused_samples", test.unused_samples},
-         {"broken_rows", test.broken_rows}}},
-       {"reversals", {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}}},
-       {"output", test.output},
-       {"fits", test.fits},
-       {"flagged", test.flagged},
-       {"flags", std::move(flags)},
-       {"accumulated_energy", test.energy.total()},
-       {"energy_counts",
-        {{"measured", counts.measured},
-         {"replaced", counts.replaced},
-         {"left_out", counts.left_out}}},
-       {"headline", campaign::Headline(test.evolutions)},
-       {"changes", campaign::ChangeStatements(test.evolutions)},
-       {"quantities", QuantityRows(test)},
-       {"notes", test.notes}});
+  return report::Dump({{"schema", "mindahl.track/1"},
+                       {"version", Version()},
+                       {"input",
+                        {{"files", test.files},
+                         {"samples", test.samples},
+                         {"cycles", test.cycles},
+                         {"unused_samples", test.unused_samples},
+                         {"broken_rows", test.broken_rows}}},
+                       {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
+                       {"output", test.output},
+                       {"fits", test.fits},
+                       {"flagged", test.flagged},
+                       {"flags", std::move(flags)},
+                       {"accumulated_energy", test.energy.total()},
+                       {"energy_counts",
+                        {{"measured", counts.measured},
+                         {"replaced", counts.replaced},
+                         {"left_out", counts.left_out}}},
+                       {"headline", campaign::Headline(test.evolutions)},
+                       {"changes", campaign::ChangeStatements(test.evolutions)},
+                       {"quantities", QuantityRows(test)},
+                       {"notes", test.notes}});
 }
 
 /// Returns what was read, fitted and dissipated, one sentence each.
@@ -237,18 +233,6 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
        {"provenance", report::ProvenanceData(provenance)}});
 }
 
-/// Draws the time histories, one below the other.
-io::Plot ToPlot(const TrackedTest& test) {
-  constexpr int kPanelHeight = 230;  // [px]
-  io::Plot plot{.title = report::NameOf(test.files), .panels = PanelsOf(test)};
-  if (plot.panels.empty()) {
-    throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
-  }
-  plot.panels.front().title = campaign::Headline(test.evolutions);
-  plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
-  return plot;
-}
-
 // --- the run
 
 void RequireTrackOptions(const TrackCommandOptions& options) {
@@ -265,14 +249,14 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
                     options.output));
   }
   if (options.resume || options.overwrite) return;
-  RequireNotThere({"--output", options.output}, "--resume to go on with it, or --overwrite");
+  RequireNotThere("--output", options.output, "--resume to go on with it, or --overwrite");
 }
 
 /// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
 /// names and values: rows made with others are not gone on with, though the last ones be the same.
 std::uint64_t SeedOf(const CLI::App& command) {
-  constexpr std::array<std::string_view, 8> kOfNoRow = {"help",   "output", "json",      "plot",
-                                                        "report", "resume", "overwrite", "threads"};
+  constexpr auto kOfNoRow = std::to_array<std::string_view>(
+      {"help", "output", "json", "report", "resume", "overwrite", "threads"});
   std::uint64_t seed = 0xcbf29ce484222325U;
   const auto add = [&seed](std::string_view text) {
     for (const char character : text) {
@@ -291,14 +275,14 @@ std::uint64_t SeedOf(const CLI::App& command) {
 /// Holds what a resumed run keeps of the table on disk: its whole batches.
 struct KeptCycles {
   std::size_t fits = 0;
-  std::uintmax_t bytes = 0;  // size of the header and these
-  std::string last_batch;    // its rows, to compare with
+  std::uintmax_t bytes = 0;    // size of the header and these
+  std::uint64_t checksum = 0;  // of what the last of them was made from
 };
 
 /// @param visit  is given every row that is kept
 /// @throws InputError where the file is no such table
 KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
-                          const std::function<void(const campaign::CycleFit&)>& visit) {
+                          const std::function<void(const CycleFit&)>& visit) {
   constexpr std::string_view kRemedy = "give another --output, or --overwrite";
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
@@ -316,18 +300,18 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
   while (std::getline(file, line) && !file.eof()) {
     batch.push_back(line);
     if (batch.size() < campaign::kBatch) continue;
-    kept.last_batch.clear();
     for (const std::string& row : batch) {
       ++kept.fits;
+      kept.bytes += row.size() + 1;
       try {
-        visit(campaign::ReadCycleTableRow(row, is_torsional).fit);
+        const CycleFit fit = campaign::ReadCycleTableRow(row, is_torsional);
+        kept.checksum = fit.checksum;
+        visit(fit);
       } catch (const InputError& error) {
         throw InputError(
             fmt::format("--resume: {}:{}: {}: {}", path, kept.fits + 1, error.what(), kRemedy));
       }
-      kept.last_batch += row + '\n';
     }
-    kept.bytes += kept.last_batch.size();
     batch.clear();
   }
   return kept;
@@ -355,17 +339,20 @@ class TrackRun {
     if (signals_->noted() != 0) throw InputError("stopped by a signal");
   }
   void Take(std::span<const CycleFit> fits);
-  [[noreturn]] void ThrowOther() const;
+  void OpenTable();
+  /// True if the table on disk, where there is one to go on with, is of this record and options.
+  [[nodiscard]] bool continues_table() const {
+    return !kept_ || tracker_->skipped_up_to() == kept_->checksum;
+  }
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   TrackedTest test_;
   identification::FitOptions fit_;
-  campaign::Reading reading_;  // of the head
   io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
-  std::optional<KeptCycles> kept_;  // until its last batch was made again
+  std::optional<KeptCycles> kept_;
   std::optional<io::AppendedFile> output_;
   bool has_write_failed_ = false;               // or is at work
   std::optional<io::DeferredSignals> signals_;  // while rows are written
@@ -390,15 +377,16 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
   fit_ = MakeCycleFitOptions(options_.fit);
   const contact::KnownContact& known = options_.fit.contact.known;
   if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-  reading_ = campaign::ChooseReading(head, fit_);
+  const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
+  test_.gate = campaign::ChooseGate(head, fit_);
   const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
   if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-  const double gate = *fit_.preparation.reversal_gate;
-  if (!reading_.gate_is_given && gate > 0) {
+  const loop::ReversalGate& gate = test_.gate;
+  if (!is_gate_given && gate.gate > 0) {
     test_.notes.push_back(
         fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
                     "says another",
-                    gate, reading_.samples));
+                    gate.gate, head.size()));
   }
   campaign::TrackOptions options{
       .fit = fit_,
@@ -407,7 +395,12 @@ void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) 
       .every = options_.every,
       .threads = options_.threads};
   Resume(options);
-  if (const auto doubt = campaign::DoubtAbout(reading_, source)) test_.notes.push_back(*doubt);
+  if (!gate.certain) {
+    test_.notes.push_back(fmt::format(
+        "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
+        "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
+        source, head.size(), gate.count, gate.gate, gate.other_count, gate.other_gate));
+  }
   tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
 }
 
@@ -452,46 +445,41 @@ void TrackRun::Resume(campaign::TrackOptions& made) {
   made.seed = SeedOf(command_);
   std::error_code error;
   if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error) return;
-  campaign::DissipatedEnergy energy = test_.energy;
   kept_ = ReadKeptCycles(options_.output, test_.is_torsional, [&](const CycleFit& fit) {
-    if (test_.fits % campaign::kBatch == 0) test_.energy = energy;  // before the last batch
-    energy.Add(fit);
+    test_.energy.Add(fit);
     test_.Add(fit);
   });
   test_.resumed = kept_->fits;
   if (kept_->fits == 0) kept_.reset();
-  made.skipped = kept_ ? kept_->fits - campaign::kBatch : 0;
+  made.skipped = test_.resumed;
 }
 
-/// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
+/// Opens the table behind what is kept of it.
+void TrackRun::OpenTable() {
+  if (output_) return;
+  if (!continues_table()) {
+    throw InputError(fmt::format(
+        "--resume: {} was made from another record or with other options, or what was read before "
+        "its row {} was another: give those, another --output, or --overwrite",
+        options_.output, kept_->fits));
+  }
+  has_write_failed_ = true;
+  output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
+  if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+}
+
+/// Appends the rows of a batch.
 void TrackRun::Take(std::span<const CycleFit> fits) {
+  OpenTable();
+  has_write_failed_ = true;
   std::string rows;
   for (const CycleFit& fit : fits) {
     test_.energy.Add(fit);
     rows += campaign::CycleTableRow(fit, test_.energy.total(), test_.is_torsional);
   }
-  if (kept_ && rows != kept_->last_batch) ThrowOther();
-  has_write_failed_ = true;
-  if (kept_) {
-    output_.emplace(options_.output, kept_->bytes);
-    kept_.reset();
-  } else {
-    if (!output_) {
-      output_.emplace(options_.output, 0);
-      output_->Append(campaign::CycleTableHeader(test_.is_torsional));
-    }
-    output_->Append(rows);
-    for (const CycleFit& fit : fits) test_.Add(fit);
-  }
+  output_->Append(rows);
+  for (const CycleFit& fit : fits) test_.Add(fit);
   has_write_failed_ = false;
-}
-
-void TrackRun::ThrowOther() const {
-  throw InputError(fmt::format(
-      "--resume: {} was made from another record or with other options, its rows {} to {} "
-      "come out differently or what was read before them: give those, another "
-      "--output, or --overwrite",
-      options_.output, kept_->fits - campaign::kBatch + 1, kept_->fits));
 }
 
 /// Reads and fits all cycles.
@@ -499,7 +487,7 @@ void TrackRun::Read() {
   for (const std::string& file : options_.fit.files) ReadFile(file);
   if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
   tracker_->Finish();
-  if (kept_) ThrowOther();  // a record that ends before them
+  if (kept_) OpenTable();  // also of a record that ends with it, or before
   has_write_failed_ = true;
   if (output_) output_->Finish();
   has_write_failed_ = false;
@@ -514,7 +502,7 @@ TrackedTest TrackRun::Track() {
     // Finished rows are kept, unless they are another run's, or there are none.
     const bool is_stopped = signals_->noted() != 0;
     if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
-    if (!tracker_ || (kept_ && !is_stopped)) throw;
+    if (!tracker_ || (!continues_table() && !is_stopped)) throw;
     try {
       if (!has_write_failed_) tracker_->Finish();
       if (output_) output_->Finish();
@@ -527,29 +515,26 @@ TrackedTest TrackRun::Track() {
   signals_.reset();
   test_.cycles = tracker_->cycles();
   test_.log = tracker_->log();
-  test_.reversal_gate = *fit_.preparation.reversal_gate;
-  test_.is_gate_certain = reading_.gate.certain;
-  campaign::RequireCycles(test_.cycles, options_.average, reading_, test_.reversal_gate,
-                          fmt::format("{}", fmt::join(test_.files, ", ")));
+  if (test_.cycles == 0) {
+    throw InputError(fmt::format(
+        "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
+        "another column with --displacement, or a smaller --reversal-gate",
+        fmt::join(test_.files, ", "), options_.average > 1 ? ", or fewer than --average says" : "",
+        test_.gate.count, test_.gate.gate));
+  }
   test_.evolutions = test_.courses.Describe(test_.is_torsional);
   return std::move(test_);
 }
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
   RequireDistinctFiles(options.fit.files);
-  RequireOutputPaths({{"--output", options.output},
-                      {"--json", options.json_path, /*dash_is_stdout=*/true},
-                      {"--plot", options.plot_path},
-                      {"--report", options.report_path}},
-                     console, options.fit.files);
-  if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
   RequireTrackOptions(options);
   const TrackedTest test = TrackRun(options, command).Track();
   console.exit_status = test.established() ? kDone : kNotEstablished;
-  if (!options.plot_path.empty()) io::WritePlot(ToPlot(test), options.plot_path);
   if (!options.report_path.empty()) {
-    io::WriteFileAtomically(options.report_path,
-                            ToPage(test, ProvenanceOf(command, console, options.fit.files)));
+    io::WriteFileAtomically(
+        options.report_path,
+        ToPage(test, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
   WriteAnswer(options.json_path, console, test);
 }
@@ -590,14 +575,12 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();
   group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
-  group.Add("--plot", options->plot_path,
-            "evolution over the cycles with its changes, as svg or png", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
   group.AddFlag("--resume", options->resume,
                 "continue an existing table, with the same files and options");
   group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
-  command.callback([options, &command, &console] { RunTrack(*options, command, console); });
+  OnRun(command, [options, &command, &console] { RunTrack(*options, command, console); });
 }
 
 }  // namespace mindahl::cli

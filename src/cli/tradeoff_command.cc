@@ -53,7 +53,6 @@ struct TradeoffOptions {
   LawOptions law;                        // default: the contact of Peyret et al. (2017) §3
   std::vector<std::string> excitations;  // empty: all
   std::string path;
-  std::vector<double> displacement = {};  // of the path
   std::string column;
   std::string csv;
   std::string plot;
@@ -87,24 +86,24 @@ BranchLaw PaperContact() {
   return ResolveLaw(law);
 }
 
-MeasuredExcitation Measure(const BranchLaw& law, std::string name, std::string title,
-                           const methods::Drive& drive, double tolerance) {
-  MeasuredExcitation measured{.name = std::move(name),
-                              .title = std::move(title),
-                              .samples = drive.displacement.size(),
-                              .points = tradeoff::MeasureWorkPrecision(law, drive)};
-  measured.cheapest = tradeoff::CheapestWithin(tolerance, /*energy_counts=*/false, measured.points);
-  measured.cheapest_with_energy =
-      tradeoff::CheapestWithin(tolerance, /*energy_counts=*/true, measured.points);
-  return measured;
-}
-
 std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
                                               const BranchLaw& law) {
   std::vector<MeasuredExcitation> measured;
-  if (!request.displacement.empty()) {
-    measured.push_back(Measure(law, "path", request.path, {.displacement = request.displacement},
-                               request.tolerance));
+  const auto measure = [&](std::string_view name, std::string title, const methods::Drive& drive) {
+    measured.push_back({.name = std::string(name),
+                        .title = std::move(title),
+                        .samples = drive.displacement.size(),
+                        .points = tradeoff::MeasureWorkPrecision(law, drive)});
+    MeasuredExcitation& made = measured.back();
+    made.cheapest =
+        tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/false, made.points);
+    made.cheapest_with_energy =
+        tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/true, made.points);
+  };
+  if (!request.path.empty()) {
+    const std::vector<double> displacement = io::ImposedColumn(
+        io::ReadCsvTable(request.path), io::Imposed::kDisplacement, request.column);
+    measure("path", request.path, {.displacement = displacement});
     return measured;
   }
   for (const Scene& scene : kScenes) {
@@ -118,9 +117,7 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
                                 .cycles = scene.cycles});
     methods::Drive drive{.displacement = excitation.displacement};
     if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
-    measured.push_back(Measure(law, std::string(scene.name),
-                               fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive,
-                               request.tolerance));
+    measure(scene.name, fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive);
   }
   return measured;
 }
@@ -252,17 +249,8 @@ std::string ToJson(const Tradeoff& study) {
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  RequireOutputPaths({{"--csv", options.csv},
-                      {"--plot", options.plot},
-                      {"--json", options.json, /*dash_is_stdout=*/true}},
-                     console, {options.path});
-  TradeoffOptions asked = options;
-  if (!options.path.empty()) {
-    asked.displacement = io::ImposedColumn(io::ReadCsvTable(options.path),
-                                           io::Imposed::kDisplacement, options.column);
-  }
-  const Tradeoff study = MakeTradeoff(asked);
-  WarnOfDoubts(options.law.contact, "tradeoff", console);
+  const Tradeoff study = MakeTradeoff(options);
+  Say("tradeoff: warning", DoubtsAbout(options.law.contact), console);
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(ToPlot(study), options.plot);
   if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(study));
@@ -305,7 +293,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   output.Add("--csv", options->csv, "every point, as CSV", "PATH");
   output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
   output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
-  command.callback([options, &console] { RunTradeoff(*options, console); });
+  OnRun(command, [options, &console] { RunTradeoff(*options, console); });
 }
 
 }  // namespace mindahl::cli

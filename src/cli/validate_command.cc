@@ -108,7 +108,6 @@ std::string ToText(const Validation& validation) {
 }
 
 void RunValidate(Validation& validation, Console& console) {
-  RequireOutputPaths({{"--json", validation.json_path, /*dash_is_stdout=*/true}}, console);
   validation.report = identification::ValidateMapping(validation.options);
   const ValidationReport& report = validation.report;
   WriteAnswer(validation.json_path, console, validation);
@@ -136,7 +135,7 @@ void AddValidateCommand(CLI::App& app, Console& console) {
   plain.AddShown("--seed", options->options.seed, "seed of the random numbers")
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
   plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
-  command.callback([options, &console] { RunValidate(*options, console); });
+  OnRun(command, [options, &console] { RunValidate(*options, console); });
 }
 
 }  // namespace mindahl::cli

@@ -35,6 +35,21 @@ inline std::vector<std::string_view> PartsOf(std::string_view text, char separat
   }
 }
 
+/// Returns words with blanks between them in lines of at most so many characters; a longer word has
+/// a line of its own.
+inline std::vector<std::string> LinesOf(const std::vector<std::string_view>& words,
+                                        std::size_t width) {
+  std::vector<std::string> lines;
+  for (const std::string_view word : words) {
+    if (!lines.empty() && CharactersIn(lines.back()) + 1 + CharactersIn(word) <= width) {
+      lines.back().append(" ").append(word);
+    } else {
+      lines.emplace_back(word);
+    }
+  }
+  return lines;
+}
+
 /// Returns the names of the rows of a table.
 template <typename Rows, typename Member>
 std::vector<std::string_view> NamesOf(const Rows& rows, Member name) {

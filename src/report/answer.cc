@@ -14,7 +14,7 @@
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/terms.h"
 #include "report/fields.h"
-#include "report/names.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
@@ -475,8 +475,7 @@ bool IsNumber(std::string_view word) {
 
 /// Breaks a text between words; a number stays with what belongs to it.
 std::string Wrapped(std::string_view text) {
-  std::string wrapped;
-  std::size_t column = kLabel;
+  std::vector<std::string_view> words;
   for (std::size_t begin = 0; begin < text.size();) {
     std::size_t last = begin;
     std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -486,20 +485,11 @@ std::string Wrapped(std::string_view text) {
       last = end + 1;
       end = std::min(text.find(' ', last), text.size());
     }
-    const std::string_view word = text.substr(begin, end - begin);
-    const std::size_t width = CharactersIn(word);
-    if (column > kLabel && column + 1 + width > kTextWidth) {
-      wrapped += '\n' + std::string(kLabel, ' ');
-      column = kLabel;
-    } else if (column > kLabel) {
-      wrapped += ' ';
-      ++column;
-    }
-    wrapped += word;
-    column += width;
+    words.push_back(text.substr(begin, end - begin));
     begin = std::min(end + 1, text.size());
   }
-  return wrapped;
+  return fmt::format(
+      "{}", fmt::join(LinesOf(words, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
 }
 
 std::string LinesText(const std::vector<Line>& lines) {

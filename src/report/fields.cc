@@ -12,7 +12,6 @@
 
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"
-#include "report/names.h"
 #include "report/statements.h"
 
 namespace mindahl::report {
@@ -437,7 +436,7 @@ const std::vector<Field>& Fields() {
   return fields;
 }
 
-Json JsonDocument(const Report& report) {
+std::string ToJson(const Report& report) {
   Json document;
   for (const Field& field : Fields()) {
     std::string path(field.path);
@@ -447,10 +446,8 @@ Json JsonDocument(const Report& report) {
   Json nulls = Json::array();
   FindNulls(document, "", ReasonsOf(report), nulls);
   document["nulls"] = std::move(nulls);
-  return document;
+  return Dump(document);
 }
-
-std::string ToJson(const Report& report) { return Dump(JsonDocument(report)); }
 
 std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
                                                              std::string_view prefix) {

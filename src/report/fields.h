@@ -39,9 +39,6 @@ struct Field {
 
 const std::vector<Field>& Fields();
 
-/// Returns the document that ToJson() writes.
-Json JsonDocument(const Report& report);
-
 /// Returns the numbers and words of fields whose path begins with `prefix`, "residuals.", as names
 /// without it and values with their units; none of what is null or has members.
 std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,

@@ -52,9 +52,10 @@ std::string LabelOf(const Report& report, std::size_t r) {
 }
 
 bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
-  if (!report.load_window) return true;
+  const auto& window = report.options.preparation.load_window;
+  if (!window || record.normal_load.empty()) return true;
   const double load = record.normal_load[sample];
-  return load >= report.load_window->lower && load <= report.load_window->upper;
+  return load >= window->lower && load <= window->upper;
 }
 
 /// @param y      of every sample of the record

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "mindahl/core/error.h"
-#include "report/names.h"
 
 namespace mindahl::report {
 

@@ -43,17 +43,7 @@ std::vector<std::string> NameLines(std::string name, std::size_t& width) {
   std::ranges::replace(name, '\n', ' ');
   const std::vector<std::string_view> words = PartsOf(name, ' ');
   for (const std::string_view word : words) width = std::max(width, CharactersIn(word));
-  std::vector<std::string> lines;
-  for (const std::string_view word : words) {
-    const bool fits =
-        !lines.empty() && CharactersIn(lines.back()) + 1 + CharactersIn(word) <= width;
-    if (!fits) {
-      lines.emplace_back(word);
-    } else {
-      lines.back().append(" ").append(word);
-    }
-  }
-  return lines;
+  return LinesOf(words, width);
 }
 
 std::string CellCsv(const Json& value) {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <regex>
 #include <span>
 #include <utility>
 
@@ -156,10 +155,13 @@ std::string QuantityWithInterval(double value, std::optional<double> lower,
 
 std::string UnitIn(const Units& units, std::string_view unit) {
   if (units.force == kUnitsOfForce.force) return std::string(unit);
-  std::string translated(unit);
-  for (const auto& [symbol, other] :
-       {std::pair("\\bm\\b", "rad"), {"\\bN\\b", "N m"}, {"\\bkg\\b", "kg m²"}}) {
-    translated = std::regex_replace(translated, std::regex(symbol), other);
+  std::string translated;
+  for (std::size_t begin = 0; begin < unit.size();) {
+    const std::size_t end = std::min(unit.find_first_of(" /()²", begin), unit.size());
+    const std::string_view symbol = unit.substr(begin, end - begin);
+    translated += symbol == "m" ? "rad" : symbol == "N" ? "N m" : symbol == "kg" ? "kg m²" : symbol;
+    if (end < unit.size()) translated += unit[end];
+    begin = end + 1;
   }
   // A product below the stroke needs brackets.
   const std::size_t below = std::min(translated.find('/'), translated.size());

@@ -31,10 +31,6 @@ using report::Dump;
 using report::Json;
 using report::NumberOrNull;
 
-struct FitDocument {
-  Json json;
-};
-
 namespace {
 
 /// A column of the table, and where `fit --json` has it.
@@ -92,31 +88,41 @@ constexpr std::array kRepeated = {Repeated{"sigma", "sigma", "N/m"},
                                   Repeated{"half_gap", "", "N"},
                                   Repeated{"energy_per_cycle", "", "J"}};
 
-Json ValueAt(const BatchEntry& entry, std::string_view pointer) {
-  const Json::json_pointer at{std::string(pointer)};
-  if (!entry.fit || !entry.fit->json.contains(at)) return nullptr;
-  return entry.fit->json.at(at);
+Json DocumentOf(const BatchEntry& entry) {
+  return entry.fit.empty() ? Json() : Json::parse(entry.fit);
 }
 
-Json ValueOf(const BatchEntry& entry, std::string_view column) {
-  const auto found = std::ranges::find(kBatchColumns, column, &ColumnRow::name);
-  return found == kBatchColumns.end() ? Json(nullptr) : ValueAt(entry, found->pointer);
+Json TableRows(std::span<const BatchEntry> entries) {
+  Json rows = Json::array();
+  for (const BatchEntry& entry : entries) {
+    const Json fit = DocumentOf(entry);
+    const auto value_at = [&](std::string_view pointer) {
+      const Json::json_pointer at{std::string(pointer)};
+      return fit.contains(at) ? fit.at(at) : Json();
+    };
+    Json row = {{"file", entry.file}, {"done", entry.done}};
+    for (const ColumnRow& column : kBatchColumns) row[column.name] = value_at(column.pointer);
+    std::vector<std::string> codes;
+    for (const Json& warning : value_at("/warnings")) codes.push_back(warning["code"]);
+    row["warnings"] = fmt::format("{}", fmt::join(codes, " "));
+    row["fault"] = entry.fault;
+    row["version"] = Version();
+    row["sha256"] = entry.sha256;
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
-std::string WarningsOf(const BatchEntry& entry) {
-  std::vector<std::string> codes;
-  for (const Json& warning : ValueAt(entry, "/warnings")) codes.push_back(warning["code"]);
-  return fmt::format("{}", fmt::join(codes, " "));
-}
-
-std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
+/// @param rows  the table's, of the same fits
+std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits, const Json& rows,
                                            const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;  // by which repeats scatter
   std::vector<double> common;  // of an interval that is wider than by its own error
-  for (const BatchEntry& fit : fits) {
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    const BatchEntry& fit = fits[k];
     const auto number = [&](std::string_view name, const char* suffix) {
-      const Json value = ValueOf(fit, fmt::format("{}{}", name, suffix));
+      const Json value = rows[k].value(fmt::format("{}{}", name, suffix), Json());
       return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
     };
     const std::optional<double> value = number(quantity.name, "");
@@ -126,7 +132,7 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
       values.push_back(*value);
       continue;
     }
-    const Json verdict = ValueOf(fit, fmt::format("{}_verdict", parameter));
+    const Json& verdict = rows[k].at(fmt::format("{}_verdict", parameter));
     const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
     const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
     std::optional<double> own = number(parameter, "_error");
@@ -146,9 +152,10 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
 
 /// Returns what repeats of a test say of each quantity.
 Json RepeatRows(std::span<const BatchEntry> entries) {
+  const Json table = TableRows(entries);
   Json rows = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    const auto found = RepeatsOf(entries, quantity);
+    const auto found = RepeatsOf(entries, table, quantity);
     if (!found) continue;
     rows[quantity.name] = {{"files", found->count},
                            {"mean", found->mean},
@@ -201,7 +208,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
     Validate(own);
     const report::Report report = FitRecords(own, read(own));
     entry.notes = report.notes;
-    entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
+    entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
     entry.parameters = report.fit.parameters;
@@ -254,26 +261,6 @@ bool AllDone(std::span<const BatchEntry> entries) {
   return std::ranges::all_of(entries, &BatchEntry::done);
 }
 
-namespace {
-
-Json TableRows(std::span<const BatchEntry> entries) {
-  Json rows = Json::array();
-  for (const BatchEntry& entry : entries) {
-    Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) {
-      row[column.name] = ValueAt(entry, column.pointer);
-    }
-    row["warnings"] = WarningsOf(entry);
-    row["fault"] = entry.fault;
-    row["version"] = Version();
-    row["sha256"] = entry.sha256;
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-}  // namespace
-
 std::string TableCsv(std::span<const BatchEntry> entries) {
   return report::TableCsv(TableRows(entries));
 }
@@ -295,7 +282,7 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
     files.push_back({{"file", entry.file},
                      {"done", entry.done},
                      {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-                     {"fit", entry.fit ? entry.fit->json : Json()}});
+                     {"fit", DocumentOf(entry)}});
   }
   return Dump({{"schema", "mindahl.batch/1"},
                {"version", Version()},
@@ -328,13 +315,6 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
        {"repeats", report::TableData("over the fitted files in which the quantity is known",
                                      RepeatRows(entries))},
        {"provenance", report::ProvenanceData(provenance)}});
-}
-
-std::string FitJson(const BatchEntry& entry) { return entry.fit ? Dump(entry.fit->json) : ""; }
-
-void SetFitJson(BatchEntry& entry, const std::string& json) {
-  entry.fit.reset();
-  if (!json.empty()) entry.fit = std::make_shared<FitDocument>(FitDocument{Json::parse(json)});
 }
 
 }  // namespace mindahl::request

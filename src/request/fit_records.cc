@@ -304,7 +304,7 @@ AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
 std::string AddTermTo(FitRequest& request, const std::string& name,
                       std::span<const Record> records) {
   if (name == "rig_stiffness") {
-    request.rig_stiffness = RigRequest{};
+    request.fit.terms = {name};
     return "--rig-stiffness fit";
   }
   if (identification::FindTermGroup(name) != nullptr) {
@@ -315,7 +315,7 @@ std::string AddTermTo(FitRequest& request, const std::string& name,
   const std::string column = std::ranges::find(columns, name, [](const loop::Covariate& covariate) {
                                return identification::NameOfCovariate(covariate.name);
                              })->name;
-  request.covariates.push_back({.column = column});
+  request.fit.covariates = {column};
   const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
   return fmt::format("--covariate {}{}{}", quote, column, quote);
 }
@@ -400,7 +400,6 @@ void Validate(const FitRequest& request) {
   Validate(request.contact);
   RequireLoadsOfRecords(request);
   MakeFitOptions(request);
-  CovariateColumns(request);
 }
 
 void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
@@ -429,7 +428,7 @@ bool Established(const FitResult& fit, Strictness strictness) {
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
-  columns.covariates = CovariateColumns(request);
+  columns.covariates = MakeFitOptions(request).covariates;
   std::vector<RecordFile> inputs;
   io::ReadLimits left{.memory = request.max_memory.value_or(MemoryOfProcess())};
   for (const std::string& file : request.files) {
@@ -491,7 +490,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .fit = std::move(asked.fit),
                              .options = asked.options,
                              .known = known,
-                             .load_window = options.preparation.load_window,
                              .left_out = std::move(left_out),
                              .notes = std::move(notes),
                              .compared = std::move(compared),

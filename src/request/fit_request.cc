@@ -62,60 +62,28 @@ void AddCompanionsOfFixed(FitOptions& fit) {
   }
 }
 
-void ApplyRig(const RigRequest& asked, FitOptions& fit) {
-  constexpr const char* kName = "rig_stiffness";
-  if (fit.fixed.contains(kName)) {
-    throw InputError("--rig-stiffness and --fix rig_stiffness say the same: give one of the two");
+/// @throws InputError where a column is given twice
+void RequireDistinctColumns(const FitOptions& fit) {
+  std::vector<std::string> names;
+  for (const std::string& column : fit.covariates) {
+    std::string name = identification::NameOfCovariate(column);
+    if (column.empty()) throw InputError("--covariate: '' is no column: give its name or number");
+    if (std::ranges::find(names, name) != names.end()) ThrowTwice("--covariate", column);
+    names.push_back(std::move(name));
   }
-  if (asked.value && fit.priors.contains(kName)) {
-    throw InputError("--prior rig_stiffness and --rig-stiffness say the same: give one of the two");
-  }
-  if (asked.value) RequirePositive("--rig-stiffness [N/m]", *asked.value);
-  if (asked.value && !asked.standard_uncertainty) {
-    fit.fixed[kName] = *asked.value;
-    return;
-  }
-  fit.terms.emplace_back(kName);
-  if (asked.value) fit.priors[kName] = {*asked.value, *asked.standard_uncertainty};
 }
 
-/// Returns the columns of --covariate, and of --terms the names that are no terms.
-std::vector<CovariateRequest> CovariatesOf(const FitRequest& request) {
-  std::vector<CovariateRequest> covariates = request.covariates;
-  if (request.fit.response() == loop::Channel::kDisplacement) return covariates;
-  for (std::string& name : NamedTerms(request)) {
-    if (identification::FindTermGroup(name) != nullptr) continue;
-    std::vector<std::string> names;
-    for (const auto& group : identification::TermGroups()) names.emplace_back(group.name);
-    if (const auto nearest = NearestName(name, names)) {
-      throw InputError(
-          fmt::format("--terms: '{}' is no term: did you mean '{}'? A column is named by "
-                      "--covariate {}",
-                      name, *nearest, name));
-    }
-    covariates.push_back({.column = std::move(name)});
+/// Takes a name that is no term for a column.
+void AddColumn(const std::string& name, FitOptions& fit) {
+  std::vector<std::string> names;
+  for (const auto& group : identification::TermGroups()) names.emplace_back(group.name);
+  if (const auto nearest = NearestName(name, names)) {
+    throw InputError(
+        fmt::format("--terms: '{}' is no term: did you mean '{}'? A column is named by "
+                    "--covariate {}",
+                    name, *nearest, name));
   }
-  return covariates;
-}
-
-void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions& fit) {
-  for (const CovariateRequest& choice : covariates) {
-    if (choice.column.empty()) {
-      throw InputError("--covariate: '' is no column: give its name or number");
-    }
-    const std::string name = identification::NameOfCovariate(choice.column);
-    const bool is_there = std::ranges::any_of(fit.covariates, [&](const std::string& other) {
-      return identification::NameOfCovariate(other) == name;
-    });
-    if (is_there) ThrowTwice("--covariate", choice.column);
-    fit.covariates.push_back(choice.column);
-    if (!choice.coefficient) continue;
-    if (!fit.fixed.emplace(name, *choice.coefficient).second) {
-      throw InputError(
-          fmt::format("--covariate {}={} and --fix {} say the same: give one of the two",
-                      choice.column, *choice.coefficient, name));
-    }
-  }
+  fit.covariates.push_back(name);
 }
 
 /// Applies --terms: groups of terms, and columns.
@@ -135,21 +103,24 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
                                                : "with --noise-in displacement displacement_drift "
                                                  "alone is a term: leave it out"));
     }
-    if (name == "rig_stiffness" && request.rig_stiffness) {
-      throw InputError(
-          "--terms rig_stiffness and --rig-stiffness say the same: give one of the two");
+    if (!is_of_force) {
+      fit.terms.push_back(name);
+    } else if (const auto* group = identification::FindTermGroup(name)) {
+      AddGroup(*group, fit);
+    } else {
+      AddColumn(name, fit);
     }
-    const identification::TermGroup* group = identification::FindTermGroup(name);
-    if (group != nullptr) AddGroup(*group, fit);
-    if (!is_of_force) fit.terms.push_back(name);
   }
 }
 
 void RequireOptionsOfDisplacement(const FitRequest& request) {
   constexpr std::string_view kOfForce = "it needs a fit of the force; leave one of the two out";
+  constexpr const char* kRig = "rig_stiffness";
+  const bool has_rig = request.fit.fixed.contains(kRig) ||
+                       std::ranges::find(request.fit.terms, kRig) != request.fit.terms.end();
   for (const auto& [is_given, option, why] :
-       {std::tuple(request.rig_stiffness.has_value(), "--rig-stiffness", kOfForce),
-        {!request.covariates.empty(), "--covariate", kOfForce},
+       {std::tuple(has_rig, "--rig-stiffness", kOfForce),
+        {!request.fit.covariates.empty(), "--covariate", kOfForce},
         {ChoosesTerms(request), "--terms auto", kOfForce},
         {request.compare, "--compare", kOfForce},
         {request.fit.force_noise.has_value(), "--force-noise",
@@ -190,17 +161,6 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
       term->name == "rig_stiffness"
           ? std::string("add --rig-stiffness fit")
           : fmt::format("add --terms {}", is_of_displacement ? kDriftOfDisplacement : term->group));
-}
-
-void RequireWithinBounds(const FitOptions& fit) {
-  for (const auto& [name, interval] : fit.bounds) {
-    const auto fixed = fit.fixed.find(name);
-    if (fixed == fit.fixed.end()) continue;
-    if (fixed->second >= interval.lower && fixed->second <= interval.upper) continue;
-    throw InputError(
-        fmt::format("{} is held at {}, outside its --bound {}:{}: change one of the two", name,
-                    fixed->second, interval.lower, interval.upper));
-  }
 }
 
 }  // namespace
@@ -245,14 +205,12 @@ FitOptions MakeFitOptions(const FitRequest& request) {
   if (!(fit.confidence > 0 && fit.confidence < 1)) {
     ThrowInvalid("--confidence [-]", fit.confidence, "must be between 0 and 1, as 0.95");
   }
-  if (request.rig_stiffness) ApplyRig(*request.rig_stiffness, fit);
   ApplyTerms(request, fit);
   AddCompanionsOfFixed(fit);
-  ApplyCovariates(CovariatesOf(request), fit);
+  RequireDistinctColumns(fit);
   for (const auto& [name, interval] : fit.bounds) {
     RequireOrdered("--bound", interval.lower, interval.upper);
   }
-  RequireWithinBounds(fit);
   for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
   for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);
@@ -261,10 +219,11 @@ FitOptions MakeFitOptions(const FitRequest& request) {
 
 FitOptions MakeCycleFitOptions(const FitRequest& request) {
   // A cycle of gross slip does not distinguish an asymmetry from an offset of the force.
-  const bool is_asymmetric = std::ranges::find(request.terms, "asymmetry") != request.terms.end();
+  FitOptions fit = MakeFitOptions(request);
+  const bool is_asymmetric = std::ranges::find(fit.terms, "asymmetry") != fit.terms.end();
   for (const auto& [is_given, option] :
        {std::pair(request.compare, "--compare"),
-        {!CovariatesOf(request).empty(), "--covariate"},
+        {!fit.covariates.empty(), "--covariate"},
         {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
         {is_asymmetric, "--terms asymmetry"}}) {
     if (!is_given) continue;
@@ -272,15 +231,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
         "{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
         option));
   }
-  return MakeFitOptions(request);
-}
-
-std::vector<std::string> CovariateColumns(const FitRequest& request) {
-  std::vector<std::string> columns;
-  for (CovariateRequest& choice : CovariatesOf(request)) {
-    columns.push_back(std::move(choice.column));
-  }
-  return columns;
+  return fit;
 }
 
 }  // namespace mindahl::request

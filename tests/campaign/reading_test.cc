@@ -19,16 +19,14 @@ loop::Record Loop() {
   return record;
 }
 
-TEST(Reading, ChoosesGateAndForceSignForAllCycles) {
+TEST(ChooseGate, ChoosesTheForceSignTooForAllCycles) {
   const loop::Record record = Loop();
   identification::FitOptions fit;
-  const Reading reading = ChooseReading(record, fit);
+  const loop::ReversalGate gate = ChooseGate(record, fit);
   EXPECT_TRUE(fit.preparation.reversal_gate.has_value());
   EXPECT_EQ(fit.preparation.force_sense, 1);
-  EXPECT_EQ(reading.gate.count, 6U);
-  EXPECT_EQ(reading.samples, record.size());
-  EXPECT_FALSE(reading.gate_is_given);
-  EXPECT_FALSE(DoubtAbout(reading, "loop").has_value());
+  EXPECT_EQ(gate.count, 6U);
+  EXPECT_TRUE(gate.certain);
 }
 
 TEST(ReadHead, GoesOnUntilTheMotionHasTurnedEightTimes) {
@@ -47,32 +45,11 @@ TEST(ReadHead, GoesOnUntilTheMotionHasTurnedEightTimes) {
   EXPECT_GE(loop::ChooseReversalGate(head.displacement).count, 8U);
 }
 
-TEST(Reading, KeepsAGateThatIsGiven) {
+TEST(ChooseGate, KeepsAGateThatIsGiven) {
   identification::FitOptions fit;
   fit.preparation.reversal_gate = 1e-7;
-  const Reading reading = ChooseReading(Loop(), fit);
-  EXPECT_TRUE(reading.gate_is_given);
+  EXPECT_EQ(ChooseGate(Loop(), fit).gate, 1e-7);
   EXPECT_EQ(*fit.preparation.reversal_gate, 1e-7);
-}
-
-TEST(Reading, ReportsUncertainChoices) {
-  Reading reading;
-  reading.gate.certain = false;
-  EXPECT_NE(DoubtAbout(reading, "loop.csv")
-                ->find("loop.csv: the number of reversals is not "
-                       "certain"),
-            std::string::npos);
-}
-
-TEST(Reading, AsksForFewerCyclesToAverageOnlyWhereThereAreSome) {
-  EXPECT_NO_THROW(RequireCycles(1, 1, {}, 0.0, "loop"));
-  const auto message = [](std::size_t turns) -> std::string {
-    Reading reading;
-    reading.gate.count = turns;
-    return MessageOf<InputError>([&] { RequireCycles(0, 5, reading, 0.0, "loop"); });
-  };
-  EXPECT_EQ(message(4), "--average 5: loop has only 4 reversals, two a cycle: average fewer");
-  EXPECT_NE(message(1).find("loop: no whole cycle"), std::string::npos);
 }
 
 }  // namespace

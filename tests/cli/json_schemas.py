@@ -101,7 +101,6 @@ COMMANDS = [
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
      "--initial-state steady --want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
-    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2", 0),
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),

@@ -65,7 +65,7 @@ TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
 TEST_F(Outputs, AreNotWrittenOverEachOther) {
   ExpectRefused({"fit", SampleRecord(), "--json", At("out"), "--residuals", At("./out")},
                 "--json and --residuals both write to");
-  ExpectRefused({"tradeoff", "--csv", At("out"), "--plot", At("out")},
+  ExpectRefused({"tradeoff", "--csv", At("out.svg"), "--plot", At("out.svg")},
                 "--csv and --plot both write to");
   EXPECT_EQ(directory_.FileCount(), 0u);
 }

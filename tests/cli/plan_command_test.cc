@@ -111,14 +111,13 @@ TEST(PlanCommand, CountsAmplitudesInDisplacementsAtSlip) {
 }
 
 TEST(PlanCommand, ExpectsTheErrorsOfItsProtocol) {
-  const json plan = Planned({"--rig-stiffness", "8e7", "--with", "viscous", "--autocorrelation",
-                             "0.3", "--displacement-noise", "2e-9", "--cycles", "2"});
+  const json plan = Planned({"--rig-stiffness", "8e7", "--with", "viscous", "--displacement-noise",
+                             "2e-9", "--cycles", "2"});
   identification::Expectation expected;
   expected.law = {4e7, 1.0 / 3, 40.0};
   expected.rig.stiffness = 8e7;
   expected.force_noise = 0.2;
   expected.displacement_noise = 2e-9;
-  expected.autocorrelation = 0.3;
   const identification::ExpectedFit fit =
       identification::ExpectFit(expected,
                                 {.amplitude = 2e-6,
@@ -137,16 +136,6 @@ TEST(PlanCommand, ExpectsTheErrorsOfItsProtocol) {
   EXPECT_EQ(plan["expected"]["rig_stiffness"], 8e7);
   EXPECT_EQ(plan["expected"]["displacement_noise"], 2e-9);
   EXPECT_EQ(plan["protocol"]["cycles"], 2.0);
-}
-
-TEST(PlanCommand, OfALoadSeriesIsOfTheLawAtTheMeanLoad) {
-  const json parameters =
-      Planned({"--load-ratio", "0.5,1,3", "--load-exponent", "0.4"})["loops"][0]["parameters"];
-  constexpr double kRounding = 1e-9;
-  EXPECT_NEAR(parameters["slip_force"]["value"], 1.5 * 40, 60 * kRounding);  // the mean load is 1.5
-  EXPECT_NEAR(parameters["sigma"]["value"].get<double>() / (4e7 * std::pow(1.5, 0.4)), 1.0,
-              kRounding);
-  EXPECT_NEAR(parameters["load_exponent"]["value"], 0.4, kRounding);
 }
 
 TEST(PlanCommand, TakesTheLawOfItsRecordAndSaysWhatIsNotKnown) {
@@ -180,7 +169,6 @@ TEST(PlanCommand, RefusesWhatItDoesNotUnderstandInOneLine) {
       {{"--force-noise", "0.4", "--with", "inertia"}, "--with"},
       {{"--force-noise", "0.4", "--with", "rig_stiffness"}, "needs --rig-stiffness"},
       {{"--force-noise", "0.4", "--displacement-noise", "-1"}, "--displacement-noise [m]"},
-      {{"--force-noise", "0.4", "--load-exponent", "0.4"}, "needs --load-ratio"},
       {{"--record", "loop.csv"}, "--record excludes --sigma"},
   };
   for (const auto& [words, message] : cases) {

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "cli/command_line.h"
-#include "cli/provenance.h"
+#include "cli/output.h"
 #include "io/source.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
@@ -63,9 +63,6 @@ TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
   EXPECT_THAT(index, HasSubstr("<a href=\"loop-2.html\">"));
   EXPECT_THAT(index, HasSubstr("(column 2) holds no numbers"));
   EXPECT_FALSE(Exists("pages/index-2.html"));
-  // Each page says how to make it alone.
-  EXPECT_THAT(testing::Unbroken(FileContent(At("pages/loop-2.html"))),
-              HasSubstr(fmt::format("<code>mindahl fit {} --model mindlin</code>", second)));
 }
 
 TEST_F(ReportPage, OfABatchNeedsADirectory) {
@@ -80,12 +77,12 @@ TEST_F(ReportPage, OfABatchNeedsADirectory) {
   }
 }
 
-TEST_F(ReportPage, ATestIsNotTrackedForAPlotThatCannotBe) {
+TEST_F(ReportPage, ARecordIsNotFittedForAPlotThatCannotBe) {
   const Outcome outcome =
-      RunCommand({"track", SampleRecord(), "--output", At("cycles.csv"), "--plot", At("plot.pdf")});
+      RunCommand({"fit", SampleRecord(), "--json", At("fit.json"), "--plot", At("plot.pdf")});
   EXPECT_EQ(outcome.status, kBadInput);
   EXPECT_THAT(outcome.err, HasSubstr("must end in .svg or .png"));
-  EXPECT_FALSE(Exists("cycles.csv"));
+  EXPECT_FALSE(Exists("fit.json"));
 }
 
 TEST(ShellWord, IsQuotedWhereAShellWouldTakeItApart) {

@@ -156,13 +156,6 @@ TEST_F(TrackCommand, RefusesToGoOnWithAnotherTest) {
   EXPECT_NE(options.err.find("made from another record or with other options"), std::string::npos)
       << options.err;
   EXPECT_EQ(ContentOf(Path("other.csv")), whole.substr(0, whole.size() / 2));
-  const auto lines = std::ranges::count(whole.substr(0, whole.size() / 2), '\n');
-  const std::size_t batches = (static_cast<std::size_t>(lines) - 1) / campaign::kBatch;
-  EXPECT_NE(options.err.find(fmt::format("its rows {} to {} come out",
-                                         (batches - 1) * campaign::kBatch + 1,
-                                         batches * campaign::kBatch)),
-            std::string::npos)
-      << options.err;
   const std::string text = ContentOf(record_);
   Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() / 4) + 1));
   EXPECT_EQ(
@@ -186,7 +179,7 @@ TEST_F(TrackCommand, RefusesToGoOnWhereAnEarlyRowOfTheRecordWasChanged) {
     Write("part.csv", part);
     const Outcome outcome = RunCommand({"track", other, "--output", Path("part.csv"), "--resume"});
     EXPECT_EQ(outcome.status, 2) << changed;
-    EXPECT_NE(outcome.err.find("what was read before them"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("what was read before its row"), std::string::npos) << outcome.err;
     EXPECT_TRUE(ContentOf(Path("part.csv")) == part);
   }
 }

@@ -241,7 +241,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"ConvertTwiceToStandardOutput",
      {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "dahl", "--json",
       "-", "--input-lines", "-"},
-     "give a file"},
+     "give each a file"},
     {"ConvertToleranceInWords",
      {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "dahl",
       "--tolerance", "little"},

@@ -12,7 +12,7 @@
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/request/batch.h"
 #include "report/fields.h"
-#include "report/names.h"
+#include "report/statements.h"
 
 // Prints the library's tables as JSON, from which library_tables.py makes those of the pages.
 namespace mindahl {

@@ -287,7 +287,7 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     ({"fix": {"gamma": 1}}, "gamma"),
     ({"fix": {"alpha": "x"}}, "fix: 'x' is not a number: write NAME=VALUE"),
     ({"rig_stiffness": -1}, r"rig_stiffness \[N/m\] = -1 is invalid"),
-    ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "rig_stiffness and fix rig_stiffness"),
+    ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "'rig_stiffness' is given twice"),
     ({"force_noise": 0}, r"force_noise \[N\] = 0 is invalid"),
     ({"cycles": (3, 2)}, "cycles: '3:2' is empty"),
     ({"cycles": 3}, "cycles: '3' is incomplete: write LO:HI"),

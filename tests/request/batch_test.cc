@@ -67,7 +67,7 @@ BatchEntry EntryOf(const Made& made, const std::string& file) {
   BatchEntry entry;
   entry.done = made.done;
   entry.file = file;
-  SetFitJson(entry, json.dump());
+  entry.fit = json.dump();
   if (made.repeat_error > 0) {
     identification::ParameterEstimate& slip_force = entry.parameters.emplace_back();
     slip_force.name = "slip_force";
@@ -169,7 +169,7 @@ BatchEntry EntryOfAllColumns() {
   entry.file = "a,b.csv";
   entry.done = true;
   entry.sha256 = "5e";
-  SetFitJson(entry, R"({
+  entry.fit = R"({
     "input": {"samples": 301, "cycles": 3}, "model": "dahl", "initial_state": "steady",
     "adequacy": {"verdict": "doubtful"},
     "measured": {"half_gap": {"value": 3.5}, "amplitude": 1.5, "peak_force": 2.5,
@@ -183,7 +183,7 @@ BatchEntry EntryOfAllColumns() {
     "residuals": {"rms": 17.5, "r_squared": 18.5},
     "contact": {"normal_load": {"value": 19.5}, "friction_coefficient": {"value": 20.5,
                 "ci95": [21.5, 21.75]}, "contact_radius": {"value": 22.5}},
-    "warnings": [{"code": "one"}, {"code": "two"}]})");
+    "warnings": [{"code": "one"}, {"code": "two"}]})";
   return entry;
 }
 
@@ -214,13 +214,12 @@ TEST(BatchJson, HasEveryFileWithItsFitOrItsFault) {
   EXPECT_EQ(json["files"][0]["file"], "a,b.csv");
   EXPECT_TRUE(json["files"][0]["done"]);
   EXPECT_TRUE(json["files"][0]["fault"].is_null());
-  EXPECT_EQ(json["files"][0]["fit"], nlohmann::json::parse(FitJson(entries[0])));
+  EXPECT_EQ(json["files"][0]["fit"], nlohmann::json::parse(entries[0].fit));
   EXPECT_FALSE(json["files"][1]["done"]);
   EXPECT_EQ(json["files"][1]["fault"], "no loop");
   EXPECT_TRUE(json["files"][1]["fit"].is_null());
   EXPECT_TRUE(json["repeats"].empty());
   EXPECT_TRUE(nlohmann::json::parse(ToJson(entries, ""))["output"].is_null());
-  EXPECT_EQ(FitJson(entries[1]), "");
 }
 
 }  // namespace

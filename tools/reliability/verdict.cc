@@ -9,7 +9,6 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
-#include "report/names.h"
 #include "report/statements.h"
 
 namespace mindahl::reliability {

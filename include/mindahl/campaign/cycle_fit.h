@@ -108,14 +108,9 @@ std::string CycleTableHeader(bool is_torsional);
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy,
                           bool is_torsional = false);
 
-/// Holds what is read back from a line of the table: the inverse of CycleTableRow().
-struct CycleTableEntry {
-  CycleFit fit;  ///< with numbers and flags, as far as the table has them
-  double accumulated_energy = 0.0;
-};
-
+/// Returns what a line of the table has of a fit: the inverse of CycleTableRow().
 /// @param line  without its end
 /// @throws InputError where it is no line of such a table, saying why
-CycleTableEntry ReadCycleTableRow(std::string_view line, bool is_torsional = false);
+CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional = false);
 
 }  // namespace mindahl::campaign

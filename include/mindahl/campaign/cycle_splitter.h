@@ -72,32 +72,14 @@ class CycleSplitter {
   std::uint64_t checksum_;
 };
 
-/// Holds how all cycles of a long record are read, as chosen from its first samples.
-struct Reading {
-  loop::ReversalGate gate;  ///< `certain` where it was given
-  bool gate_is_given = false;
-  std::size_t samples = 0;  ///< number of samples examined
-};
-
 /// Reads the first samples, as many as determine how the record is read: some cycles, or the
 /// first million.
 io::Samples ReadHead(io::RecordStream& stream);
 
-/// Chooses the reversal gate and the force's sign, one for all cycles.
+/// Chooses the reversal gate and the force's sign, one for all cycles, from the head of a record.
 /// @param fit  written: both
+/// @returns the gate, which is certain where it was given
 /// @throws InputError where the head shows no turning points
-Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);
-
-/// Returns a sentence where the reversals are uncertain; empty where they are not.
-/// @param source  what was read
-std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source);
-
-/// @param cycles    whole ones that were found
-/// @param together  that were to be fitted as one
-/// @param gate      [m] in use
-/// @param source    what was read, for messages
-/// @throws InputError unless there is one
-void RequireCycles(std::size_t cycles, std::size_t together, const Reading& reading, double gate,
-                   std::string_view source);
+loop::ReversalGate ChooseGate(const loop::RecordView& head, identification::FitOptions& fit);
 
 }  // namespace mindahl::campaign

@@ -57,6 +57,9 @@ class Tracker {
   /// Returns the loops of the cycles 1, 10, 100, … so far, thinned to what a figure shows.
   [[nodiscard]] const std::vector<Cycle>& log() const { return log_; }
 
+  /// Returns the checksum of the last cycle that is skipped, once it was read.
+  [[nodiscard]] std::optional<std::uint64_t> skipped_up_to() const { return skipped_up_to_; }
+
   /// Returns the number of whole cycles so far, fitted or not.
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
@@ -73,6 +76,7 @@ class Tracker {
   std::size_t pieces_ = 0;                                // that the splitter gave
   std::size_t fits_ = 0;                                  // of those, to be made or skipped
   std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
+  std::optional<std::uint64_t> skipped_up_to_;
   std::vector<Cycle> log_;
 };
 

@@ -46,9 +46,7 @@ struct ReportInput {
   std::vector<io::RecordFile> records{};  ///< records that were fitted, as read
   identification::FitResult fit{};
   identification::FitOptions options = {};  ///< options of the fit, with what it chose
-  contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
-  /// Normal loads [N] of the samples that counted, as given to the fit.
-  std::optional<identification::Interval> load_window = {};
+  contact::KnownContact known = {};     ///< known properties of the contact, in addition to the fit
   std::vector<LeftOut> left_out = {};   ///< what was cut off the records as not of their tests
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared

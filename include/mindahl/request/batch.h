@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,16 +14,14 @@
 
 namespace mindahl::request {
 
-struct FitDocument;  // the JSON of a fit
-
 /// Holds the fit of one source of a batch, or the fault for which it has none.
 struct BatchEntry {
   std::string file;
-  std::string fault;                       ///< why it is not done; "" where it is
-  bool done = false;                       ///< fitted, and Established()
-  std::shared_ptr<const FitDocument> fit;  ///< empty where there is none
-  std::vector<std::string> notes;          ///< assumptions of the run, one sentence each
-  std::string sha256;                      ///< SHA-256 of the file; "" if it is none
+  std::string fault;               ///< why it is not done; "" where it is
+  bool done = false;               ///< fitted, and Established()
+  std::string fit;                 ///< its JSON, as `mindahl fit --json` writes it; or ""
+  std::vector<std::string> notes;  ///< assumptions of the run, one sentence each
+  std::string sha256;              ///< SHA-256 of the file; "" if it is none
   std::string page;     ///< address of its page, relative to the index; "" where there is none
   std::string verdict;  ///< one word for the fit's adequacy; "" where there is none
   std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
@@ -67,11 +64,5 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
 /// it identifies, what failed and why, and the scatter between files against their stated errors.
 std::string IndexPage(std::span<const BatchEntry> entries,
                       const report::Provenance& provenance = {});
-
-/// Returns the JSON of an entry's fit as `mindahl fit --json` writes it; "" where there is none.
-std::string FitJson(const BatchEntry& entry);
-
-/// Makes an entry of what FitJson() returned, in another process.
-void SetFitJson(BatchEntry& entry, const std::string& json);
 
 }  // namespace mindahl::request

@@ -24,24 +24,9 @@ namespace mindahl::request {
 inline constexpr std::string_view kAutomatic = "auto";
 /// --terms none
 inline constexpr std::string_view kNoTerms = "none";
-/// --rig-stiffness fit
-inline constexpr std::string_view kFitIt = "fit";
 
 /// Models that can be fitted, kAutomatic first.
 std::vector<std::string_view> ModelNames();
-
-/// A stiffness of the rig that is known, stated with an uncertainty, or fitted.
-struct RigRequest {
-  std::optional<double> value = {};  ///< [N/m]; empty: it is fitted
-  /// Standard uncertainty of the value, with which it is fitted; empty: exact.
-  std::optional<double> standard_uncertainty = {};
-};
-
-/// A column in proportion to which a force is added.
-struct CovariateRequest {
-  std::string column{};
-  std::optional<double> coefficient = {};  ///< [N/unit of the column]; empty: it is fitted
-};
 
 /// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
 /// be.
@@ -53,11 +38,9 @@ struct FitRequest {
   std::optional<identification::Interval> time_window{};  // [s]
   /// Holds the options as given, without what the members below add; no model: --model auto.
   identification::FitOptions fit{.model = nullptr};
-  bool compare = false;                       // all models, with and without a rig
-  std::optional<RigRequest> rig_stiffness{};  // empty: rigid
+  bool compare = false;  // all models, with and without a rig
   /// kNoTerms or kAutomatic alone, or names of groups of terms and of columns; empty: none.
   std::vector<std::string> terms{};
-  std::vector<CovariateRequest> covariates{};
   bool trim = true;
   ContactOptions contact{};
 };
@@ -75,9 +58,6 @@ identification::FitOptions MakeFitOptions(const FitRequest& request);
 /// Returns the options for fits of one cycle after the other: no covariates.
 /// @throws InvalidArgument or InputError likewise
 identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
-
-/// Returns the columns that are covariates, as the reader takes them.
-std::vector<std::string> CovariateColumns(const FitRequest& request);
 
 /// Requirements of `--strict` on a fit.
 enum class Strictness {
