@@ -48,8 +48,9 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
 }
 
 void RequireWritable(const OutputPath& output) {
-  constexpr std::array<std::string_view, 10> kNotWritten = {
-      ".parquet", ".feather", ".arrow", ".xlsx", ".xls", ".ods", ".h5", ".hdf5", ".mat", ".npz"};
+  constexpr std::array<std::string_view, 11> kNotWritten = {
+      ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
+      ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
   const std::string ending = LowerCase(fs::path(output.path).extension().string());
   if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
     throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
