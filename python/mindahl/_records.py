@@ -42,11 +42,11 @@ def copy_of(file: Any, path: str) -> str:
 
 def read_file(source: Any, request: _mindahl.FitRequest, name: str = "record") -> Record:
     """The record of a path, or of what an open file holds."""
-    name = name_of(source, name)
     if not hasattr(source, "read"):
-        return _mindahl.read_csv(os.fspath(source), request, name)
+        path = os.fspath(source)
+        return _mindahl.read_csv(path, request, path)
     with tempfile.TemporaryDirectory() as folder:
-        return _mindahl.read_csv(copy_of(source, f"{folder}/copy"), request, name)
+        return _mindahl.read_csv(copy_of(source, f"{folder}/copy"), request, name_of(source, name))
 
 
 def read_csv(
