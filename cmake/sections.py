@@ -26,10 +26,11 @@ def main():
             return f"tuple[{type_of(node['items'], name)}, ...]"
         if node["type"] != "object":
             return TYPES[node["type"]]
-        if "properties" not in node:
+        members = node.get("properties") or {
+            key: node["additionalProperties"] for key in node.get("propertyNames", {}).get("enum", [])}
+        if not members:
             return "AnySection"
-        classes[name] = [f"    {key}: {type_of(value, f'{name}_{key}')}"
-                         for key, value in node["properties"].items()]
+        classes[name] = [f"    {key}: {type_of(value, f'{name}_{key}')}" for key, value in members.items()]
         return name
 
     for name, node in schema["properties"].items():

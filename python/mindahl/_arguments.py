@@ -30,10 +30,6 @@ def number(name: str, value: Any) -> float:
         raise ValueError(f"{name} = {value!r} is invalid: must be a number") from None
 
 
-def optional_number(name: str, value: Any) -> Optional[float]:
-    return None if value is None else number(name, value)
-
-
 def count(name: str, value: Any, least: int) -> int:
     """A whole number that is not below `least`."""
     if isinstance(value, (bool, np.bool_)) or not hasattr(value, "__index__"):
@@ -144,11 +140,6 @@ def is_array(value: Any) -> bool:
         return getattr(value, "ndim", 1) == 1
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes)) and all(
         isinstance(element, (Number, np.generic)) for element in value)
-
-
-def is_frame(value: Any) -> bool:
-    """A table of named columns, as pandas has it."""
-    return hasattr(value, "columns") and hasattr(value, "__getitem__") and hasattr(value, "iloc")
 
 
 def is_pair(value: Any) -> bool:

@@ -16,8 +16,10 @@ import numpy as np
 from . import _mindahl
 from ._arguments import count, in_executor
 from ._fit import fit, prepared, request_and_arguments
-from ._records import is_path
+from ._records import name_of
 from ._result import FitWarning, Report, Table, Told
+
+STRICTNESS = (False, "doubtful", True)  # as the library counts
 
 
 class BatchTable(Told, Table):
@@ -72,11 +74,10 @@ def batch(
     bound.apply_defaults()
     given = dict(bound.arguments)
     request_and_arguments(given)[0].check()
-    strictness = ("adequate" if strict else "none") if isinstance(strict, bool) else strict
-    if strictness not in ("none", "adequate", "doubtful"):
+    if strict not in STRICTNESS:
         raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
     stop = threading.Event()
-    tasks = [(source, f"record {k + 1}", strictness, given, None if executor is not None else stop.is_set)
+    tasks = [(source, f"record {k + 1}", STRICTNESS.index(strict), given, None if executor is not None else stop.is_set)
              for k, source in enumerate(sources)]
     if executor is not None:
         entries = in_executor(executor, _fit_one, tasks)
@@ -94,13 +95,9 @@ def batch(
     return BatchTable(entries)
 
 
-Task = tuple[Any, str, str, dict[str, Any], Any]
-
-
-def _fit_one(task: Task) -> _mindahl.BatchEntry:
+def _fit_one(task: tuple[Any, str, int, dict[str, Any], Any]) -> _mindahl.BatchEntry:
     source, name, strictness, given, stops = task
-    if is_path(source):
-        name = os.fspath(source)
+    name = name_of(source, name)
     try:
         records, request, _ = prepared({**given, "source": source})
         if len(records) != 1:

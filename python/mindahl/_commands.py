@@ -8,15 +8,15 @@ import os
 import re
 import tempfile
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _mindahl
-from ._arguments import Floats, Uncertain, array, is_pair, number, optional_number, words
-from ._mindahl import Record
-from ._records import columns_by_name, is_path, si_columns
+from ._arguments import Floats, Uncertain, array, is_pair, number, words
+from ._records import columns_by_name, copy_of, is_path, name_of
 from ._result import FitWarning, Report
 
 
@@ -27,14 +27,25 @@ class Answer(NamedTuple):
 
 
 def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] = (),
-        outputs: Sequence[str] = ()) -> tuple[Answer, list[str]]:
+        outputs: Sequence[str] = (), say: Optional[Callable[[str], None]] = None) -> tuple[Answer, list[str]]:
     """What a command of the program answers, and what it writes to the outputs that are named by their
-    options. What it warns of and assumes is a FitWarning of the caller's caller.
+    options.
 
-    files: an option, "" for none, with a path, or a Record, the columns or the pair of arrays of a
-        file that is written.
+    files: an option, "" for none, with a path, an open file, or the record, table or arrays of a file
+        that is written.
+    say: is told what the program warns of and assumes; by default it is a FitWarning of the caller's
+        caller.
     Raises InputError where the program refuses.
     """
+    say = say or (lambda message: warnings.warn(message, FitWarning, stacklevel=4))
+    shown: dict[str, str] = {}
+
+    def named(text: str, quoted: Callable[[str], str] = str) -> str:
+        """What is written for this call has a name, and no folder."""
+        for path in sorted(shown, reverse=True):
+            text = text.replace(path, quoted(shown[path]))
+        return text.replace(f"{folder}/", "")
+
     with tempfile.TemporaryDirectory() as folder:
         written = ["json", *outputs]
         asked = [*options, *(f"--{name}={folder}/{name}" for name in written)]
@@ -42,22 +53,22 @@ def ask(command: str, options: Sequence[str], files: Sequence[tuple[str, Any]] =
             name = option or ("record" if len(files) == 1 else f"record {k + 1}")
             path = os.fspath(given) if is_path(given) else _written(f"{folder}/{name}", given)
             asked.append(f"--{option}={path}" if option else path)
-        # What is written for this call has a name, and no folder.
-        out, said, is_done = _run(command, asked, f"{folder}/")
-        for message in said:
-            if message.startswith(("note: ", "warning: ")):
-                warnings.warn(_mindahl.with_keywords(message.partition(": ")[2]), FitWarning, stacklevel=3)
-        document, *texts = [_content(f"{folder}/{name}").replace(f"{folder}/", "") for name in written]
-        for note in json.loads(document).get("notes", []):
-            warnings.warn(_mindahl.with_keywords(note), FitWarning, stacklevel=3)
-        return Answer(document, out, is_done), texts
+            shown[path] = name_of(given, name)
+        out, said, is_done = _run(command, asked, named)
+        document, *texts = (Path(folder, name).read_text(encoding="utf-8") for name in written)
+        document = named(document, lambda name: json.dumps(name, ensure_ascii=False)[1:-1])
+        for message in (*(each.partition(": ")[2] for each in said
+                          if each.startswith(("note: ", "warning: "))),
+                        *json.loads(document).get("notes", [])):
+            say(_mindahl.with_keywords(message))
+        return Answer(document, out, is_done), list(map(named, texts))
 
 
-def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, list[str], bool]:
+def _run(command: str, options: Sequence[str],
+         named: Callable[[str], str] = str) -> tuple[str, list[str], bool]:
     """What a command prints, its messages, and whether its status is 0."""
-    status, out, err = _mindahl.run_command(["mindahl", command, *options])
-    if folder:
-        out, err = (text.replace(folder, "") for text in (out, err))
+    status, *told = _mindahl.run_command(["mindahl", command, *options])
+    out, err = map(named, told)
     said = re.findall(r"mindahl(?: \w+)?: ([^\r\n]*)", err)
     if status not in (0, 3):
         refusal = re.sub("; see mindahl .*", "", said[-1]) if said else err
@@ -66,22 +77,20 @@ def _run(command: str, options: Sequence[str], folder: str = "") -> tuple[str, l
 
 
 def _written(path: str, source: Any) -> str:
-    """A CSV file of columns, of a record or of arrays, of as many digits as they have."""
-    if isinstance(source, Record):
-        source = list(si_columns(source).values())
-    elif is_pair(source):
-        source = list(zip(("displacement [m]", "force [N]"), source))
+    """A copy of an open file, or a CSV file of a record, a table or arrays, of as many digits as they
+    have."""
+    if hasattr(source, "read"):
+        return copy_of(source, path)
+    columns = (list(zip(("displacement [m]", "force [N]"), source)) if is_pair(source) else
+               columns_by_name(source))
+    if columns is None:
+        raise ValueError(f"a {type(source).__name__} is no array, data frame, record or file")
     with open(path, "w", encoding="utf-8") as file:
-        file.write(",".join(name for name, _ in source) + "\n")
+        file.write(",".join(name for name, _ in columns) + "\n")
         file.writelines(",".join(row) + "\n"
                         for row in zip(*(map(repr, np.asarray(values, dtype=np.float64).tolist())
-                                         for _, values in source)))
+                                         for _, values in columns)))
     return path
-
-
-def _content(path: str) -> str:
-    with open(path, encoding="utf-8") as file:
-        return file.read()
 
 
 class Conversion(Report):
@@ -179,13 +188,11 @@ def simulate(
     Returns an array of the same length. Noise is NumPy's: + rng.normal(0, deviation, force.size).
     Raises ValueError naming the quantity, its value and the rule.
     """
-    return _mindahl.simulate(
-        array("displacement", displacement), sigma=number("sigma", sigma),
-        slip_force=number("slip_force", slip_force), alpha=optional_number("alpha", alpha),
-        model=model, rig_stiffness=optional_number("rig_stiffness", rig_stiffness),
-        asymmetry=number("asymmetry", asymmetry),
-        load=None if load is None else array("load", load),
-        reference_load=number("reference_load", reference_load))
+    numbers = {name: number(name, value) for name, value in locals().items()
+               if name not in ("displacement", "model", "load")
+               and not (value is None and name in ("alpha", "rig_stiffness"))}
+    return _mindahl.simulate(array("displacement", displacement), model=model,
+                             load=None if load is None else array("load", load), **numbers)
 
 
 def plan(
@@ -215,27 +222,21 @@ def plan(
     """
     given = {name: value for name, value in locals().items() if name not in ("record", "contact")}
     given["amplitude"] = list(amplitude) if isinstance(amplitude, tuple) else amplitude
-    files = [] if record is None else [("record", columns_by_name(record) or record)]
+    files = [] if record is None else [("record", record)]
     return Report(*ask("plan", words({**given, **contact}), files)[0], "plan")
 
 
 def command(name: str, *files: Any, **options: Any) -> Report:
     """Any command of the program that writes JSON, with its options as keywords: command("validate", cases=5).
 
-    files: what the command takes without an option: paths, or Records, data frames and dictionaries of
-        arrays, {"x [um]": ..., "F [N]": ...}, in the place of a file.
+    files: what the command takes without an option: paths, or open files, Records, data frames and
+        dictionaries of arrays, {"x [um]": ..., "F [N]": ...}, in the place of one.
     options: as `mindahl NAME --help-all` has them, with underscores, numbers in SI units. One that
         takes a path takes all of these.
     Returns the sections of the JSON that the command writes.
     Raises InputError (a ValueError) where the program refuses.
     """
-    given = [("", each) for each in files] + list(options.items())
-    tables = [(option, columns_by_name(each) or each) for option, each in given if _is_file(option, each)]
-    rest = {option: each for option, each in options.items() if not _is_file(option, each)}
-    return Report(*ask(name, words(rest), tables)[0], name)
-
-
-def _is_file(option: str, given: Any) -> bool:
-    columns = [] if isinstance(given, Record) else columns_by_name(given) or []
-    return not option or isinstance(given, Record) or any(  # and not parameters with their bounds
-        not isinstance(values, tuple) for _, values in columns)
+    tables = {option: each for option, each in options.items() if hasattr(each, "read") or any(
+        not isinstance(values, tuple) for _, values in columns_by_name(each) or [])}  # as bounds are
+    rest = {option: each for option, each in options.items() if option not in tables}
+    return Report(*ask(name, words(rest), [*(("", each) for each in files), *tables.items()])[0], name)

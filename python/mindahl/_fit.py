@@ -112,7 +112,7 @@ def fit(
 
 def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest, RecordArguments]:
     """What the arguments of fit() ask for, and how they say that records are to be read."""
-    of_records = ("source", "force", *ROLES, *UNITS, *OF_FILES)
+    of_records = ("source", *ROLES, *UNITS, *OF_FILES)
     request = _mindahl.FitRequest(words({name: value for name, value in given.items()
                                          if name not in of_records}))
     return request, RecordArguments(given, request.covariate_columns())
@@ -121,5 +121,4 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
 def prepared(given: Mapping[str, Any]) -> tuple[list[_mindahl.Record], _mindahl.FitRequest, list[str]]:
     """The records and the request that the arguments of fit() say, and what was assumed."""
     request, arguments = request_and_arguments(given)
-    records = records_of(given["source"], given["force"], arguments)
-    return records, request, arguments.assumed
+    return records_of(given["source"], arguments), request, arguments.assumed

@@ -23,8 +23,7 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
         name = "" if len(records) == 1 else f" {record.name}"
         points = axes[0].plot(record.displacement, record.force, ".", markersize=3,
                               label=f"measured{name}")[0]
-        is_forced = record.fitted_displacement is not None
-        at = record.fitted_displacement if is_forced else record.displacement
+        at = record.displacement if record.fitted_displacement is None else record.fitted_displacement
         axes[0].plot(at, record.fitted_force, "-", linewidth=1.2,
                      color="black" if len(records) == 1 else points.get_color(),
                      label=f"fitted{name}")

@@ -10,8 +10,8 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import (array, column_text, is_array, is_frame, is_pair, is_quantity, several,
-                         with_unit, words)
+from ._arguments import (array, column_text, is_array, is_pair, is_quantity, several, with_unit,
+                         words)
 from ._mindahl import Record
 
 Column = Union[str, int]
@@ -24,18 +24,33 @@ UNITS = ("displacement_unit", "force_unit", "time_unit", "normal_load_unit")
 OF_FILES = ("encoding", "sample_rate", "with_file", "broken_rows", "max_memory")
 
 
-def column_words(given: Mapping[str, Any], covariates: Any = None) -> list[str]:
-    """The options that say how columns are read."""
-    columns = {role: column_text(role, given.get(role), given.get(unit)) for role, unit in zip(ROLES, UNITS)}
-    return words({**columns, **{name: given.get(name) for name in OF_FILES}, "covariate": covariates})
+def name_of(source: Any, default: str) -> str:
+    """What reports and messages call a path, an open file or a record, or else `default`."""
+    if is_path(source):
+        return str(os.fspath(source))
+    name = getattr(source, "name", None) if hasattr(source, "read") or isinstance(source, Record) else None
+    return name if isinstance(name, str) else default
 
 
-def reading(given: Mapping[str, Any], covariates: Any = None) -> _mindahl.FitRequest:
-    return _mindahl.FitRequest(column_words(given, covariates))
+def copy_of(file: Any, path: str) -> str:
+    """What an open file holds, in a file of this path."""
+    content = file.read()
+    with open(path, "wb") as copy:
+        copy.write(content.encode() if isinstance(content, str) else content)
+    return path
+
+
+def read_file(source: Any, request: _mindahl.FitRequest, name: str = "record") -> Record:
+    """The record of a path, or of what an open file holds."""
+    if not hasattr(source, "read"):
+        path = os.fspath(source)
+        return _mindahl.read_csv(path, request, path)
+    with tempfile.TemporaryDirectory() as folder:
+        return _mindahl.read_csv(copy_of(source, f"{folder}/copy"), request, name_of(source, name))
 
 
 def read_csv(
-    path: Path, *, displacement: Optional[Column] = None,
+    path: Any, *, displacement: Optional[Column] = None,
     force: Optional[Column] = None, time: Optional[Column] = None,
     normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
     force_unit: Optional[str] = None, time_unit: Optional[str] = None,
@@ -45,7 +60,8 @@ def read_csv(
 ) -> Record:
     """Reads a hysteresis record from a CSV file as the program does.
 
-    path: the file; delimiter, decimal mark, header and units are found by themselves.
+    path: the file, or one that is open; delimiter, decimal mark, header and units are found by
+        themselves.
     displacement, force, time, normal_load_column: column by header name or number counted from 1,
         with its unit, "5 [mm]", or that alone, "[mm]"; or a sum with factors and an offset,
         "cell1+cell2", "raw*0.0123-4.5 [N]"; by default found from names, units and numbers.
@@ -58,17 +74,16 @@ def read_csv(
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """
-    given = dict(locals())
-    return _mindahl.read_csv(os.fspath(path), reading(given, list(map(str, covariates))))
+    return read_file(path, RecordArguments(locals(), covariates).columns())
 
 
 class RecordArguments:
-    """How the arguments of fit() and track() that say what a record is are to be read."""
+    """How the arguments of fit(), track() and read_csv() that say what a record is are to be read."""
 
     def __init__(self, given: Mapping[str, Any], covariates: Sequence[str] = ()) -> None:
-        self.roles: dict[str, Any] = {**{role: given.get(role) for role in ROLES}, "force": None}
+        self.roles: dict[str, Any] = {role: given.get(role) for role in ROLES}
         self.units: dict[str, Any] = {name: given.get(name) for name in UNITS}
-        self.covariates = list(covariates)
+        self.covariates = list(map(str, covariates))
         self.of_files = {name: given.get(name) for name in OF_FILES}
         self.assumed: list[str] = []
         """Of the columns and units of files and frames that were read, a sentence each."""
@@ -79,7 +94,9 @@ class RecordArguments:
             if roles is None and value is not None and not isinstance(value, (str, int, np.integer)):
                 raise ValueError(f"{role}: must be the name or the number of a column here, where "
                                  "the columns are in a file or a frame")
-        return column_words({**(roles or self.roles), **self.units, **self.of_files}, self.covariates)
+        texts = {role: column_text(role, value, unit) for (role, value), unit in
+                 zip({**self.roles, **(roles or {})}.items(), self.units.values())}
+        return words({**texts, **self.of_files, "covariate": self.covariates})
 
     def columns(self, roles: Optional[Mapping[str, Any]] = None) -> _mindahl.FitRequest:
         return _mindahl.FitRequest(self.words(roles))
@@ -89,20 +106,6 @@ class RecordArguments:
         if self.of_files["with_file"] is not None:
             raise ValueError("with_file has no effect on what is no file: leave it out")
         return _mindahl.record_of_columns(name, names, arrays, request)
-
-    def of_columns(self, columns: Columns, name: str) -> Record:
-        return self.of_table(name, [column for column, _ in columns],
-                             [array(column, values, keep_missing=True) for column, values in columns],
-                             self.columns())
-
-    def of_file(self, file: Any, name: str) -> Record:
-        """What a file object holds, read as a file of its name is."""
-        content = file.read()
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, os.path.basename(str(getattr(file, "name", name))) or name)
-            with open(path, "wb") as copy:
-                copy.write(content.encode() if isinstance(content, str) else content)
-            return _mindahl.read_csv(path, self.columns())
 
     def of_arrays(self, columns: Mapping[str, Any], name: str) -> Record:
         # In SI units, unless one is stated; an angle and a torque have units of their own.
@@ -125,22 +128,18 @@ class RecordArguments:
         return self.of_table(name, names, arrays, self.columns(roles))
 
 
-def si_columns(record: Record) -> dict[str, tuple[str, Any]]:
-    """The columns of a record by their roles, with header."""
-    length, force = ("rad", "N m") if record.is_torsional else ("m", "N")
-    found = {"displacement": (f"displacement [{length}]", record.displacement),
-             "force": (f"force [{force}]", record.force), "time": ("time [s]", record.time),
-             "normal_load_column": (f"normal load [{force}]", record.normal_load)}
-    return {role: column for role, column in found.items() if column[1] is not None}
-
-
 def columns_by_name(source: Any) -> Optional[Columns]:
-    """The columns of a data frame, or of a dictionary: {"x [um]": ..., "F": ...}."""
-    if is_frame(source):
+    """The columns of a record, a data frame, or a dictionary: {"x [um]": ..., "F": ...}."""
+    if isinstance(source, Record):
+        length, force = ("rad", "N m") if source.is_torsional else ("m", "N")
+        found = [(f"displacement [{length}]", source.displacement), (f"force [{force}]", source.force),
+                 ("time [s]", source.time), (f"normal load [{force}]", source.normal_load)]
+        return [(name, values) for name, values in found if values is not None]
+    if hasattr(source, "columns") and hasattr(source, "iloc"):  # as pandas has it
         return [(str(name), source.iloc[:, k].to_numpy()) for k, name in enumerate(source.columns)]
     if isinstance(source, Mapping):
-        found = {**getattr(source, "coords", {}), **source}  # as xarray's Dataset has them
-        named = [(name, *with_unit(str(name), values, ())) for name, values in found.items() if np.ndim(values)]
+        members = {**getattr(source, "coords", {}), **source}  # as xarray's Dataset has them
+        named = [(name, *with_unit(str(name), values, ())) for name, values in members.items() if np.ndim(values)]
         return [(f"{name} [{unit}]" if unit else str(name), values) for name, values, unit in named]
     return None
 
@@ -149,7 +148,7 @@ def is_path(value: Any) -> bool:
     return isinstance(value, (str, os.PathLike))
 
 
-def records_of(source: Any, force: Any, arguments: RecordArguments) -> list[Record]:
+def records_of(source: Any, arguments: RecordArguments) -> list[Record]:
     """The records that the arguments of fit() and track() say."""
     roles = arguments.roles
     if source is None:
@@ -157,8 +156,6 @@ def records_of(source: Any, force: Any, arguments: RecordArguments) -> list[Reco
         if source is None:
             raise ValueError("a record is missing: give displacement and force, a data frame, a "
                              "record or a file")
-    if force is not None:
-        roles["force"] = force
     if is_array(source):
         return [_record_of_arrays(source, roles, arguments)]
     elements = several(source)
@@ -193,15 +190,14 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
             if value is not None:
                 raise ValueError(f"{choice} has no effect on a record that is read already: leave it out")
         return source
-    if is_path(source):
-        return _mindahl.read_csv(os.fspath(source), arguments.columns())
+    if is_path(source) or hasattr(source, "read"):
+        return read_file(source, arguments.columns(), name)
     if is_pair(source):
         return arguments.of_arrays({**arguments.roles, "displacement": source[0], "force": source[1]}, name)
     columns = columns_by_name(source)
     if columns is not None:
-        return arguments.of_columns(columns, name)
-    if hasattr(source, "read"):
-        return arguments.of_file(source, name)
+        return arguments.of_table(name, [header for header, _ in columns], [
+            array(header, values, keep_missing=True) for header, values in columns], arguments.columns())
     if is_array(source):
         raise ValueError(f"{name}: force is missing: give a pair of arrays (displacement, force)")
     array(name, source)  # says why it is no array

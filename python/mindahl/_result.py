@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -201,7 +200,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class FittedRecord:
-    """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays are read-only.
+    """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays of a fit are read-only.
 
     fitted_force and residual = fitted - measured are None where the fit failed. With noise_in =
     "displacement" the residual is that of fitted_displacement, which is None otherwise, and
@@ -273,12 +272,6 @@ class FitResult(Told):
     def __reduce__(self) -> tuple[Any, ...]:
         return FitResult, (self._kept,)
 
-    def __copy__(self) -> FitResult:
-        return FitResult(self._kept, self._fitted)  # which nothing changes
-
-    def __deepcopy__(self, memo: Any) -> FitResult:
-        return copy.copy(self)
-
     sigma: Parameter  # tangential stiffness [N/m] at the start of every branch
     alpha: Parameter  # shape exponent [-]
     slip_force: Parameter  # Tc [N]
@@ -294,7 +287,7 @@ class FitResult(Told):
     adequacy: _sections.adequacy
     measured: _sections.measured
     law: _sections.law
-    contact: AnySection
+    contact: _sections.contact
     mapping: _sections.mapping
     terms: _sections.terms
     next: Optional[_sections.next]
@@ -347,11 +340,6 @@ class FitResult(Told):
         return self._one_or_all("fitted_force")
 
     @property
-    def fitted_displacement(self) -> Any:
-        """With noise_in = "displacement" the fitted one [m]; of several records a list of arrays."""
-        return self._one_or_all("fitted_displacement")
-
-    @property
     def residual(self) -> Any:
         """Fitted less measured [N], or [m] with noise_in = "displacement", of every sample; of several
         records a list of arrays."""
@@ -385,25 +373,32 @@ class FitResult(Told):
         return Covariance(correlation * np.outer(errors, errors), tuple(free))
 
     def predict(self, displacement: Any) -> Floats:
-        """The force [N] that the fit predicts along a displacement [m] from the unloaded contact.
+        """The force [N] that the fit predicts along a displacement [m] from the unloaded contact, of the
+        sign that the record has.
 
+        Excursions that are smaller than the reversal gate of the first record are noise here too.
         Raises ValueError for a fit that failed, of a cycled contact, or with terms that simulate()
-            does not have.
+            does not have, and for one that was read from JSON, which has neither sign nor gate.
         """
         values = {name: parameter.value or 0.0 for name, parameter in self.parameters.items()}
-        if not values or self._report["initial_state"] != "virgin":
+        if not values:
+            raise ValueError(self.text().strip())
+        if self._report["initial_state"] != "virgin":
             raise ValueError("predict() is of fits of a virgin contact: initial_state is "
                              f"{self._report['initial_state']}")
+        if "force_sign" not in self._kept:
+            raise ValueError("a result that was read from JSON has not the sign of its record's force: "
+                             "fit it again, or save() it")
         own = {name: values.pop(name) for name in ("sigma", "alpha", "slip_force", "rig_stiffness",
                                                    "asymmetry") if name in values}
         offset, origin = values.pop("force_offset", 0.0), values.pop("displacement_offset", 0.0)
         others = [name for name, value in values.items() if value]
         if others:
             raise ValueError(f"predict() has no term {', '.join(others)}: fit without it")
-        from ._commands import simulate
-
-        return offset + simulate(array("displacement", displacement) - origin,
-                                 model=self._report["model"], **own)
+        force = _mindahl.simulate(
+            array("displacement", displacement) - origin, model=self._report["model"],
+            load=None, gate=self._kept["reversal_gate"], **own)
+        return offset + int(self._kept["force_sign"]) * force
 
     def summary(self) -> str:
         """What `mindahl fit` prints, as text()."""
@@ -412,8 +407,8 @@ class FitResult(Told):
     def log_likelihood(self) -> _mindahl.LogLikelihood:
         """The log-likelihood of the free parameters, for a sampler of their posterior.
 
-        Raises ValueError for a fit that failed, was read or was pickled, and for one with a robust loss,
-            noise of the displacement or turning points between samples.
+        Raises ValueError for a fit that failed, was read, pickled or copied, and for one with a robust
+            loss, noise of the displacement or turning points between samples.
         """
         if self._fitted is None:
             raise ValueError("a result that was read or pickled has no likelihood: fit its records again")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import warnings
-from typing import Any, Optional, cast
+from typing import Any, Optional
 
 import numpy as np
 
@@ -71,26 +71,28 @@ def track(source: Any = None, force: Any = None, *, average: int = 1, every: int
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits.
     """
-    if executor is not None:
-        passed = {"source": source, "force": force, "average": average, "every": every, "threads": threads}
-        return cast(CycleTable, in_executor(executor, _track_one, [{**passed, **keywords}])[0])
-    of_records = (*ROLES, *UNITS, *OF_FILES)
-    asked = words({"average": average, "every": every, "threads": threads, **{
-        name: value for name, value in keywords.items() if name not in of_records}})
+    task = {"source": source, "force": force, "average": average, "every": every, "threads": threads,
+            **keywords}
+    done: tuple[CycleTable, list[str]] = (_tracked(task) if executor is None else
+                                          in_executor(executor, _tracked, [task])[0])
+    for message in done[1]:
+        warnings.warn(message, FitWarning, stacklevel=2)
+    return done[0]
+
+
+def _tracked(keywords: dict[str, Any]) -> tuple[CycleTable, list[str]]:
+    """The table, and what is to be warned of."""
+    said: list[str] = []
+    of_records = ("source", *ROLES, *UNITS, *OF_FILES)
+    asked = words({name: value for name, value in keywords.items() if name not in of_records})
     arguments = RecordArguments(keywords)
-    sources = several(source) or [source]
+    sources = several(keywords["source"]) or [keywords["source"]]
     if all(map(is_path, sources)):
-        arguments.roles["force"] = force
         asked += arguments.words()
     else:
         if keywords.get("broken_rows") == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
-        sources = records_of(source, force, arguments)
-        for doubt in arguments.assumed:
-            warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    answer, (table,) = ask("track", asked, [("", each) for each in sources], ["output"])
-    return CycleTable(answer, table)
-
-
-def _track_one(keywords: dict[str, Any]) -> CycleTable:
-    return track(**keywords)
+        sources = records_of(keywords["source"], arguments)
+        said += map(_mindahl.with_keywords, arguments.assumed)
+    answer, (table,) = ask("track", asked, [("", each) for each in sources], ["output"], said.append)
+    return CycleTable(answer, table), said

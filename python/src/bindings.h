@@ -20,8 +20,11 @@ using io::NamedRecord;
 using Array = pybind11::array_t<double, pybind11::array::c_style>;
 
 /// The numbers of an array where they are.
-/// @throws InvalidArgument unless it has one dimension
-std::span<const double> SpanOf(const Array& array, const char* what);
+/// @throws std::domain_error, a ValueError, unless it has one dimension
+inline std::span<const double> SpanOf(const Array& array) {
+  static_cast<void>(array.unchecked<1>());
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
 
 /// A read-only array of numbers where they are, which keeps their owner alive; None where there are
 /// none.

@@ -76,6 +76,9 @@ py::dict KeptOf(const py::object& self) {
   kept["units"] =
       std::pair(std::string(report.units.displacement), std::string(report.units.force));
   kept["records"] = RecordsOf(report, self);
+  if (report.failed()) return kept;
+  kept["force_sign"] = report.fit.force_sense;
+  kept["reversal_gate"] = report.fit.records.front().gate.gate;
   return kept;
 }
 
@@ -118,9 +121,7 @@ are not in it. Called with a value of each of names [unit of each]: -inf outside
                              })
       .def(
           "__call__",
-          [](LogLikelihood& likelihood, const Array& values) {
-            return likelihood(SpanOf(values, "values"));
-          },
+          [](LogLikelihood& likelihood, const Array& values) { return likelihood(SpanOf(values)); },
           py::arg("values"));
   py::class_<Report, std::shared_ptr<Report>>(module, "Fitted")
       .def("page",

@@ -48,10 +48,10 @@ models::SeriesSpring RigOf(std::optional<double> stiffness) {
 py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
                              std::optional<double> alpha, const std::string& model_name,
                              std::optional<double> rig_stiffness, double asymmetry,
-                             const std::optional<Array>& load, double reference_load) {
+                             const std::optional<Array>& load, double reference_load, double gate) {
   const FrictionModel& model = RequireModel(model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
-  const std::span<const double> samples = SpanOf(displacement, "displacement");
+  const std::span<const double> samples = SpanOf(displacement);
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
   const bool is_joint = model.memory == models::Memory::kNone && !model.scaled_by_peak;
@@ -62,7 +62,7 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
     if (rig_stiffness)
       throw InputError("--rig-stiffness is refused beside a load and an asymmetry");
     const std::vector<double> constant(load ? 0 : samples.size(), reference_load);
-    const std::span<const double> loads = load ? SpanOf(*load, "load") : constant;
+    const std::span<const double> loads = load ? SpanOf(*load) : constant;
     const py::gil_scoped_release others_may_run;
     models::EvaluateJointFriction(
         {.law = law, .reference_load = reference_load, .asymmetry = asymmetry}, samples, loads,
@@ -71,7 +71,7 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   }
   const py::gil_scoped_release others_may_run;
   const models::LoadingPath path = models::MakeLoadingPath(
-      samples, loop::FindReversals(samples, 0.0), model.memory, {.asymmetry = asymmetry});
+      samples, loop::FindReversals(samples, gate), model.memory, {.asymmetry = asymmetry});
   models::EvaluateForce(model, law, path, samples, written, RigOf(rig_stiffness));
   return force;
 }
@@ -104,8 +104,9 @@ MadeState RestoredState(const py::dict& arguments, const std::vector<double>& me
 
 void AddModels(py::module_& module) {
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
-             py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"),
-             py::arg("asymmetry"), py::arg("load"), py::arg("reference_load"));
+             py::arg("slip_force"), py::arg("alpha") = py::none(), py::arg("model"),
+             py::arg("rig_stiffness") = py::none(), py::arg("asymmetry") = 0.0,
+             py::arg("load") = py::none(), py::arg("reference_load") = 1.0, py::arg("gate") = 0.0);
   py::class_<MadeState>(module, "ContactState",
                         R"(A contact that is moved step by step.
 
@@ -131,8 +132,6 @@ Raises ValueError naming the quantity, its value and the rule.)")
       .def_property_readonly("displacement", &ContactState::Displacement, "[m]")
       .def_property_readonly("tangent_stiffness", &ContactState::TangentStiffness,
                              "dT/dδ [N/m] onward in the direction of the last motion")
-      .def_property_readonly("remembered_extremes", &ContactState::RememberedExtremes,
-                             "the depth of nesting")
       .def(py::pickle(
           [](const MadeState& state) { return std::pair(state.arguments, state.Memory()); },
           [](const std::pair<py::dict, std::vector<double>>& kept) {

@@ -69,8 +69,8 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
 }
 
 /// @param stops  asked now and then whether the fit is to end; None: never
-py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
-                 const std::string& strict, const py::object& stops) {
+py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request, int strict,
+                 const py::object& stops) {
   BatchEntry entry;
   {
     const py::gil_scoped_release others_may_run;
@@ -80,15 +80,12 @@ py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request,
       PyErr_SetNone(PyExc_KeyboardInterrupt);
       throw Interrupted();
     });
-    const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
-                                  : strict == "doubtful" ? Strictness::kDoubtful
-                                                         : Strictness::kNone;
-    entry =
-        request::FitSource(request, record.name, strictness, [&](const request::FitRequest& own) {
-          std::vector<io::RecordFile> files = {record.file};
-          request::KeepTimeWindow(own, record.name, files.front());
-          return files;
-        });
+    entry = request::FitSource(request, record.name, Strictness{strict},
+                               [&](const request::FitRequest& own) {
+                                 std::vector<io::RecordFile> files = {record.file};
+                                 request::KeepTimeWindow(own, record.name, files.front());
+                                 return files;
+                               });
   }
   return StateOf(entry);
 }

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/loop/record.h"
@@ -16,6 +18,14 @@
 namespace mindahl::python {
 
 namespace py = pybind11;
+using namespace py::literals;  // NOLINT(google-build-using-namespace)
+
+py::object ViewOf(const std::vector<double>& values, const py::handle& owner) {
+  if (values.empty()) return py::none();
+  py::array_t<double> view({static_cast<py::ssize_t>(values.size())}, values.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
 
 namespace {
 
@@ -26,17 +36,28 @@ io::RecordColumns ColumnsOf(const request::FitRequest& request) {
   return columns;
 }
 
-NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request) {
+/// @param name  what the record, its notes and messages call the file
+NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request,
+                    const std::string& name) {
   const py::gil_scoped_release others_may_run;
   const std::uintmax_t memory = request.max_memory.value_or(MemoryOfProcess());
-  return {path, io::ReadRecord(path, ColumnsOf(request), {.memory = memory})};
+  const auto named = [&](const std::string& text) {
+    return boost::replace_all_copy(text, path, name);
+  };
+  try {
+    NamedRecord record{name, io::ReadRecord(path, ColumnsOf(request), {.memory = memory})};
+    for (std::string& note : record.file.notes) note = named(note);
+    return record;
+  } catch (const InputError& error) {
+    throw InputError(named(error.what()));
+  }
 }
 
 NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
                             const std::vector<Array>& arrays, const request::FitRequest& request) {
   std::vector<io::NamedColumn> table;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::span<const double> values = SpanOf(arrays.at(k), names[k].c_str());
+    const std::span<const double> values = SpanOf(arrays.at(k));
     table.push_back({names[k], {values.begin(), values.end()}});
   }
   return {name, io::RecordOf(io::TableOfColumns(std::move(table), name), ColumnsOf(request))};
@@ -50,31 +71,21 @@ py::dict CovariatesOf(const py::object& self) {
   return columns;
 }
 
+py::dict DictOf(const io::ChosenColumn& column) {
+  return py::dict("name"_a = column.name, "index"_a = column.index, "unit"_a = column.unit);
+}
+
+io::ChosenColumn ColumnOf(const py::handle& column) {
+  return {column["name"].cast<std::string>(), column["index"].cast<std::size_t>(),
+          column["unit"].cast<std::string>()};
+}
+
 py::dict ColumnsUsed(const NamedRecord& record) {
-  py::dict columns;
-  const auto add = [&](const char* role, const std::optional<io::ChosenColumn>& column) {
-    if (!column) return;
-    columns[role] = py::dict(py::arg("name") = column->name, py::arg("index") = column->index,
-                             py::arg("unit") = column->unit);
-  };
-  add("displacement", record.file.displacement);
-  add("force", record.file.force);
-  add("time", record.file.time);
-  add("normal_load", record.file.normal_load);
+  const io::RecordFile& file = record.file;
+  py::dict columns("displacement"_a = DictOf(file.displacement), "force"_a = DictOf(file.force));
+  if (file.time) columns["time"] = DictOf(*file.time);
+  if (file.normal_load) columns["normal_load"] = DictOf(*file.normal_load);
   return columns;
-}
-
-using Chosen = std::tuple<std::string, std::size_t, std::string>;
-
-std::optional<Chosen> TupleOf(const std::optional<io::ChosenColumn>& column) {
-  if (!column) return std::nullopt;
-  return Chosen{column->name, column->index, column->unit};
-}
-
-std::optional<io::ChosenColumn> ColumnOf(const std::optional<Chosen>& column) {
-  if (!column) return std::nullopt;
-  const auto& [name, index, unit] = *column;
-  return io::ChosenColumn{name, index, unit};
 }
 
 Array CopyOf(const std::vector<double>& values) {
@@ -92,14 +103,13 @@ py::tuple PickledRecord(const NamedRecord& record) {
   py::list values;
   for (const auto column : loop::kRecordColumns) values.append(CopyOf(file.record.*column));
   py::list others;
-  for (const loop::Covariate& other : file.record.covariates) {
-    others.append(py::make_tuple(other.name, other.unit, CopyOf(other.values)));
+  for (std::size_t k = 0; k < file.covariates.size(); ++k) {
+    const loop::Covariate& other = file.record.covariates[k];
+    others.append(
+        py::make_tuple(other.name, other.unit, CopyOf(other.values), DictOf(file.covariates[k])));
   }
-  std::vector<std::optional<Chosen>> columns = {TupleOf(file.displacement), TupleOf(file.force),
-                                                TupleOf(file.time), TupleOf(file.normal_load)};
-  for (const io::ChosenColumn& column : file.covariates) columns.push_back(TupleOf(column));
-  return py::make_tuple(record.name, file.is_torsional, values, others, columns, file.lines,
-                        file.notes);
+  return py::make_tuple(record.name, file.is_torsional, values, others, ColumnsUsed(record),
+                        file.lines, file.notes);
 }
 
 NamedRecord UnpickledRecord(const py::tuple& state) {
@@ -110,18 +120,16 @@ NamedRecord UnpickledRecord(const py::tuple& state) {
     file.record.*loop::kRecordColumns[k] = ValuesOf(state[2].cast<py::list>()[k]);
   }
   for (const py::handle other : state[3]) {
-    const auto [name, unit, values] =
-        other.cast<std::tuple<std::string, std::string, py::object>>();
+    const auto [name, unit, values, column] =
+        other.cast<std::tuple<std::string, std::string, py::object, py::dict>>();
     file.record.covariates.push_back({name, unit, ValuesOf(values)});
+    file.covariates.push_back(ColumnOf(column));
   }
-  const auto columns = state[4].cast<std::vector<std::optional<Chosen>>>();
-  file.displacement = ColumnOf(columns.at(0)).value();
-  file.force = ColumnOf(columns.at(1)).value();
-  file.time = ColumnOf(columns.at(2));
-  file.normal_load = ColumnOf(columns.at(3));
-  for (std::size_t k = 4; k < columns.size(); ++k) {
-    file.covariates.push_back(ColumnOf(columns[k]).value());
-  }
+  const auto columns = state[4].cast<py::dict>();
+  file.displacement = ColumnOf(columns["displacement"]);
+  file.force = ColumnOf(columns["force"]);
+  if (columns.contains("time")) file.time = ColumnOf(columns["time"]);
+  if (columns.contains("normal_load")) file.normal_load = ColumnOf(columns["normal_load"]);
   file.lines = state[5].cast<std::vector<std::size_t>>();
   file.notes = state[6].cast<std::vector<std::string>>();
   return made;
@@ -157,7 +165,7 @@ void AddRecords(py::module_& module) {
           "what was assumed, one sentence each")
       .def("__len__", [](const NamedRecord& record) { return record.file.record.size(); })
       .def(py::pickle(&PickledRecord, &UnpickledRecord));
-  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("request"));
+  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("request"), py::arg("name"));
   module.def("record_of_columns", &RecordOfColumns, py::arg("name"), py::arg("names"),
              py::arg("arrays"), py::arg("request"));
 }

@@ -1,7 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
 # Files that cannot read CMakeLists.txt state its version, and no other.
 foreach(line "CITATION.cff|version: ${VERSION}\n" "codemeta.json|\"version\": \"${VERSION}\""
-        "conda/meta.yaml|version = \"${VERSION}\"" "CHANGELOG.md|## ${VERSION} ")
+        "CHANGELOG.md|## ${VERSION} ")
   string(REGEX MATCH "^([^|]*)[|](.*)$" whole "${line}")
   file(READ ${SOURCE_DIR}/${CMAKE_MATCH_1} text)
   string(FIND "${text}" "${CMAKE_MATCH_2}" at)

@@ -1,6 +1,7 @@
 // Each struct that a user of the library fills in, with its first or one of its later members set.
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/convert/conversion.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/mapping_validation.h"
 #include "mindahl/identification/model_comparison.h"
@@ -22,6 +23,8 @@ namespace mindahl {
 const campaign::TrackOptions kTrack{.threads = 2};
 const contact::KnownBody kBody{.poisson_ratio = 0.3};
 const contact::KnownContact kContact{.contact_radius = 1e-3};
+const convert::ConversionOptions kConversion{.tolerance = 0.05};
+const identification::Expectation kExpectation{.law = {}, .force_noise = 0.1};
 const identification::FitOptions kFit{.force_noise = 0.1};
 const identification::FitOptions kFitWithBounds{.fixed = {{"alpha", 0.0}}};
 const identification::TermSelectionOptions kTerms{.folds = 3};
@@ -34,7 +37,9 @@ const loop::PreparationOptions kPreparation{.cycles = loop::CountRange{.first = 
 const loop::Record kRecord{.displacement = {0.0, 1.0}, .force = {0.0, 1.0}};
 const models::ContactStateOptions kState{.unloaded_displacement = 1e-6};
 const models::ExcitationOptions kExcitation{.cycles = 2.0};
+const models::JointFriction kJoint{.asymmetry = 0.1};
 const request::ContactOptions kContactOptions{.friction_coefficient = {}};
 const request::FitRequest kRequest{.files = {"loop.csv"}};
+const request::LawRequest kLaw{.slip_force = 15.0};
 
 }  // namespace mindahl

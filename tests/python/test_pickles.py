@@ -1,8 +1,11 @@
 """Results and records that are pickled, copied, saved and read again."""
 
 import copy
+import json
+import os
 import pickle
-from concurrent.futures import ProcessPoolExecutor
+import warnings
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import matplotlib
 import numpy as np
@@ -124,15 +127,36 @@ def test_covariances_are_those_of_the_errors_and_correlations(sphere):
 
 @pytest.mark.parametrize("keywords", [
     {}, {"rig_stiffness": 1e9}, {"model": "dahl"}, {"terms": "asymmetry", "fix": {"force_offset": 0}}])
-def test_a_prediction_along_the_record_is_the_fit(sphere, keywords):
-    _, displacement, force = sphere
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_prediction_along_the_record_is_the_fit(sphere, keywords, sign):
+    displacement, force = sphere[1], sign * sphere[2]
     result = mindahl.fit(displacement, force, initial_state="virgin", **keywords)
     rounding = 64 * np.finfo(float).eps * np.abs(force).max()
     np.testing.assert_allclose(result.predict(displacement), result.fitted_force, rtol=0, atol=rounding)
 
 
-def test_what_cannot_be_predicted_is_refused(sphere):
+def test_a_prediction_takes_no_noise_for_a_reversal(tmp_path):
+    generator = np.random.default_rng(4)
+    _, drive = mindahl.excitation(amplitude=2e-6, cycles=3, samples_per_cycle=2000)
+    noise = 5e-9
+    force = mindahl.simulate(drive, sigma=4e7, slip_force=30.0, model="dahl")
+    measured = drive + generator.normal(0, noise, drive.size)
+    result = mindahl.fit(measured, -force + generator.normal(0, 0.05, drive.size), initial_state="virgin")
+    # 5 standard deviations of the noise where the branch begins and here, by the largest stiffness.
+    bound = 2 * 5 * noise * 4e7
+    for again in (result, pickle.loads(pickle.dumps(result)), saved_and_loaded(result, tmp_path)):
+        assert np.abs(again.predict(measured) + force).max() < bound
+
+
+def test_what_cannot_be_predicted_is_refused(sphere, tmp_path):
     seconds, displacement, force = sphere
+    result = mindahl.fit(displacement, force)
+    failed = {"document": json.dumps({**result.to_dict(), "parameters": {}}), "text": "the fit failed: it diverged\n"}
+    with pytest.raises(ValueError, match="^the fit failed: it diverged$"):
+        mindahl.FitResult(failed).predict(displacement)
+    (tmp_path / "fit.json").write_text(result.to_json())
+    with pytest.raises(ValueError, match="read from JSON has not the sign"):
+        mindahl.FitResult.load(tmp_path / "fit.json").predict(displacement)
     with pytest.raises(ValueError, match="initial_state is steady"):
         mindahl.fit(displacement, force, initial_state="steady").predict(displacement)
     with pytest.raises(ValueError, match="has no term viscous"):
@@ -156,7 +180,7 @@ def test_a_contact_that_is_moved_goes_on_from_where_it_was(again, model, rig):
     for displacement in path:
         state.move(displacement)
     other = again(state)
-    assert other.force == state.force and other.remembered_extremes == state.remembered_extremes
+    assert other.force == state.force and other.displacement == state.displacement
     assert [other.move(x) for x in -path] == [state.move(x) for x in -path]
 
 
@@ -168,3 +192,33 @@ def test_a_test_is_tracked_in_another_process(tmp_path):
         there = mindahl.track(displacement, force, time=time, executor=executor)
     np.testing.assert_array_equal(there["sigma"], here["sigma"])
     assert there.text() == here.text()
+
+
+@pytest.mark.parametrize("executor", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_a_test_that_is_tracked_elsewhere_warns_of_the_same(tmp_path, executor):
+    lines = SPHERE.read_text(encoding="utf-8").splitlines()
+    path = tmp_path / "no units.csv"
+    path.write_text("\n".join(["t,x,F", *lines[1:300], "7,oops,3", *lines[300:]]), encoding="utf-8")
+    frame = {"x": np.arange(9.0), "F": np.arange(9.0)}
+
+    def warned(**keywords):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            mindahl.track(path, broken_rows="skip", **keywords)
+        return [(str(each.message), each.category, each.filename) for each in caught]
+
+    with executor(1) as pool:
+        assert warned(executor=pool) == warned()
+        assert len(warned()) >= 3
+        with pytest.raises(mindahl.InputError, match="record"):
+            mindahl.track(frame, executor=pool)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_dask_s_processes_fit_files():
+    distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
+    files = [DATA / f"load_series_{load}N.csv" for load in (20, 50)]
+    with distributed.Client(n_workers=1, threads_per_worker=2, dashboard_address=None) as client:
+        fits = client.gather(client.map(mindahl.fit, files))
+        assert client.submit(os.getpid).result() != os.getpid()
+    assert [fit.to_json() for fit in fits] == [mindahl.fit(file).to_json() for file in files]

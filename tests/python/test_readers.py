@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mindahl
+from conftest import DATA
 
 TIME = np.linspace(0.0, 2.0, 81)
 X = 2e-6 * np.sin(2 * np.pi * TIME)  # [m]
@@ -66,6 +67,116 @@ def test_hdf5_files_are_read_with_the_units_of_their_attributes(tmp_path):
     is_the_record(mindahl.read_hdf5(path, within="run 2", displacement="x", force="F"))
     is_the_record(mindahl.read_hdf5(path, within="run 2", time="run 2.time",
                                     displacement="run 2.x", force="run 2.F"))
+
+
+OTHER = {"time": np.linspace(0.0, 3.0, 121), "x": 3e-6 * np.sin(np.linspace(0.0, 9.0, 121)),
+         "F": 10.0 * np.sin(np.linspace(0.0, 9.0, 121) + 0.3)}
+MEANT = {"time": TIME, "x": X, "F": FORCE}
+
+
+def hdf5(path, groups):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w") as file:
+        for group, columns in groups.items():
+            for name, values in columns.items():
+                file[f"{group}/{name}"] = values
+    return path
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+@pytest.mark.parametrize("groups, within", [
+    ({"run 1": MEANT, "run 1 repeat": OTHER}, "run 1"),
+    ({"v1": MEANT, "v1.2": OTHER}, "v1"),
+    ({"run": MEANT, "run/raw": OTHER}, "run"),
+    ({"run/raw": MEANT, "other": OTHER}, "run"),
+    ({"run 1": OTHER, "run 2": MEANT}, "/run 2"),
+    ({"": MEANT, "raw": OTHER}, "/"),
+    ({"": {"time": TIME}, "run": {"x": X, "F": FORCE}}, None),
+    ({"settings": {"gain": np.arange(3.0), "limit": np.arange(3.0)}, "run": MEANT}, None),
+    ({"a": {"x": X, "time": TIME}, "b": {"F": FORCE, "G": FORCE}, "run": MEANT}, "run"),
+])
+def test_the_group_that_is_asked_for_is_read_and_no_other(tmp_path, groups, within):
+    is_the_record(mindahl.read_hdf5(hdf5(tmp_path / "test.h5", groups), within=within))
+
+
+REFUSED = [
+    ({"run 1": MEANT, "run 2": OTHER}, "'run 1', 'run 2' have a displacement and a force each: say by within="),
+    ({"a": {"displacement": X, "F": FORCE}, "b": {"x": X, "force": FORCE}}, "'a', 'b' have .* by within="),
+    ({"first": {"x": X}, "second": {"F": FORCE}}, "of two groups, 'first', 'second': say by within="),
+]
+
+
+@pytest.mark.parametrize("groups, message", REFUSED)
+def test_columns_of_two_groups_make_no_record_by_themselves(tmp_path, groups, message):
+    scipy_io = pytest.importorskip("scipy.io")
+    paths = hdf5(tmp_path / "test.h5", groups), tmp_path / "test.mat"
+    scipy_io.savemat(paths[1], {group.replace(" ", "_"): columns for group, columns in groups.items()})
+    with pytest.raises(ValueError, match=message) as refused:
+        mindahl.read_hdf5(paths[0])
+    assert "\n" not in str(refused.value)
+    with pytest.raises(ValueError, match=message.replace("run ", "run_")):
+        mindahl.read_mat(paths[1])
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_columns_of_two_groups_are_a_record_where_both_are_named(tmp_path):
+    path = hdf5(tmp_path / "test.h5", {"first": {"x": X, "time": TIME}, "second": {"F": FORCE}})
+    is_the_record(mindahl.read_hdf5(path, displacement="first/x", force="second/F"))
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_the_struct_that_is_asked_for_is_read_and_no_other(tmp_path):
+    scipy_io = pytest.importorskip("scipy.io")
+    path = tmp_path / "test.mat"
+    scipy_io.savemat(path, {"run": {**MEANT, "raw": OTHER}, "run_1": OTHER})
+    is_the_record(mindahl.read_mat(path, within="run"))
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_an_open_file_is_called_by_its_name(tmp_path):
+    path = tmp_path / "loop.csv"
+    np.savetxt(path, np.column_stack([TIME, X, FORCE]), delimiter=",", header="t,x,F", comments="")
+
+    def content(name=None):
+        file = io.BytesIO(path.read_bytes())
+        if name is not None:
+            file.name = name
+        return file
+
+    expected = mindahl.fit(path)
+    with open(path, "rb") as file:
+        found = mindahl.fit(file)
+    assert found.to_json() == expected.to_json() and found.notes == expected.notes
+    assert found.records[0].name == str(path)
+    assert mindahl.fit(content()).to_json() == mindahl.fit(content(3)).to_json()
+    assert mindahl.fit(content()).records[0].name == "record"
+    assert [record.name for record in mindahl.fit([content(), content("a.csv")]).records] == ["record 1", "a.csv"]
+    assert list(mindahl.batch([content("a.csv"), content()])["file"]) == ["a.csv", "record"]
+    assert mindahl.track(content('say "a"')).to_dict()["input"]["files"] == ['say "a"']
+    with pytest.raises(mindahl.InputError, match="^a.csv:3:2: 'no'"):
+        broken = io.StringIO("x,F\n1,2\n2,no\n3,4\n4,5\n")
+        broken.name = "a.csv"
+        mindahl.fit(broken)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_an_open_file_is_taken_where_a_path_is(tmp_path):
+    path = DATA / "mindlin_sphere_on_plane.csv"
+    law = {"sigma": 4e7, "slip_force": 40.0}
+
+    def answers(given):
+        return (mindahl.read_csv(given()).displacement.tolist(), mindahl.plan(given()).to_json(),
+                mindahl.command("fit", given(), terms="none").parameters,
+                mindahl.command("tradeoff", path=given(), **law).to_dict()["excitations"][0]["points"])
+
+    def without_seconds(answer):
+        return *answer[:3], [point["max_force_error"] for point in answer[3]]
+
+    assert without_seconds(answers(path.open)) == without_seconds(answers(lambda: path))
+    with pytest.raises(ValueError, match="^a int is no array, data frame, record or file$"):
+        mindahl.plan(5)
+    with pytest.raises(mindahl.InputError, match="^record:1: the file ends after its header"):
+        mindahl.plan(io.StringIO("nothing"))
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")

@@ -20,6 +20,7 @@ MISTAKES = {
     "state.displacement = 1.0": "is read-only",
     "mindahl.fit(displacement, force).sgima": 'has no attribute "sgima"',
     "mindahl.fit(displacement, force).adequacy.verdcit": 'has no attribute "verdcit"',
+    "mindahl.fit(displacement, force).contact.frction": 'has no attribute "frction"',
     "mindahl.fit(displacement, force).measured.cycles[0].gap": 'has no attribute "gap"',
     "text: str = mindahl.fit(displacement, force).sigma.unit_of": 'has no attribute "unit_of"',
 }

@@ -22,6 +22,7 @@ table: str = runs.to_csv()
 def fitted() -> tuple[float, float | None]:
     result = mindahl.fit(displacement, force, normal_load=[(50.0, 0.5)], fix={"alpha": 1 / 3})
     low, _ = result.slip_force.interval
+    friction = result.contact.friction_coefficient.value
     cycles = mindahl.track(displacement, force, average=2)
-    print(result, cycles["sigma"].mean(), [warning.code for warning in result.warnings])
+    print(result, friction, cycles["sigma"].mean(), [warning.code for warning in result.warnings])
     return result.slip_force.value or 0.0, low

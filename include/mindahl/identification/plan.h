@@ -18,8 +18,8 @@ namespace mindahl::identification {
 
 /// Holds the assumed properties of the contact and the noise of the channels.
 struct Expectation {
-  models::BranchLaw law;            ///< law with Masing's memory
-  models::SeriesSpring rig;         ///< in series; its stiffness known unless it is fitted
+  models::BranchLaw law{};          ///< law with Masing's memory
+  models::SeriesSpring rig{};       ///< in series; its stiffness known unless it is fitted
   double load_exponent = 1.0 / 3;   ///< p of σ ∝ N^p between loads; finite; 1/3 is Hertz's
   double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
