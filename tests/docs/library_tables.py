@@ -85,10 +85,14 @@ def terms_table(tables, _, __):
     return table(["name", "unit", "of", "enters", "fitted", "what it is"], rows)
 
 
-def thresholds_table(tables, _, __):
-    return table(["name", "value", "of what", "what it decides", "why there"],
-                 [[code(row["name"]), f"{row['value']:g}", cell(row["unit"]), cell(row["meaning"]),
-                   cell(row["reason"])] for row in tables["thresholds"]])
+def thresholds_table(*_):
+    header = (ROOT / "include/mindahl/identification/thresholds.h").read_text()
+    rows = []
+    for comment, name, value in re.findall(r"((?: *///.*\n)+) *double (\w+) = (.*);", header):
+        unit, decides, why = re.match(r"\[(.*?)\] (.*?)\. (.*)\.$",
+                                      " ".join(re.findall(r"/// (.*)", comment))).groups()
+        rows.append([code(name), f"{float(value):g}", cell(unit), cell(decides), cell(why)])
+    return table(["name", "value", "of what", "what it decides", "why there"], rows)
 
 
 def findings_table(tables, kind, kept):

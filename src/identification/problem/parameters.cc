@@ -147,7 +147,7 @@ bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
   if (BeginsAtZero(data, options)) {
     Hold(parameter, 0.0);
-  } else if (parameter.term->entry != Entry::kLinear) {
+  } else if (parameter.term->column == Regressor::kNone) {
     parameter.theta = data.excitation().front();
     parameter.fixed = parameter.assumed = true;
   }
@@ -290,16 +290,6 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
             fmt::format("{} needs the time of every sample in every record", parameter.term->name));
       }
     }
-  }
-  Sort();
-}
-
-Parameters::Parameters(const Parameters& all, std::size_t record) : origin_(all.origin_) {
-  for (const Parameter& parameter : all) {
-    const bool is_own = parameter.term->scope == Scope::kRecord;
-    if (is_own && parameter.record != record) continue;
-    parameters_.push_back(parameter);
-    if (is_own) parameters_.back().record = 0;
   }
   Sort();
 }

@@ -117,9 +117,6 @@ class Parameters {
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
   Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state);
 
-  /// Takes those of one record of several, and of the contact, as if it were the only one.
-  Parameters(const Parameters& all, std::size_t record);
-
   [[nodiscard]] std::size_t size() const { return parameters_.size(); }
   [[nodiscard]] const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
   [[nodiscard]] auto begin() const { return parameters_.begin(); }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "identification/solve/unprojected_record.h"
+#include "identification/solve/unprojected_residual.h"
 
 namespace mindahl::identification {
 
@@ -195,12 +195,10 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
   ceres::Problem::Options of_problem;
   of_problem.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres_problem(of_problem);
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const auto record = std::make_shared<UnprojectedRecord>(problem, r, scale);
-    std::vector<double*> blocks;
-    for (const std::size_t p : record->blocks()) blocks.push_back(&theta[p]);
-    AddRecord(record, blocks, loss_function.get(), ceres_problem);
-  }
+  const auto residual = std::make_shared<UnprojectedResidual>(problem, scale);
+  std::vector<double*> blocks;
+  for (const std::size_t p : residual->blocks()) blocks.push_back(&theta[p]);
+  AddResidual(residual, blocks, loss_function.get(), ceres_problem);
   for (const std::size_t p : problem.parameters.with_prior()) {
     const Parameter& parameter = problem.parameters[p];
     ceres_problem.AddResidualBlock(

@@ -301,8 +301,8 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
   StartingPoint start;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
-    const bool is_searched = p == kSlipForce || (parameters[p].term->entry == Entry::kLaw &&
-                                                 !parameters[p].term->has_start);
+    const Term& term = *parameters[p].term;
+    const bool is_searched = term.column == Regressor::kNone && !term.has_start;
     if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
     if (is_searched) return std::nullopt;
   }
