@@ -157,8 +157,8 @@ LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const Fi
   }
   state_ = std::make_unique<State>(records, options, fit);
   const Problem& problem = *state_->of.problem;
-  const double effective = std::min(
-      fit.residuals.effective_samples / static_cast<double>(problem.data->counted), 1.0);
+  const double effective =
+      std::min(fit.residuals.effective_samples / static_cast<double>(problem.data->counted), 1.0);
   const double unit = fit.ResponseNoise() / problem.data->response_unit();
   state_->per_square = -effective / (2 * unit * unit);
   for (const std::size_t p : problem.parameters.free()) {

@@ -1,5 +1,3 @@
-#include "identification/inferred_fit.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,12 +17,10 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/rig_alternative.h"
-#include "identification/intervals.h"
-#include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
+#include "identification/solved_fit.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {

@@ -1,4 +1,3 @@
-#include "identification/law_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +7,9 @@
 
 #include "identification/diagnosis/residuals.h"
 #include "identification/held_out.h"
+#include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
-#include "identification/intervals.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/steady_loop.h"

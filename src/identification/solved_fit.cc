@@ -91,7 +91,7 @@ Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   const auto make = [&](const RecordStates& state) {
     Candidate candidate(attempt.data, options, state);
-    RequireEnoughSamples(candidate.problem, attempt.prepared, options);
+    RequireEnoughSamples(candidate.problem, attempt.prepared);
     return candidate;
   };
   const auto find_starts = [&](Candidate& candidate,

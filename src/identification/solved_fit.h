@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
 #include "identification/solve/turning_points.h"
+#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
@@ -49,5 +52,18 @@ struct SolvedFit {
 /// noise, and turning points put in where the record is sampled so coarsely that it misses them.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
+
+/// Adds to what a solution says by itself its noise, errors, intervals and residuals and, by the
+/// depth, adequacy, profiles and tests: each depth does what the one before does, and more.
+/// @param result  values, residuals and what the records show without a model, as assembled
+FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
+
+inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
+  if (finding) findings.push_back(std::move(*finding));
+}
+
+inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
+  std::ranges::move(more, std::back_inserter(findings));
+}
 
 }  // namespace mindahl::identification

@@ -59,7 +59,7 @@ Json FindingsTable() {
 Json CausesTable() {
   Json rows = Json::array();
   for (const identification::Departure& row : identification::Departures()) {
-    rows.push_back({{"code", row.code}, {"meaning", row.meaning}, {"option", row.group}});
+    rows.push_back({{"code", row.code}, {"option", row.group}});
   }
   return rows;
 }
@@ -89,11 +89,9 @@ Json Columns() {
 }  // namespace mindahl
 
 int main() {
-  const mindahl::report::Json tables = {{"fields", mindahl::FieldsTable()},
-                                        {"terms", mindahl::TermsTable()},
-                                        {"findings", mindahl::FindingsTable()},
-                                        {"causes", mindahl::CausesTable()},
-                                        {"flags", mindahl::FlagsTable()},
-                                        {"columns", mindahl::Columns()}};
+  const mindahl::report::Json tables = {
+      {"fields", mindahl::FieldsTable()},     {"terms", mindahl::TermsTable()},
+      {"findings", mindahl::FindingsTable()}, {"causes", mindahl::CausesTable()},
+      {"flags", mindahl::FlagsTable()},       {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

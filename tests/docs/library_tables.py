@@ -109,8 +109,8 @@ def causes_table(tables, _, kept):
     rows = []
     for row in tables["causes"]:
         what, advice = kept.row(code(row["code"]), "what it is", "what to do")
-        rows.append([code(row["code"]), what, cell(row["meaning"]), code(row["option"]), advice])
-    return table(["`causes[].code`", "what it is", "the column", "`term`", "what to do"],
+        rows.append([code(row["code"]), what, code(row["option"]), advice])
+    return table(["`causes[].code`", "what it is", "`term`", "what to do"],
                  in_page_order(rows, kept))
 
 

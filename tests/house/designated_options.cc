@@ -24,7 +24,6 @@ const contact::KnownBody kBody{.poisson_ratio = 0.3};
 const contact::KnownContact kContact{.contact_radius = 1e-3};
 const identification::FitOptions kFit{.force_noise = 0.1};
 const identification::FitOptions kFitWithBounds{.fixed = {{"alpha", 0.0}}};
-const identification::TermSelectionOptions kTerms{.folds = 3};
 const identification::ValidationOptions kValidation{.cases = 3};
 const io::Plot kPlot{.title = "loop"};
 const io::PlotPanel kPanel{.y_label = "force [N]"};

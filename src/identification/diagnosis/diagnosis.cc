@@ -311,8 +311,7 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
     const std::vector<double> direction = DirectionsOf(excitation, record.reversals);
     std::array<std::vector<double>, 2> ways;  // down, up
     for (std::size_t i = 0; i < record.size(); ++i) {
-      const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
-      if (record.counts[i] == 0 || is_inserted) continue;
+      if (record.counts[i] == 0) continue;
       ways[direction[i] > 0 ? 1 : 0].push_back(excitation[i]);
       ++samples;
     }

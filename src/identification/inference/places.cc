@@ -1,5 +1,3 @@
-#include "identification/inference/places.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "identification/inference/departures.h"
 #include "mindahl/models/friction_model.h"
 #include "models/normalized_response.h"
 

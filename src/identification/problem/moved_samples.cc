@@ -12,22 +12,22 @@
 namespace mindahl::identification {
 namespace {
 
-/// Times of samples that were measured, made to go on.
-/// @param samples  places of the measured among all
-void SpreadEvenly(std::span<const std::size_t> samples, std::span<double> clock) {
+/// Makes times go on: those that stand still or step back lie evenly between the last that went on
+/// and the next that does.
+void SpreadEvenly(std::span<double> clock) {
   std::size_t begin = 0;
   const auto spread = [&](std::size_t end, double step) {
     for (std::size_t k = begin + 1; k < end; ++k) {
-      clock[samples[k]] = clock[samples[begin]] + step * static_cast<double>(k - begin);
+      clock[k] = clock[begin] + step * static_cast<double>(k - begin);
     }
   };
-  for (std::size_t k = 1; k < samples.size(); ++k) {
-    const double way = clock[samples[k]] - clock[samples[begin]];
+  for (std::size_t k = 1; k < clock.size(); ++k) {
+    const double way = clock[k] - clock[begin];
     if (!(way > 0)) continue;
     spread(k, way / static_cast<double>(k - begin));
     begin = k;
   }
-  spread(samples.size(), clock[samples[begin]] - clock[samples[begin - 1]]);
+  spread(clock.size(), clock[begin] - clock[begin - 1]);
 }
 
 bool GoesOn(std::span<const double> time) {
@@ -61,21 +61,9 @@ double LongestLag(double samples_a_cycle) {
 }
 
 void SetClocks(ScaledRecords& data) {
-  std::vector<std::size_t> samples;
   for (ScaledRecord& record : data.records) {
-    const auto is_inserted = [&](std::size_t i) {
-      return !record.inserted.empty() && record.inserted[i] != 0;
-    };
-    record.clock.assign(record.time.begin(), record.time.end());
-    samples.clear();
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (!is_inserted(i)) samples.push_back(i);
-    }
-    SpreadEvenly(samples, record.clock);
-    // A turning point between two samples, which has a neighbour on either side.
-    for (std::size_t i = 1; i + 1 < record.size(); ++i) {
-      if (is_inserted(i)) record.clock[i] = (record.clock[i - 1] + record.clock[i + 1]) / 2;
-    }
+    record.clock = record.time;
+    SpreadEvenly(record.clock);
   }
 }
 

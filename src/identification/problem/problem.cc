@@ -70,7 +70,8 @@ Dependence DependenceOn(const Problem& problem, std::size_t parameter) {
     case TermId::kLoadExponent:
       return {parameter, {{.column = TermId::kSigma, .by_log_load = true}}};
     default:
-      if (of.term->column != Regressor::kNone || ShapesColumns(problem, parameter)) return {parameter};
+      if (of.term->column != Regressor::kNone || ShapesColumns(problem, parameter))
+        return {parameter};
       return {parameter, {{.column = id}}};
   }
 }

@@ -1,7 +1,6 @@
 #include "identification/problem/requirements.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,28 +42,14 @@ void RequireTermsOfResponse(const FitOptions& options) {
   }
 }
 
-/// Counts the samples left out by reason: "; of 12 that were read 8 are left out: 2 glitches, …".
-std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOptions& fit) {
-  const loop::PreparationOptions& options = fit.preparation;
+/// Says how many samples do not count: "; of 12 that were read 8 are left out, 2 of them glitches".
+std::string WhatIsLeftOut(const loop::PreparedRecords& prepared) {
   const std::size_t left_out = prepared.samples() - prepared.counted();
   if (left_out == 0) return "";
   std::size_t glitches = 0;
   for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total();
-  std::vector<std::string> reasons;
-  if (glitches > 0) reasons.push_back(fmt::format("{} glitches", glitches));
-  std::vector<std::string> masks;
-  if (options.load_window) masks.emplace_back("outside the load window");
-  if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
-  if (options.cycles) masks.emplace_back("outside the requested cycles");
-  if (options.samples) masks.emplace_back("outside the requested samples");
-  if (!options.held_out.empty()) masks.emplace_back("held out");
-  if (HasTerm(fit, TermId::kLag)) masks.emplace_back("beyond the motion that a lag needs");
-  if (!masks.empty() && left_out > glitches) {
-    reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
-  }
-  if (reasons.empty()) return "";
-  return fmt::format("; of {} that were read {} are left out: {}", prepared.samples(), left_out,
-                     fmt::join(reasons, ", "));
+  return fmt::format("; of {} that were read {} are left out, {} of them glitches",
+                     prepared.samples(), left_out, glitches);
 }
 
 constexpr std::size_t kChords = 10;
@@ -149,13 +134,12 @@ void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
                            is_forced ? "m" : "N"));
 }
 
-void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
-                          const FitOptions& options) {
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
   const std::size_t free = problem.parameters.free().size();
   if (problem.data->counted >= free) return;
   throw TooFewSamples(
       fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
-                  problem.data->counted, free, WhatIsLeftOut(prepared, options)));
+                  problem.data->counted, free, WhatIsLeftOut(prepared)));
 }
 
 void RequireToldAsymmetry(const Problem& problem) {

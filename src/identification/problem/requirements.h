@@ -23,8 +23,7 @@ void RequireOneLoad(const ScaledRecords& data);
 void RequireNoise(const FitOptions& options, const ScaledRecords& data);
 
 /// Refuses fewer samples that count than free parameters, and says what was left out.
-void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
-                          const FitOptions& options);
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared);
 
 /// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
 void RequireToldAsymmetry(const Problem& problem);

@@ -291,16 +291,9 @@ std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t cov
       return acceleration;
     case Regressor::kCovariate:
       return covariates[covariate];
-    case Regressor::kNone:
-    case Regressor::kOne:
-    case Regressor::kDisplacementSquared:
-    case Regressor::kRippleCosineUp:
-    case Regressor::kRippleSineUp:
-    case Regressor::kRippleCosineDown:
-    case Regressor::kRippleSineDown:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {

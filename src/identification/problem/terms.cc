@@ -48,11 +48,7 @@ constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
 /// Makes one of the four factors of a ripple, which differ in their column.
 constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, Regressor column) {
-  return {.name = name,
-          .unit = "N",
-          .meaning = meaning,
-          .powers = kForceUnit,
-          .column = column};
+  return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .column = column};
 }
 
 constexpr std::array kTermRows = {

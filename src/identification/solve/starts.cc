@@ -1,5 +1,3 @@
-#include "identification/solve/starts.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "identification/solve/search.h"
 
 namespace mindahl::identification {
 namespace {
