@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,7 +21,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -37,8 +34,8 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
   std::vector<double> residuals(problem.size());
-  attempt.buffers.response.Bind(problem);
-  Predict(problem, solved.solution().theta, attempt.buffers.response, residuals);
+  attempt.solver.response.Bind(problem);
+  Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   double squares = 0.0;
   std::size_t k = 0;
@@ -174,12 +171,11 @@ struct Fitter::State {
   [[nodiscard]] bool MayContinue() const;
 
   FitOptions options;
-  SearchBuffers buffers;
+  Solver solver;
   FitResult result;
 };
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
-  RequireInitialStates(given, records.size());
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation);
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
@@ -190,12 +186,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
   }
   ThinnedRecords thin(data);
-  RequireOneLoad(data);
+  RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
-  RequireNoise(given, data);
 
   const Attempt attempt{
-      given, depth, prepared, data, thin, buffers, without_priors ? &*without_priors : nullptr};
+      given, depth, prepared, data, thin, solver, without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {

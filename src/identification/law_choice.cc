@@ -7,7 +7,6 @@
 
 #include "identification/diagnosis/residuals.h"
 #include "identification/held_out.h"
-#include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
@@ -93,18 +92,18 @@ bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
   double narrowest = std::numeric_limits<double>::infinity();
   double longest_end = 0.0;
   for (const ScaledRecord& record : data.records) {
-    const auto at = [&](std::size_t reversal) {
-      return record.excitation()[record.reversals[reversal]];
-    };
     if (record.reversals.empty()) return false;
-    for (std::size_t j = 1; j < record.reversals.size(); ++j) {
-      const double swing = std::abs(at(j) - at(j - 1));
-      widest = std::max(widest, swing);
-      narrowest = std::min(narrowest, swing);
+    const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+      const double swing =
+          std::abs(record.excitation()[strokes[s].end] - record.excitation()[strokes[s].begin]);
+      if (s == 0 || s + 1 == strokes.size()) {
+        longest_end = std::max(longest_end, swing);
+      } else {
+        widest = std::max(widest, swing);
+        narrowest = std::min(narrowest, swing);
+      }
     }
-    longest_end =
-        std::max({longest_end, std::abs(at(0) - record.excitation().front()),
-                  std::abs(record.excitation().back() - at(record.reversals.size() - 1))});
   }
   const double wider = (1 + thresholds.one_amplitude) * narrowest;
   return widest <= wider && longest_end <= wider;

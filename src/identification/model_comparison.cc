@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "identification/held_out.h"
-#include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"

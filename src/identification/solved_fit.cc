@@ -74,8 +74,8 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
       const Candidate& from = best ? *best : pure;
       Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r));
       const std::vector<double> start = ThetaFor(trial.problem, from.problem, from.solution);
-      attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
-      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
+      attempt.solver.Bind(trial.problem);
+      attempt.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
       const double gain = criterion(from) - criterion(trial);
       if (!(gain >= attempt.options.thresholds.undecided)) continue;
       best.emplace(std::move(trial));
@@ -96,12 +96,12 @@ Candidate FitBestState(const Attempt& attempt) {
   };
   const auto find_starts = [&](Candidate& candidate,
                                double look = std::numeric_limits<double>::infinity()) {
-    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers);
+    return FindStartsOf(candidate, attempt.thin, options, look, attempt.solver);
   };
   const auto descend = [&](Candidate& candidate) {
-    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers);
-    Descend(candidate, options, attempt.buffers);
-    SearchBesideMinimum(candidate, options, attempt.buffers);
+    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.solver);
+    Descend(candidate, options, attempt.solver);
+    SearchBesideMinimum(candidate, options, attempt.solver);
   };
   if (const std::optional<RecordStates> given = GivenState(attempt)) {
     Candidate candidate = make(*given);
@@ -133,7 +133,7 @@ Candidate FitBestState(const Attempt& attempt) {
   if (std::isfinite(better.solution.sum_of_squares)) {  // else neither was even started
     const Evidence evidence(
         attempt.data.counted,
-        EffectiveSamples(better.problem, better.solution.theta, attempt.buffers.response));
+        EffectiveSamples(better.problem, better.solution.theta, attempt.solver.response));
     const auto criterion = [&](const Candidate& candidate) {
       return evidence.Aicc(candidate.solution.sum_of_squares,
                            candidate.problem.parameters.free().size());
@@ -156,7 +156,7 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
     return false;
   }
   std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, candidate.solution.theta, attempt.buffers.response, residual);
+  EvaluateResidual(problem, candidate.solution.theta, attempt.solver.response, residual);
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
 }
 
@@ -198,13 +198,13 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
   TurningPointFit fit{std::make_unique<ScaledRecords>(PutInTurningPoints(data, overshoot)), best};
   Problem turned = problem;
   turned.data = fit.records.get();
-  SearchBuffers& buffers = attempt.buffers;
-  buffers.solver.Bind(turned, buffers.response);
-  buffers.solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
+  Solver& solver = attempt.solver;
+  solver.Bind(turned);
+  solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
   if (!fit.solution.converged) return std::nullopt;
   if (fit.solution.sum_of_squares <= best.sum_of_squares) return fit;
   // If both are nearly as likely, the fit that does not take a sample for a turn is chosen.
-  const Evidence evidence(data.counted, EffectiveSamples(problem, best.theta, buffers.response));
+  const Evidence evidence(data.counted, EffectiveSamples(problem, best.theta, solver.response));
   const double loss = evidence.LikelihoodRatio(fit.solution.sum_of_squares, best.sum_of_squares);
   if (loss > thresholds.indistinguishable) return std::nullopt;
   return fit;
@@ -214,7 +214,7 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
 
 SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  SearchBuffers& buffers = attempt.buffers;
+  Solver& solver = attempt.solver;
   ScaledRecords& data = attempt.data;
   SolvedFit solved(FitBestState(attempt), attempt);
   Candidate& best = solved.best;
@@ -224,9 +224,9 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const bool is_weighted = !is_plain || by_record;
   if (std::isfinite(best.solution.sum_of_squares)) {
     const auto fit_with_weights = [&](ScaledRecords& weighted) {
-      solved.is_settled = FitWithWeights(
-          best.problem, weighted, options, solved.displacement_errors, buffers.solver,
-          buffers.response, SolverOptionsOf(options), best.solution, solved.noise, by_record);
+      solved.is_settled =
+          FitWithWeights(best.problem, weighted, options, solved.displacement_errors, solver,
+                         SolverOptionsOf(options), best.solution, solved.noise, by_record);
     };
     if (is_weighted) {
       fit_with_weights(data);
@@ -235,7 +235,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
       if (options.loss != Loss::kNone || by_record) {
         ThinnedRecords weighted_thin(data);
         const Attempt weighted{options, attempt.depth, attempt.prepared,
-                               data,    weighted_thin, buffers};
+                               data,    weighted_thin, solver};
         Candidate again = FitBestState(weighted);
         if (std::isfinite(again.solution.sum_of_squares)) {
           best = std::move(again);
@@ -255,10 +255,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
       solved.noise = PlainNoise(*best.problem.data, options, best.solution.sum_of_squares,
                                 best.problem.parameters.free().size());
       solved.noise.of_records = std::move(of_records);
-    }
-    if (attempt.depth >= Depth::kErrors) {
-      solved.at = LinearizeAt(best.problem, best.solution.theta, buffers.response,
-                              best.problem.parameters.free());
     }
   }
   return solved;

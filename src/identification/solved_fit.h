@@ -26,7 +26,7 @@ struct Attempt {
   const loop::PreparedRecords& prepared;
   ScaledRecords& data;
   ThinnedRecords& thin;
-  SearchBuffers& buffers;
+  Solver& solver;
   const FitResult* without_priors = nullptr;  ///< null where there is none
 };
 
@@ -41,7 +41,6 @@ struct SolvedFit {
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
   /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
-  Linearization at = {};  ///< linearization of `best` in its free parameters; from Depth::kErrors
 
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };

@@ -80,14 +80,14 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   Stages stages(record, With(thresholds));
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
-  const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
+  const Estimates estimates = testing::EstimatesOf(stages, best, noise, thresholds);
   ThinnedRecords thin(stages.data);
   ParameterEstimate shape;
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;
   shape.upper95 = shape.value;
   return TryRig({stages.problem, best, noise, estimates}, thin, shape, stages.options,
-                stages.buffers)
+                stages.solver)
       .has_value();
 }
 

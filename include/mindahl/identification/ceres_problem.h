@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"

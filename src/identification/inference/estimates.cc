@@ -1,11 +1,9 @@
 #include "identification/inference/estimates.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "core/probability.h"
@@ -41,12 +39,6 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   }
   return values;
 }
-
-Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     const DisplacementEffect& displacement, const Thresholds& thresholds,
-                     Response& response)
-    : Estimates(problem, solution, noise, displacement, thresholds,
-                LinearizeAt(problem, solution.theta, response, problem.parameters.free())) {}
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
                      const DisplacementEffect& displacement, const Thresholds& thresholds,

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "identification/inference/local.h"
@@ -46,11 +43,7 @@ class Estimates {
  public:
   /// @param problem       with `solution`, must outlive this
   /// @param displacement  of the drawn errors, in units of the noise's variance
-  Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            const DisplacementEffect& displacement, const Thresholds& thresholds,
-            Response& response);
-
-  /// @param at  the problem by all its free parameters, near the solution
+  /// @param at            the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
             const DisplacementEffect& displacement, const Thresholds& thresholds, Linearization at);
 

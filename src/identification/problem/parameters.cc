@@ -1,7 +1,6 @@
 #include "identification/problem/parameters.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -29,9 +28,7 @@ Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
   Eigen::MatrixXd forces(2 * static_cast<Eigen::Index>(data.samples()), 2);  // ends count twice
   Eigen::Index count = 0;
   for (const ScaledRecord& record : data.records) {
-    std::size_t begin = 0;
-    for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
-      const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
+    for (const auto& [begin, end, direction] : StrokesOf(record.displacement, record.reversals)) {
       const double from = record.displacement[begin];
       const double way = record.displacement[end] - from;
       for (std::size_t i = begin; i <= end && (way > 0) == is_up; ++i) {
@@ -39,7 +36,6 @@ Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
         if ((position - from) / way < kMayStick || record.counts[i] == 0) continue;
         forces.row(count++) << position, record.force[i];
       }
-      begin = end;
     }
   }
   if (count < kFewest) count = 0;
@@ -275,7 +271,6 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   ApplyOptions(options, state, data.prior_noise);
-  RequireShapedColumns();
   RequireNeededTerms();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
@@ -298,20 +293,6 @@ bool Parameters::any_zero_is_known() const {
   return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
     return parameter.term->id == TermId::kForceOffset && parameter.fixed;
   });
-}
-
-/// Refuses a parameter that shapes columns of others where none of these is fitted.
-void Parameters::RequireShapedColumns() const {
-  for (const Parameter& shaping : parameters_) {
-    if (shaping.absent || shaping.term->shapes.empty()) continue;
-    const bool any = std::ranges::any_of(parameters_, [&](const Parameter& parameter) {
-      return !parameter.absent && parameter.term->column != Regressor::kNone &&
-             parameter.term->name.starts_with(shaping.term->shapes);
-    });
-    if (any) continue;
-    throw InvalidArgument(fmt::format("{} has no effect without a term {}: add it",
-                                      shaping.term->name, shaping.term->shapes));
-  }
 }
 
 /// Refuses a parameter without the one that it needs.

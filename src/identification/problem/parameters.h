@@ -76,6 +76,7 @@ struct Parameter {
   [[nodiscard]] bool has_prior() const { return prior_root_weight > 0; }
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
+  [[nodiscard]] bool is_exponent() const { return term->name.ends_with("_exponent"); }
 };
 
 /// Says on which side of its bounds a parameter lies.
@@ -180,7 +181,6 @@ class Parameters {
  private:
   void ApplyOptions(const FitOptions& options, const RecordStates& state, double prior_noise);
   void ApplyPriors(const FitOptions& options, double noise);
-  void RequireShapedColumns() const;
   void RequireNeededTerms() const;
   void RequireOneMotion() const;
   void HoldConfoundedAsymmetry();

@@ -106,28 +106,23 @@ void RequireOptions(const FitOptions& options) {
   }
 }
 
-void RequireInitialStates(const FitOptions& options, std::size_t records) {
+void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
   const std::size_t states = options.initial_states.size();
-  if (states == 0 || states == records) return;
-  throw InvalidArgument(
-      fmt::format("{} initial states for {} records: give one a record", states, records));
-}
-
-void RequireOneLoad(const ScaledRecords& data) {
-  if (!data.is_forced()) return;
+  if (states != 0 && states != data.records.size()) {
+    throw InvalidArgument(fmt::format("{} initial states for {} records: give one a record", states,
+                                      data.records.size()));
+  }
+  const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
-  if (!data.is_load_series && !data.load_varies && !varies) return;
-  throw InvalidArgument(
-      "the normal load differs or varies, which a fit of the displacement does not model: fit the "
-      "records of one load, or fit the force");
-}
-
-void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
+  if (is_forced && (data.is_load_series || data.load_varies || varies)) {
+    throw InvalidArgument(
+        "the normal load differs or varies, which a fit of the displacement does not model: fit "
+        "the records of one load, or fit the force");
+  }
   constexpr double kLargest = 1e100;  // in half ranges of the force
   const std::optional<double> noise = options.response_noise();
   if (!noise || *noise / data.response_unit() < kLargest) return;
-  const bool is_forced = data.is_forced();
   ThrowInvalid(is_forced ? "displacement noise [m]" : "force noise [N]", *noise,
                fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
                            is_forced ? "displacement" : "force", data.response_unit(),

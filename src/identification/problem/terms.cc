@@ -123,6 +123,7 @@ constexpr std::array kTermRows = {
          .has_start = true,
          .start = 0.5,
          .shapes = "viscous",
+         .needs = "viscous",
          .group = "speed_exponent"},
     Term{.name = "inertia",
          .unit = "kg",
@@ -213,6 +214,7 @@ constexpr std::array kTermRows = {
          .powers = kLengthUnit,
          .has_start = true,
          .shapes = "ripple_",
+         .needs = "ripple_cosine_up",
          .group = "ripple"},
     FactorOfRipple("ripple_cosine_up",
                    "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "

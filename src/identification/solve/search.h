@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -9,13 +8,6 @@
 #include "mindahl/identification/fit_options.h"
 
 namespace mindahl::identification {
-
-/// Holds the buffers of a search, kept from one to the next.
-struct SearchBuffers {
-  Solver solver;
-  Response response;
-  Solution scratch;
-};
 
 struct StartingPoint {
   std::vector<double> theta;  // all parameters
@@ -39,21 +31,21 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// @param rival  of another initial state, as FindStarts() takes it
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
-                    double rival, SearchBuffers& buffers);
+                    double rival, Solver& solver);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,
 /// for at most three terms, from the solutions of the models that they contain in turn.
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
-                              const FitOptions& options, SearchBuffers& buffers);
+                              const FitOptions& options, Solver& solver);
 
 /// Solves from each starting point and keeps the best solution.
-void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
+void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Solves once more from next to the best solution where there may be lower minima, and keeps the
 /// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
 /// where the rig takes another part of the compliance. Where a start is given it is the only one.
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Constants of the losses, each 95 % efficient for normal noise (Huber 1981; Holland & Welsch
 /// 1977).
@@ -87,9 +79,8 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
 /// @param thin      the problem on its thinned record
 /// @param rival     look of another initial state; of looks ten times as dear the best alone
 ///                  is followed. Infinite where there is none
-/// @param solver    bound to it here
 /// @returns empty where no point has the sign of the force
 std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
-                                      Solver& solver, Response& response, Solution& scratch);
+                                      Solver& solver);
 
 }  // namespace mindahl::identification

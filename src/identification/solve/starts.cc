@@ -4,7 +4,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "core/extremes.h"
 #include "identification/solve/search.h"
@@ -313,13 +312,14 @@ bool HasKinks(const Parameters& parameters) {
 }
 
 std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
-                                      Solver& solver, Response& response, Solution& scratch) {
+                                      Solver& solver) {
   // A look that is that much worse than the best does not lead to a better minimum.
   constexpr double kHopeless = 4.0;
   // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
   constexpr double kBeyondRival = 10.0;
   std::vector<StartingPoint> starts;
-  solver.Bind(thin, response);
+  solver.Bind(thin);
+  Solution scratch;
   Plane plane(thin, options, solver);
   const Looks looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
