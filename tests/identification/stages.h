@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
@@ -134,8 +135,8 @@ inline identification::Estimates EstimatesOf(Stages& stages,
           noise,
           {},
           thresholds,
-          LinearizeAt(stages.problem, solution.theta, stages.solver.response,
-                      stages.problem.parameters.free())};
+          identification::LinearizeAt(stages.problem, solution.theta, stages.solver.response,
+                                      stages.problem.parameters.free())};
 }
 
 /// White noise of a known variance [units of the data²].
