@@ -79,6 +79,13 @@ class TinySearch {
   /// Searches from u, which it moves.
   void Run(std::span<double> u);
 
+  /// Linearises at u, where the next run begins.
+  void LineariseAt(std::span<const double> u) {
+    trial_.assign(u.begin(), u.end());
+    trial_cost_ = residual_.Linearise(u);
+    trial_is_linearised_ = true;
+  }
+
   // Results of the last run.
   [[nodiscard]] double cost() const { return cost_; }
   [[nodiscard]] int iterations() const { return iterations_; }
@@ -247,9 +254,7 @@ void TinySearch::Accept(const double* x, double* residuals, double* jacobian) {
   Eigen::Map<Eigen::MatrixXd> columns(jacobian, size + 1, size);
   Clamp(x, at_);
   if (is_first_ && !(trial_is_linearised_ && trial_ == at_)) {
-    trial_ = at_;
-    trial_cost_ = residual_.Linearise(at_);
-    trial_is_linearised_ = true;
+    LineariseAt(at_);
   }
   raw_.assign(x, x + count_);
   cost_ = trial_cost_;
@@ -321,6 +326,23 @@ const char* TinySearch::Message() const {
   return "The solver made its maximum number of iterations.";
 }
 
+/// True if a coordinate that lies at one of its bounds would lower the cost on its way back.
+bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance) {
+  std::vector<unsigned char> others(u.size());
+  bool any = false;
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const SearchedParameter& searched = residual.searched()[j];
+    const double slope = residual.gradient()[static_cast<Eigen::Index>(j)];
+    const bool inward =
+        (u[j] <= searched.lower && slope < 0) || (u[j] >= searched.upper && slope > 0);
+    others[j] = inward ? 0 : 1;
+    any = any || inward;
+  }
+  if (!any) return false;
+  const CompressedResidual compressed(residual.normal(), residual.gradient(), 0.0, others);
+  return compressed.Explained() > tolerance;
+}
+
 bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
   for (std::size_t j = 0; j < u.size(); ++j) {
     const SearchedParameter& searched = residual.searched()[j];
@@ -358,8 +380,17 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   SolverOptions of_tiny = options;
   if (!options.is_rough) of_tiny.max_iterations -= options.max_iterations / 3;
   TinySearch search(residual_, of_tiny);
-  search.Run(u);
-  report.iterations += search.iterations();
+  double last_cost = std::numeric_limits<double>::infinity();
+  // Each pass lets go what lies at a bound and leads inward.
+  for (std::size_t pass = 0; pass <= u.size(); ++pass) {
+    search.Run(u);
+    report.iterations += search.iterations();
+    const bool is_lower = search.cost() < last_cost;
+    last_cost = search.cost();
+    if (!is_lower || !IsAtBound(residual_, u)) break;
+    search.LineariseAt(u);
+    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost())) break;
+  }
   double cost = search.cost();
   solution.converged = !search.hit_maximum() && std::isfinite(cost);
   report.termination = solution.converged ? "CONVERGENCE" : "NO_CONVERGENCE";
