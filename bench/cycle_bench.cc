@@ -109,8 +109,8 @@ void Search(benchmark::State& state) {
   const identification::Problem problem{
       &data, options.model, models::InitialState::kSteady,
       identification::Parameters(data, options, models::InitialState::kSteady)};
-  identification::SearchBuffers buffers;
-  buffers.solver.Bind(problem, buffers.response);
+  identification::Solver solver;
+  solver.Bind(problem);
   std::vector<std::vector<double>> starts;
   for (const campaign::Cycle& cycle : Cycles()) {
     const models::BranchLaw law = fitter.Continue(cycle.record, Depth::kEstimate).law;
@@ -127,7 +127,7 @@ void Search(benchmark::State& state) {
   identification::Solution solution;
   for (auto _ : state) {
     for (const std::vector<double>& start : starts) {
-      buffers.solver.Solve(start, identification::SolverOptionsOf(options), solution);
+      solver.Solve(start, identification::SolverOptionsOf(options), solution);
       benchmark::DoNotOptimize(solution.sum_of_squares);
     }
   }

@@ -3,55 +3,57 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/nearest_name.h"
 #include "identification/problem/problem.h"
-#include "identification/solve/unprojected_record.h"
+#include "identification/solve/unprojected_residual.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
-namespace {
 
-/// Returns the initial states that a fit found.
-RecordStates StatesOf(const FitResult& fit) {
-  std::vector<models::InitialState> states;
-  states.reserve(fit.records.size());
-  for (const RecordFit& record : fit.records) states.push_back(record.initial_state);
-  return RecordStates(std::move(states));
-}
+/// The problem of a fit, made again from its records.
+struct ProblemOfFit {
+  ProblemOfFit(std::span<const loop::RecordView> records, FitOptions options, const FitResult& fit);
+  ProblemOfFit(const ProblemOfFit&) = delete;
+  ProblemOfFit& operator=(const ProblemOfFit&) = delete;
 
-/// Weighs records whose noise differs as the fit does.
-void WeighAsFit(const FitResult& fit, ScaledRecords& data) {
+  loop::PreparedRecords prepared;
+  ScaledRecords data;
+  std::optional<Problem> problem;
+  std::vector<double> theta;  // of the fit, within the bounds
+};
+
+ProblemOfFit::ProblemOfFit(std::span<const loop::RecordView> records, FitOptions options,
+                           const FitResult& fit) {
+  options.preparation.force_sense = fit.force_sense;
+  prepared = loop::Prepare(records, options.preparation);
+  LeaveOutBeyondLags(options, prepared);
+  data = Scale(prepared, options);
+  AddColumns(options, prepared, /*with_others=*/false, data);
   for (std::size_t r = 0; r < data.records.size(); ++r) {
+    // Records whose noise differs weigh as in the fit.
     const double own = fit.records[r].response_noise;
     if (own == fit.ResponseNoise() || !(own > 0)) continue;
     for (double& weight : data.records[r].root_weight) weight *= fit.ResponseNoise() / own;
   }
+  problem = Problem{&data, options.model, fit.initial_state,
+                    Parameters(data, options, fit.initial_state)};
+  for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
+    const Parameter& parameter = problem->parameters[p];
+    const ParameterEstimate* const estimate = fit.Find(problem->parameters.NameOf(p));
+    theta.push_back(
+        estimate == nullptr || parameter.fixed
+            ? parameter.theta
+            : std::clamp(parameter.ToTheta(estimate->value), parameter.lower, parameter.upper));
+  }
 }
 
-ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& options,
-                         const FitResult& fit) {
-  LeaveOutBeyondLags(options, prepared);
-  ScaledRecords data = Scale(prepared, options);
-  AddColumns(options, prepared, /*with_others=*/false, data);
-  WeighAsFit(fit, data);
-  return data;
-}
-
-loop::PreparedRecords PrepareAsFit(std::span<const loop::RecordView> records,
-                                   const FitOptions& options, const FitResult& fit) {
-  loop::PreparationOptions preparation = options.preparation;
-  preparation.force_sense = fit.force_sense;
-  return loop::Prepare(records, preparation);
-}
-
-}  // namespace
-
-double CeresParameter::ValueAt(double at_theta) const {
-  return positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
+double CeresParameter::Value() const {
+  return positive ? scale * std::exp(theta) : reference + scale * theta;
 }
 
 double CeresParameter::ThetaAt(double value) const {
@@ -59,53 +61,40 @@ double CeresParameter::ThetaAt(double value) const {
 }
 
 struct CeresProblem::State {
-  State(std::span<const loop::RecordView> views, const FitOptions& given, const FitResult& fit,
+  State(std::span<const loop::RecordView> records, const FitOptions& options, const FitResult& fit,
         double residual_unit)
-      : options(given),
-        prepared(PrepareAsFit(views, options, fit)),
-        data(ScaleAsFit(prepared, options, fit)),
-        problem{&data, options.model, StatesOf(fit), Parameters(data, options, StatesOf(fit))},
-        unit(residual_unit / data.response_unit()) {}
+      : of(records, options, fit),
+        residual(std::make_shared<UnprojectedResidual>(*of.problem,
+                                                       residual_unit / of.data.response_unit())) {}
 
-  FitOptions options;
-  loop::PreparedRecords prepared;
-  ScaledRecords data;
-  Problem problem;
-  double unit;  // of residuals [units of the data]
+  ProblemOfFit of;
+  std::shared_ptr<UnprojectedResidual> residual;
   std::vector<CeresParameter> parameters;
-  std::vector<std::vector<std::size_t>> blocks;  // of each record, among the parameters
-  std::vector<std::shared_ptr<UnprojectedRecord>> records;
+  std::vector<std::size_t> blocks;  // among the parameters
 };
 
 CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
                            const FitResult& fit, double residual_unit) {
   RequirePositive("residual unit", residual_unit);
   state_ = std::make_unique<State>(records, options, fit, residual_unit);
-  const Parameters& parameters = state_->problem.parameters;
-  std::vector<std::size_t> place(parameters.size());  // of the problem's among the reported
+  State& state = *state_;
+  const Parameters& parameters = state.of.problem->parameters;
+  const std::span<const std::size_t> blocks = state.residual->blocks();
   for (const std::size_t p : parameters.reported()) {
     const Parameter& parameter = parameters[p];
-    place[p] = state_->parameters.size();
-    CeresParameter& block = state_->parameters.emplace_back();
-    block = {.name = parameters.NameOf(p),
-             .unit = parameters.UnitOf(p, !state_->data.records.front().velocity.empty()),
-             .theta = parameter.theta,
-             .lower = parameter.lower,
-             .upper = parameter.upper,
-             .fixed = parameter.fixed,
-             .positive = parameter.term->positive,
-             .reference = parameter.reference,
-             .scale = parameter.scale};
-    const ParameterEstimate* estimate = fit.Find(block.name);
-    if (estimate != nullptr && !parameter.fixed) {
-      block.theta = std::clamp(block.ThetaAt(estimate->value), block.lower, block.upper);
+    if (std::ranges::find(blocks, p) != blocks.end()) {
+      state.blocks.push_back(state.parameters.size());
     }
-  }
-  for (std::size_t r = 0; r < state_->data.records.size(); ++r) {
-    std::vector<std::size_t>& blocks = state_->blocks.emplace_back();
-    const auto& record = state_->records.emplace_back(
-        std::make_shared<UnprojectedRecord>(state_->problem, r, state_->unit));
-    for (const std::size_t p : record->blocks()) blocks.push_back(place[p]);
+    state.parameters.push_back(
+        {.name = parameters.NameOf(p),
+         .unit = parameters.UnitOf(p, !state.of.data.records.front().velocity.empty()),
+         .theta = state.of.theta[p],
+         .lower = parameter.lower,
+         .upper = parameter.upper,
+         .fixed = parameter.fixed,
+         .positive = parameter.term->positive,
+         .reference = parameter.reference,
+         .scale = parameter.scale});
   }
 }
 
@@ -123,26 +112,17 @@ CeresParameter& CeresProblem::Find(std::string_view name) {
   throw InvalidArgument("parameter " + UnknownAmong(name, names));
 }
 
-std::size_t CeresProblem::records() const { return state_->blocks.size(); }
+std::span<const std::size_t> CeresProblem::blocks() const { return state_->blocks; }
 
-std::span<const std::size_t> CeresProblem::BlocksOf(std::size_t record) const {
-  return state_->blocks.at(record);
-}
-
-std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction(std::size_t record) const {
-  return CostOfRecord(state_->records.at(record));
+std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction() const {
+  return CostOf(state_->residual);
 }
 
 void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
+  std::vector<double*> theta;
+  for (const std::size_t place : blocks()) theta.push_back(&state_->parameters[place].theta);
   // Ceres deletes a loss once, however many blocks share it.
-  ceres::LossFunction* const shared_loss = loss.release();
-  for (std::size_t r = 0; r < records(); ++r) {
-    std::vector<double*> blocks;
-    for (const std::size_t place : BlocksOf(r)) {
-      blocks.push_back(&state_->parameters[place].theta);
-    }
-    AddRecord(state_->records[r], blocks, shared_loss, problem);
-  }
+  AddResidual(state_->residual, theta, loss.release(), problem);
   for (CeresParameter& parameter : state_->parameters) {
     BoundBlock(&parameter.theta, parameter.fixed, parameter.lower, parameter.upper, problem);
   }
@@ -150,38 +130,36 @@ void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFun
 
 struct LogLikelihood::State {
   State(std::span<const loop::RecordView> records, const FitOptions& options, const FitResult& fit)
-      : residuals(records, options, fit, fit.ResponseNoise()) {
-    residuals.AddTo(problem);
-  }
+      : of(records, options, fit), residual(of.problem->size()) {}
 
-  CeresProblem residuals;
-  ceres::Problem problem;
-  double effective_fraction = 1.0;  // of the samples
+  ProblemOfFit of;
+  double per_square = 0.0;  // ln L by a squared residual in units of the data
   std::vector<std::string> names;
-  std::vector<CeresParameter*> parameters;  // of these
+  Response response;
+  std::vector<double> residual;
 };
 
 LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const FitOptions& options,
                              const FitResult& fit) {
   RequirePositive("noise of the fit", fit.ResponseNoise());
   const bool is_forced = fit.response == loop::Channel::kDisplacement;
-  std::size_t counted = 0;
-  for (const RecordFit& record : fit.records) {
-    counted += record.residual.size() - record.left_out;
-    if (options.loss == Loss::kNone && (is_forced || !(record.displacement_noise > 0))) {
-      continue;
-    }
+  const bool is_inexact =
+      !is_forced && std::ranges::any_of(fit.records, [](const RecordFit& record) {
+        return record.displacement_noise > 0;
+      });
+  if (options.loss != Loss::kNone || is_inexact) {
     throw InvalidArgument(
         "a log-likelihood needs samples of equal weight: fit without a robust loss and without "
         "noise of the displacement");
   }
   state_ = std::make_unique<State>(records, options, fit);
-  state_->effective_fraction =
-      std::min(fit.residuals.effective_samples / static_cast<double>(counted), 1.0);
-  for (CeresParameter& parameter : state_->residuals.parameters()) {
-    if (parameter.fixed || !state_->problem.HasParameterBlock(&parameter.theta)) continue;
-    state_->names.push_back(parameter.name);
-    state_->parameters.push_back(&parameter);
+  const Problem& problem = *state_->of.problem;
+  const double effective =
+      std::min(fit.residuals.effective_samples / static_cast<double>(problem.data->counted), 1.0);
+  const double unit = fit.ResponseNoise() / problem.data->response_unit();
+  state_->per_square = -effective / (2 * unit * unit);
+  for (const std::size_t p : problem.parameters.free()) {
+    state_->names.push_back(problem.parameters.NameOf(p));
   }
 }
 
@@ -193,17 +171,24 @@ std::span<const std::string> LogLikelihood::names() const { return state_->names
 
 double LogLikelihood::operator()(std::span<const double> values) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  RequireSameSize("values", values.size(), "free parameters", state_->parameters.size());
+  const Problem& problem = *state_->of.problem;
+  const std::vector<std::size_t>& free = problem.parameters.free();
+  RequireSameSize("values", values.size(), "free parameters", free.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    CeresParameter& parameter = *state_->parameters[i];
-    if (parameter.positive && !(values[i] > 0)) return kNone;
-    const double theta = parameter.ThetaAt(values[i]);
+    const Parameter& parameter = problem.parameters[free[i]];
+    if (parameter.term->positive && !(values[i] > 0)) return kNone;
+    const double theta = parameter.ToTheta(values[i]);
     if (!(theta >= parameter.lower && theta <= parameter.upper)) return kNone;
-    parameter.theta = theta;
+    state_->of.theta[free[i]] = theta;
   }
-  double cost = 0.0;
-  const bool is_defined = state_->problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return is_defined && std::isfinite(cost) ? -state_->effective_fraction * cost : kNone;
+  try {
+    EvaluateResidual(problem, state_->of.theta, state_->response, state_->residual);
+  } catch (const InvalidArgument&) {  // no law
+    return kNone;
+  }
+  double squares = 0.0;
+  for (const double r : state_->residual) squares += r * r;
+  return std::isfinite(squares) ? state_->per_square * squares : kNone;
 }
 
 }  // namespace mindahl::identification

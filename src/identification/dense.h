@@ -13,8 +13,6 @@ using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
 Eigen::MatrixXd Product(const MatrixView& a, const MatrixView& b);
 /// Returns AᵀB.
 Eigen::MatrixXd TransposedProduct(const MatrixView& a, const MatrixView& b);
-/// Returns AAᵀ, symmetric to the last bit.
-Eigen::MatrixXd SquareOf(const MatrixView& a);
 
 /// Solves AX = B with a symmetric A, by LDLᵀ with pivots.
 Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b);
@@ -25,26 +23,12 @@ Eigen::MatrixXd SolveLeastSquares(const MatrixView& a, const MatrixView& b,
                                   Eigen::Index* rank = nullptr);
 /// Returns what the columns of A leave of B: B − A·argmin |B − AX|.
 Eigen::MatrixXd LeftOver(const MatrixView& a, const MatrixView& b);
-/// Returns A⁺ of a matrix whose rank may be lower than its size, by complete orthogonal
-/// decomposition.
-Eigen::MatrixXd PseudoInverse(const MatrixView& a);
 
-/// Returns R of A = QR, of as many rows as A has columns.
-Eigen::MatrixXd UpperTriangle(const MatrixView& a);
-/// Returns R⁻¹ of an upper triangle.
-Eigen::MatrixXd InverseOfTriangle(const MatrixView& triangle);
 struct Eigenpairs {
   Eigen::VectorXd values;   ///< increasing
   Eigen::MatrixXd vectors;  ///< a column each
 };
 /// Returns the eigenvalues and eigenvectors of a symmetric matrix that is not empty.
 Eigenpairs SymmetricEigenpairs(const MatrixView& a);
-
-struct RightSingular {
-  Eigen::VectorXd values;   ///< decreasing
-  Eigen::MatrixXd vectors;  ///< V of A = USVᵀ, all of it
-};
-/// Returns the singular values and right singular vectors of a matrix, by Jacobi's rotations.
-RightSingular RightSingularVectors(const MatrixView& a);
 
 }  // namespace mindahl::identification

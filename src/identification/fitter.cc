@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,9 +13,6 @@
 #include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
-#include "identification/inferred_fit.h"
-#include "identification/intervals.h"
-#include "identification/law_choice.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/requirements.h"
 #include "identification/problem/scaled_records.h"
@@ -26,22 +21,20 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
 namespace {
 
 using loop::RecordView;
-using models::InitialState;
 
 /// The fitted response and residuals as the files have them, of every sample, and their rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const Problem& problem = solved.best.problem;
   const ScaledRecords& data = *problem.data;
   std::vector<double> residuals(problem.size());
-  attempt.buffers.response.Bind(problem);
-  Predict(problem, solved.solution().theta, attempt.buffers.response, residuals);
+  attempt.solver.response.Bind(problem);
+  Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   double squares = 0.0;
   std::size_t k = 0;
@@ -84,7 +77,6 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
                     : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
-    fit.initial_state = solved.best.problem.state.Of(r);
     fit.response_noise =
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
     fit.displacement_noise =
@@ -116,8 +108,7 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
     result.findings = FindInRecords(result.records, attempt.options.thresholds, data.excitation);
     Append(result.findings, FindVaryingLoads(data));
   }
-  const bool any_virgin = problem.state.Any(InitialState::kVirgin);
-  result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;
+  result.initial_state = problem.state;
   result.solver = solution.report;
   result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {
@@ -177,12 +168,11 @@ struct Fitter::State {
   [[nodiscard]] bool MayContinue() const;
 
   FitOptions options;
-  SearchBuffers buffers;
+  Solver solver;
   FitResult result;
 };
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
-  RequireInitialStates(given, records.size());
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation);
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
@@ -193,12 +183,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
   }
   ThinnedRecords thin(data);
-  RequireOneLoad(data);
+  RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
-  RequireNoise(given, data);
 
   const Attempt attempt{
-      given, depth, prepared, data, thin, buffers, without_priors ? &*without_priors : nullptr};
+      given, depth, prepared, data, thin, solver, without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -92,13 +91,6 @@ std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::siz
   return parts;
 }
 
-void HoldInitialStates(const FitResult& fit, FitOptions& options) {
-  options.initial_states.clear();
-  for (const RecordFit& record : fit.records) {
-    options.initial_states.push_back(record.initial_state);
-  }
-}
-
 void StartFrom(const FitResult& fit, FitOptions& options) {
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status != ParameterStatus::kFixed) {
@@ -109,7 +101,7 @@ void StartFrom(const FitResult& fit, FitOptions& options) {
 
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   options.model = fit.model;
-  HoldInitialStates(fit, options);
+  options.initial_state = fit.initial_state;
   options.preparation.force_sense = fit.force_sense;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status == ParameterStatus::kFixed) continue;

@@ -5,7 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "identification/problem/scaled_records.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
@@ -56,9 +59,6 @@ double SumOfSquares(double rms, const ScoredSamples& samples);
 std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles,
                           std::size_t strokes, std::size_t least);
 
-/// Gives the options the initial states that a fit found.
-void HoldInitialStates(const FitResult& fit, FitOptions& options);
-
 /// Gives the options the values that a fit found, for a search to begin with.
 void StartFrom(const FitResult& fit, FitOptions& options);
 
@@ -73,5 +73,16 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 std::optional<double> PredictParts(std::span<const loop::RecordView> records, FitOptions options,
                                    std::size_t free, const ScoredSamples& samples,
                                    std::span<const Part> parts, std::size_t folds);
+
+/// Masing's law against Dahl's own, whichever of them was fitted, by AICc on the effective samples
+/// of the one that leaves less. The other is fitted too where the record may distinguish them, from
+/// where its loop at the widest amplitude would be the same; of one amplitude it follows in closed
+/// form.
+/// @param data  the records, scaled
+/// @param fit   of them, from Depth::kErrors on
+/// @returns empty where the laws are one (α = 0), and where they are not compared
+std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
+                                     const FitOptions& options, const ScaledRecords& data,
+                                     const FitResult& fit);
 
 }  // namespace mindahl::identification

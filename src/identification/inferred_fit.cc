@@ -1,11 +1,7 @@
-#include "identification/inferred_fit.h"
-
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,13 +15,9 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/rig_alternative.h"
-#include "identification/intervals.h"
-#include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
-#include "identification/solve/search.h"
-#include "mindahl/loop/preparation.h"
+#include "identification/solved_fit.h"
 
 namespace mindahl::identification {
 namespace {
@@ -65,7 +57,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
 /// Adequacy, and intervals that cover what its causes would change.
 /// @param is_limited  did the search end at a limit of its own?
 void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& displacement,
-                        bool is_limited, const FitOptions& options, SearchBuffers& buffers,
+                        bool is_limited, const FitOptions& options, Solver& solver,
                         FitResult& result) {
   const auto& [problem, solution, noise, estimates] = fitted;
   const Thresholds& thresholds = options.thresholds;
@@ -74,7 +66,7 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
     result.adequacy = GradeUse(thresholds, result);
     return;
   }
-  AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, buffers.response);
+  AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, solver.response);
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
@@ -101,7 +93,7 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
 /// Includes Mindlin's contact in a compliant rig, where the record does not distinguish it.
 void ConsiderRig(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
   const auto rig =
-      TryRig(fitted, attempt.thin, result.parameters[kShape], attempt.options, attempt.buffers);
+      TryRig(fitted, attempt.thin, result.parameters[kShape], attempt.options, attempt.solver);
   if (!rig) return;
   result.parameters = IncludeRig(*rig, attempt.options.thresholds, std::move(result.parameters));
   result.findings.push_back(
@@ -117,30 +109,30 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const Solution& solution = solved.solution();
   Noise& noise = solved.noise;
   const Thresholds& thresholds = options.thresholds;
-  SearchBuffers& buffers = attempt.buffers;
+  Solver& solver = attempt.solver;
   const bool is_judged = result.depth >= Depth::kIntervals;
   const bool is_tested = result.depth >= Depth::kFull;
-  MeasureNoise(attempt, problem, solution, {solved.at.residual.data(), problem.size()}, noise,
-               result);
+  Linearization at =
+      LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
+  MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const DisplacementEffect displacement =
       EffectOf(solved.displacement_errors, problem, solution, noise);
-  const Estimates estimates(problem, solution, noise, displacement, thresholds,
-                            std::move(solved.at));
+  const Estimates estimates(problem, solution, noise, displacement, thresholds, std::move(at));
   const FittedProblem fitted{problem, solution, noise, estimates};
   FillErrors(problem, estimates, result);
-  result.parameters = WithProfiles(fitted, result, options, buffers);
+  result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution);
   Append(result.findings, limit);
   if (is_judged) {
-    ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
+    ConsiderDepartures(fitted, displacement, limit.has_value(), options, solver, result);
   }
-  result.parameters[kStiffness] = CoverSlipFactor(
-      problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
+  result.parameters[kStiffness] =
+      CoverSlipFactor(problem, solution, std::move(result.parameters[kStiffness]), solver.response);
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
   if (is_judged) {
-    if (!options.initial_state && options.initial_states.empty()) {
+    if (!options.initial_state) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
     Append(result.findings, FindFewPlaces(problem, thresholds));

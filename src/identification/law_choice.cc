@@ -1,4 +1,3 @@
-#include "identification/law_choice.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,6 @@
 #include "identification/held_out.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
-#include "identification/intervals.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/steady_loop.h"
@@ -94,18 +92,18 @@ bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
   double narrowest = std::numeric_limits<double>::infinity();
   double longest_end = 0.0;
   for (const ScaledRecord& record : data.records) {
-    const auto at = [&](std::size_t reversal) {
-      return record.excitation()[record.reversals[reversal]];
-    };
     if (record.reversals.empty()) return false;
-    for (std::size_t j = 1; j < record.reversals.size(); ++j) {
-      const double swing = std::abs(at(j) - at(j - 1));
-      widest = std::max(widest, swing);
-      narrowest = std::min(narrowest, swing);
+    const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+      const double swing =
+          std::abs(record.excitation()[strokes[s].end] - record.excitation()[strokes[s].begin]);
+      if (s == 0 || s + 1 == strokes.size()) {
+        longest_end = std::max(longest_end, swing);
+      } else {
+        widest = std::max(widest, swing);
+        narrowest = std::min(narrowest, swing);
+      }
     }
-    longest_end =
-        std::max({longest_end, std::abs(at(0) - record.excitation().front()),
-                  std::abs(record.excitation().back() - at(record.reversals.size() - 1))});
   }
   const double wider = (1 + thresholds.one_amplitude) * narrowest;
   return widest <= wider && longest_end <= wider;
@@ -125,16 +123,13 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                          : models::MasingEquivalent(fit.law, amplitude);
   FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
-  const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
-    return record.initial_state == InitialState::kSteady;
-  });
-  const bool is_one_curve = is_steady && HasOneAmplitude(data, options.thresholds);
+  const bool is_one_curve =
+      fit.initial_state == InitialState::kSteady && HasOneAmplitude(data, options.thresholds);
   if (is_one_curve) {
-    const bool is_open = !options.initial_state && options.initial_states.empty();
     const auto starts_inside = [&](const ScaledRecord& record) {
       return StartsInside(record, options.thresholds);
     };
-    if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
+    if (options.initial_state || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_state = InitialState::kVirgin;
   }
   FitResult other;

@@ -222,50 +222,31 @@ std::string Describe(const Case& drawn, std::size_t index, double noise, const T
       errors.of_contact[0], errors.of_contact[1], errors.of_contact[2], errors.standardized);
 }
 
-/// Loops slide beyond it, and their intervals are the parabola's.
-bool Slides(const ValidationRow& row) { return row.lambda > 1; }
-
-/// Judges the coverage of every parameter and law, row by row and over all rows with noise.
+/// Judges the coverage of every parameter and law, over all rows with noise.
 void JudgeCoverage(ValidationReport& report) {
-  const auto has_noise = [](const ValidationRow& row) { return row.noise > 0; };
-  const auto noisy = static_cast<std::size_t>(std::ranges::count_if(report.rows, has_noise));
-  if (noisy == 0) return;
-  constexpr std::size_t kLaws = 2;
-  constexpr std::size_t kSides = 2;
-  const double least =
-      kCoverageFalseAlarm /
-      static_cast<double>(kLaws * kSides * kValidatedParameters.size() * (noisy + 1));
+  constexpr std::size_t kTests = 2 * 2 * kValidatedParameters.size();  // of laws and sides
   for (const bool by_dahl : {false, true}) {
     for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
       CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};
-      /// Returns the chance of the counts, and says which of them is too unlikely.
-      const auto judge = [&](const IntervalCount& all, const IntervalCount& sliding,
-                             std::string_view where, std::string_view where_sliding) {
-        const double few = all.ChanceOfSoFew();
-        const double many = sliding.ChanceOfSoMany();
-        const IntervalCount& count = few <= many ? all : sliding;
-        const double chance = std::min(few, many);
-        if (chance >= least) return chance;
-        report.failed_coverages.push_back(fmt::format(
-            "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
-            "promised (p = {:.1e})",
-            verdict.parameter, by_dahl ? " by Dahl's own law" : "",
-            few <= many ? where : where_sliding, count.covering, count.intervals,
-            100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, chance));
-        return chance;
-      };
       for (const ValidationRow& row : by_dahl ? report.dahl_rows : report.rows) {
-        if (!has_noise(row)) continue;
-        const IntervalCount& count = row.intervals[k];
-        const IntervalCount sliding = Slides(row) ? count : IntervalCount();
-        verdict.all.Add(count);
-        verdict.sliding.Add(sliding);
-        const std::string where = fmt::format(" at lambda {:g}, noise {:g}", row.lambda, row.noise);
-        judge(count, sliding, where, where);
+        if (!(row.noise > 0)) continue;
+        verdict.all.Add(row.intervals[k]);
+        if (row.lambda > 1) verdict.sliding.Add(row.intervals[k]);
       }
-      verdict.chance = judge(verdict.all, verdict.sliding, "", " at lambda > 1");
-      verdict.passed = verdict.chance >= least;
+      if (verdict.all.intervals == 0) continue;
+      const double few = verdict.all.ChanceOfSoFew();
+      const double many = verdict.sliding.ChanceOfSoMany();
+      verdict.chance = std::min(few, many);
+      verdict.passed = verdict.chance >= kCoverageFalseAlarm / kTests;
       report.coverage.push_back(verdict);
+      if (verdict.passed) continue;
+      const IntervalCount& count = few <= many ? verdict.all : verdict.sliding;
+      report.failed_coverages.push_back(fmt::format(
+          "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
+          "promised (p = {:.1e})",
+          verdict.parameter, by_dahl ? " by Dahl's own law" : "",
+          few <= many ? "" : " at lambda > 1", count.covering, count.intervals,
+          100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, verdict.chance));
     }
   }
 }

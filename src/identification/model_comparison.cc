@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "identification/held_out.h"
 #include "identification/inference/noise.h"
-#include "identification/inference/reweighting.h"
-#include "identification/intervals.h"
 #include "identification/problem/parameters.h"
-#include "identification/solve/search.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -41,37 +37,6 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
   options.model = score.model;
   if (score.rig) options.terms.emplace_back("rig_stiffness");
   return options;
-}
-
-double RobustScaleOf(const FitResult& fit, const ScoredSamples& samples) {
-  std::vector<double> residuals;
-  residuals.reserve(samples.count);
-  for (std::size_t r = 0; r < samples.mask.size(); ++r) {
-    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
-      if (samples.mask[r][i] != 0) residuals.push_back(fit.records[r].residual[i]);
-    }
-  }
-  return RobustScale(std::move(residuals));
-}
-
-/// Leaves out the samples that are far off for the candidate with the least robust scale.
-void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
-  const FitResult* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const FitResult& fit : fits) {
-    const double scale = IsFitted(fit) ? RobustScaleOf(fit, samples) : least;
-    if (!(scale < least)) continue;
-    least = scale;
-    best = &fit;
-  }
-  const double limit = kTukeyConstant * std::max(least, samples.rounding);
-  for (std::size_t r = 0; best != nullptr && r < samples.mask.size(); ++r) {
-    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
-      if (samples.mask[r][i] == 0 || std::abs(best->records[r].residual[i]) <= limit) continue;
-      samples.mask[r][i] = 0;
-      --samples.count;
-    }
-  }
 }
 
 double Rms(const FitResult& fit, const ScoredSamples& samples) {
@@ -127,8 +92,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
   }
   const auto fitted = std::ranges::find_if(fits, IsFitted);
   if (fitted == fits.end()) return scores;
-  ScoredSamples samples = CountedSamples(*fitted, records);
-  if (options.loss != Loss::kNone) LeaveOutOutliers(samples, fits);
+  const ScoredSamples samples = CountedSamples(*fitted, records);
   const std::size_t best = ScoreByCriterion(fits, samples, scores);
   const std::vector<Part> cycles =
       PartsOf(fits[best], samples.mask, options.preparation.skip_cycles, 2, 2);

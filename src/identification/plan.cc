@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "identification/inference/estimates.h"
@@ -187,20 +186,20 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
       SolutionAt(expected, models::AtLoad(expected.law, mean_load, expected.load_exponent),
                  problem.parameters);
   const DisplacementErrors errors(prepared, data);
-  Response response;
+  Solver solver;
   Noise noise;
   if (errors.any()) {
-    Solver solver;
     const SolverOptions stay{.max_iterations = 1};
     const std::vector<double> theta = solution.theta;
-    FitWithWeights(problem, data, options, errors, solver, response, stay, solution, noise);
+    FitWithWeights(problem, data, options, errors, solver, stay, solution, noise);
     solution.theta = theta;
   } else {
     noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
   }
   noise.autocorrelation = FirstOrder(expected.autocorrelation);
-  const Estimates estimates(problem, solution, noise, EffectOf(errors, problem, solution, noise),
-                            options.thresholds, response);
+  const Estimates estimates(
+      problem, solution, noise, EffectOf(errors, problem, solution, noise), options.thresholds,
+      LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
   for (const loop::Record& record : records) {

@@ -17,9 +17,8 @@ namespace {
 
 using models::InitialState;
 
-/// Returns the initial states that the options name; nothing where both have to be tried.
-std::optional<RecordStates> GivenState(const Attempt& attempt) {
-  if (!attempt.options.initial_states.empty()) return RecordStates(attempt.options.initial_states);
+/// Returns the initial state that the options name; nothing where both have to be tried.
+std::optional<InitialState> GivenState(const Attempt& attempt) {
   if (attempt.options.initial_state) return attempt.options.initial_state;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
@@ -31,79 +30,24 @@ std::optional<RecordStates> GivenState(const Attempt& attempt) {
   return std::nullopt;
 }
 
-/// Returns the states of a candidate's records with one of them turned to the other.
-RecordStates Flipped(const Problem& problem, std::size_t record) {
-  std::vector<InitialState> states;
-  states.reserve(problem.data->records.size());
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    states.push_back(problem.state.Of(r));
-  }
-  states[record] =
-      states[record] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
-  return RecordStates(std::move(states));
-}
-
-/// Returns θ of a solution for a problem that holds other origins; one that it has free starts
-/// unloaded.
-std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
-                             const Solution& solution) {
-  std::vector<double> theta = solution.theta;
-  for (std::size_t p = 0; p < theta.size(); ++p) {
-    const Parameter& parameter = problem.parameters[p];
-    if (parameter.fixed) {
-      theta[p] = parameter.theta;
-    } else if (solved.parameters[p].fixed) {
-      theta[p] = problem.data->records[parameter.record].excitation().front();
-    }
-  }
-  return theta;
-}
-
-/// Turns the initial state of one record after the other, as long as one of them is clearly the
-/// better for it; `criterion` is Akaike's of a candidate.
-/// @returns nothing where all records stay as they are
-template <typename Criterion>
-std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate& pure,
-                                        const Criterion& criterion) {
-  std::optional<Candidate> best;
-  constexpr int kMostPasses = 3;
-  bool any = true;
-  for (int pass = 0; pass < kMostPasses && any; ++pass) {
-    any = false;
-    for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
-      const Candidate& from = best ? *best : pure;
-      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r));
-      const std::vector<double> start = ThetaFor(trial.problem, from.problem, from.solution);
-      attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
-      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
-      const double gain = criterion(from) - criterion(trial);
-      if (!(gain >= attempt.options.thresholds.undecided)) continue;
-      best.emplace(std::move(trial));
-      any = true;
-    }
-  }
-  return best;
-}
-
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
-/// several records also some as virgin and some as steady, where all as one does not fit.
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers.
 Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  const auto make = [&](const RecordStates& state) {
+  const auto make = [&](InitialState state) {
     Candidate candidate(attempt.data, options, state);
-    RequireEnoughSamples(candidate.problem, attempt.prepared, options);
+    RequireEnoughSamples(candidate.problem, attempt.prepared);
     return candidate;
   };
   const auto find_starts = [&](Candidate& candidate,
                                double look = std::numeric_limits<double>::infinity()) {
-    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers);
+    return FindStartsOf(candidate, attempt.thin, options, look, attempt.solver);
   };
   const auto descend = [&](Candidate& candidate) {
-    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers);
-    Descend(candidate, options, attempt.buffers);
-    SearchBesideMinimum(candidate, options, attempt.buffers);
+    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.solver);
+    Descend(candidate, options, attempt.solver);
+    SearchBesideMinimum(candidate, options, attempt.solver);
   };
-  if (const std::optional<RecordStates> given = GivenState(attempt)) {
+  if (const std::optional<InitialState> given = GivenState(attempt)) {
     Candidate candidate = make(*given);
     find_starts(candidate);
     descend(candidate);
@@ -116,7 +60,7 @@ Candidate FitBestState(const Attempt& attempt) {
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
   const double clearly_worse = options.thresholds.hopeless_past;
-  const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
+  const bool is_one = attempt.data.records.size() == 1;
   if (is_one && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
     if (virgin.solution.converged) return virgin;
@@ -128,23 +72,15 @@ Candidate FitBestState(const Attempt& attempt) {
   descend(steady);
   const Candidate& better =
       virgin.solution.sum_of_squares < steady.solution.sum_of_squares ? virgin : steady;
-  bool is_virgin = true;
-  std::optional<Candidate> mixed;
-  if (std::isfinite(better.solution.sum_of_squares)) {  // else neither was even started
-    const Evidence evidence(
-        attempt.data.counted,
-        EffectiveSamples(better.problem, better.solution.theta, attempt.buffers.response));
-    const auto criterion = [&](const Candidate& candidate) {
-      return evidence.Aicc(candidate.solution.sum_of_squares,
-                           candidate.problem.parameters.free().size());
-    };
-    is_virgin = criterion(virgin) < criterion(steady);
-    if (!is_one) {
-      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion);
-    }
-  }
-  if (mixed) return std::move(*mixed);
-  return std::move(is_virgin ? virgin : steady);
+  if (!std::isfinite(better.solution.sum_of_squares)) return virgin;  // neither was even started
+  const Evidence evidence(
+      attempt.data.counted,
+      EffectiveSamples(better.problem, better.solution.theta, attempt.solver.response));
+  const auto criterion = [&](const Candidate& candidate) {
+    return evidence.Aicc(candidate.solution.sum_of_squares,
+                         candidate.problem.parameters.free().size());
+  };
+  return std::move(criterion(virgin) < criterion(steady) ? virgin : steady);
 }
 
 /// True if the noise of the records is not one, where it is not known.
@@ -156,7 +92,7 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
     return false;
   }
   std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, candidate.solution.theta, attempt.buffers.response, residual);
+  EvaluateResidual(problem, candidate.solution.theta, attempt.solver.response, residual);
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
 }
 
@@ -198,13 +134,13 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
   TurningPointFit fit{std::make_unique<ScaledRecords>(PutInTurningPoints(data, overshoot)), best};
   Problem turned = problem;
   turned.data = fit.records.get();
-  SearchBuffers& buffers = attempt.buffers;
-  buffers.solver.Bind(turned, buffers.response);
-  buffers.solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
+  Solver& solver = attempt.solver;
+  solver.Bind(turned);
+  solver.Solve(best.theta, SolverOptionsOf(attempt.options), fit.solution);
   if (!fit.solution.converged) return std::nullopt;
   if (fit.solution.sum_of_squares <= best.sum_of_squares) return fit;
   // If both are nearly as likely, the fit that does not take a sample for a turn is chosen.
-  const Evidence evidence(data.counted, EffectiveSamples(problem, best.theta, buffers.response));
+  const Evidence evidence(data.counted, EffectiveSamples(problem, best.theta, solver.response));
   const double loss = evidence.LikelihoodRatio(fit.solution.sum_of_squares, best.sum_of_squares);
   if (loss > thresholds.indistinguishable) return std::nullopt;
   return fit;
@@ -214,7 +150,7 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
 
 SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  SearchBuffers& buffers = attempt.buffers;
+  Solver& solver = attempt.solver;
   ScaledRecords& data = attempt.data;
   SolvedFit solved(FitBestState(attempt), attempt);
   Candidate& best = solved.best;
@@ -224,9 +160,9 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const bool is_weighted = !is_plain || by_record;
   if (std::isfinite(best.solution.sum_of_squares)) {
     const auto fit_with_weights = [&](ScaledRecords& weighted) {
-      solved.is_settled = FitWithWeights(
-          best.problem, weighted, options, solved.displacement_errors, buffers.solver,
-          buffers.response, SolverOptionsOf(options), best.solution, solved.noise, by_record);
+      solved.is_settled =
+          FitWithWeights(best.problem, weighted, options, solved.displacement_errors, solver,
+                         SolverOptionsOf(options), best.solution, solved.noise, by_record);
     };
     if (is_weighted) {
       fit_with_weights(data);
@@ -235,7 +171,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
       if (options.loss != Loss::kNone || by_record) {
         ThinnedRecords weighted_thin(data);
         const Attempt weighted{options, attempt.depth, attempt.prepared,
-                               data,    weighted_thin, buffers};
+                               data,    weighted_thin, solver};
         Candidate again = FitBestState(weighted);
         if (std::isfinite(again.solution.sum_of_squares)) {
           best = std::move(again);
@@ -255,10 +191,6 @@ SolvedFit SolveFit(const Attempt& attempt) {
       solved.noise = PlainNoise(*best.problem.data, options, best.solution.sum_of_squares,
                                 best.problem.parameters.free().size());
       solved.noise.of_records = std::move(of_records);
-    }
-    if (attempt.depth >= Depth::kErrors) {
-      solved.at = LinearizeAt(best.problem, best.solution.theta, buffers.response,
-                              best.problem.parameters.free());
     }
   }
   return solved;

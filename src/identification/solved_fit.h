@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
 #include "identification/solve/turning_points.h"
+#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
@@ -23,7 +26,7 @@ struct Attempt {
   const loop::PreparedRecords& prepared;
   ScaledRecords& data;
   ThinnedRecords& thin;
-  SearchBuffers& buffers;
+  Solver& solver;
   const FitResult* without_priors = nullptr;  ///< null where there is none
 };
 
@@ -38,16 +41,27 @@ struct SolvedFit {
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
   /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
-  Linearization at = {};  ///< linearization of `best` in its free parameters; from Depth::kErrors
 
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
-/// several records also some as virgin and some as steady, where all as one does not fit. Samples
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers. Samples
 /// are weighted where the displacement is inexact, the loss is robust or records differ in their
 /// noise, and turning points put in where the record is sampled so coarsely that it misses them.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
 SolvedFit SolveFit(const Attempt& attempt);
+
+/// Adds to what a solution says by itself its noise, errors, intervals and residuals and, by the
+/// depth, adequacy, profiles and tests: each depth does what the one before does, and more.
+/// @param result  values, residuals and what the records show without a model, as assembled
+FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
+
+inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
+  if (finding) findings.push_back(std::move(*finding));
+}
+
+inline void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
+  std::ranges::move(more, std::back_inserter(findings));
+}
 
 }  // namespace mindahl::identification

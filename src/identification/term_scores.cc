@@ -24,32 +24,11 @@ constexpr std::array kTriedExponents = {0.25, 0.5, 1.0};
 /// Fraction of the distance to a bound beyond which no search begins.
 constexpr double kOfBound = 0.9;
 
-bool IsExponent(const Parameter& parameter) { return parameter.term->name.ends_with("_exponent"); }
-
 /// Returns the θ at which a term has no effect; for an exponent that of a linear force.
 double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   const Parameter& parameter = parameters[p];
-  if (p == kRig) return parameter.upper;
-  if (IsExponent(parameter)) return parameter.upper;
+  if (p == kRig || parameter.is_exponent()) return parameter.upper;
   return parameter.term->positive ? parameter.theta : parameter.ToTheta(0.0);
-}
-
-/// Prepares the records, less the samples that do not count under one of the terms.
-loop::PreparedRecords PreparedFor(std::span<const loop::RecordView> records,
-                                  const FitOptions& options) {
-  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation);
-  LeaveOutBeyondLags(options, prepared);
-  return prepared;
-}
-
-FitOptions WithAll(FitOptions options, std::span<const TermChoice> choices) {
-  for (const TermChoice& choice : choices) {
-    for (const std::string& term : choice.terms) {
-      if (!HasTerm(options, term)) options.terms.push_back(term);
-    }
-    if (!choice.covariate.empty()) options.covariates.push_back(choice.covariate);
-  }
-  return options;
 }
 
 /// Solves the normal equations of some of the columns of unit norm, the residuals' products last.
@@ -82,14 +61,18 @@ FitOptions TermChoice::AddedTo(FitOptions options) const {
 }
 
 TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
-                       std::span<const TermChoice> choices)
-    : TermScores(records, options, WithAll(options, choices)) {}
-
-TermScores::TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
-                       const FitOptions& with_all)
-    : covariates_(with_all.covariates),
-      prepared_(PreparedFor(records, with_all)),
-      data_(Scale(prepared_, options)) {
+                       std::span<const TermChoice> choices) {
+  FitOptions with_all = options;
+  for (const TermChoice& choice : choices) {
+    for (const std::string& term : choice.terms) {
+      if (!HasTerm(with_all, term)) with_all.terms.push_back(term);
+    }
+    if (!choice.covariate.empty()) with_all.covariates.push_back(choice.covariate);
+  }
+  covariates_ = with_all.covariates;
+  prepared_ = loop::Prepare(records, with_all.preparation);
+  LeaveOutBeyondLags(with_all, prepared_);
+  data_ = Scale(prepared_, options);
   AddColumns(with_all, prepared_, /*with_others=*/false, data_);
 }
 
@@ -139,8 +122,8 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
     if (free_.contains(parameters.NameOf(p))) continue;
     if (parameter.term->of_column && parameter.column_name != choice.covariate) continue;
     added.push_back(p);
-    shapes_new = shapes_new || !IsExponent(parameter);
-    if (IsExponent(parameter)) exponent = p;
+    shapes_new = shapes_new || !parameter.is_exponent();
+    if (parameter.is_exponent()) exponent = p;
   }
   const bool is_tried = exponent && shapes_new;
   double least = std::numeric_limits<double>::infinity();
@@ -297,14 +280,14 @@ std::optional<double> TermScores::TestEffects(const std::vector<Eigen::Index>& b
 }
 
 /// Writes the values of a choice's parameters after a step, well inside their bounds.
-void TermScores::PutValues(std::size_t choice, const Step& step,
+void TermScores::PutValues(std::size_t choice, const Eigen::VectorXd& step,
                            std::map<std::string, double>& to) const {
+  Eigen::Index next = std::ssize(of_fit_);
   for (const Added& added : choices_[choice]) {
     const Parameter& parameter = added.parameter;
     double theta = added.theta;
     if (added.place >= 0) {
-      const auto at = std::ranges::find(step.places, added.place) - step.places.begin();
-      const double moved = step.values[at] / norms_[added.place];
+      const double moved = step[next++] / norms_[added.place];
       // The linear step of a rig is one of its compliance, which starts at zero.
       theta +=
           parameter.term->id == TermId::kRigStiffness ? -std::log(std::max(-moved, 1.0)) : moved;
@@ -322,23 +305,23 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
     if (one.place >= 0) added.push_back(one.place);
   }
   if (added.empty()) return std::nullopt;
-  Step step{.places = Joined(of_fit_, added), .values = {}};
-  step.values = StepBy(whole_, step.places);
+  const std::vector<Eigen::Index> places = Joined(of_fit_, added);
+  const Eigen::VectorXd step = StepBy(whole_, places);
   TermScore score;
   PutValues(choice, step, score.values);
   for (const char* const name : {"sigma", "alpha", "slip_force"}) {
     const auto place = std::ranges::find(names_, name) - names_.begin();
-    if (place < std::ssize(names_)) score.law.emplace(name, step.values[place] / norms_[place]);
+    if (place < std::ssize(names_)) score.law.emplace(name, step[place] / norms_[place]);
   }
   const double rounding = kRoundingRms * kRoundingRms;  // of a residual's square
   const double floor_of_all = rounding * static_cast<double>(data_.counted);
   const double without = squares_of_fit_ + floor_of_all;
-  const double with = SquaresAfter(whole_, step.places, step.values) + floor_of_all;
+  const double with = SquaresAfter(whole_, places, step) + floor_of_all;
   score.rms = data_.force * std::sqrt(with / static_cast<double>(data_.counted));
   if (of_part_.empty()) {
     score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
   } else {
-    const std::vector<double> now = Predict(step.places);
+    const std::vector<double> now = Predict(places);
     double samples = 0.0;
     double sum = 0.0;
     for (std::size_t c = 0; c < predicted_by_fit_.size(); ++c) {

@@ -72,14 +72,6 @@ class TermScores {
     double theta = 0.0;      // at which the derivatives are
     Eigen::Index place = 0;  // among the columns of all; negative where it has no effect
   };
-  /// A step by some of the columns.
-  struct Step {
-    std::vector<Eigen::Index> places;
-    Eigen::VectorXd values;
-  };
-
-  TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
-             const FitOptions& with_all);
   [[nodiscard]] Problem ProblemOf(const FitOptions& options) const;
   [[nodiscard]] std::vector<double> ThetaOf(const Problem& problem) const;
   [[nodiscard]] std::vector<Added> AddColumnsOf(const TermChoice& choice, const FitOptions& options,
@@ -88,7 +80,8 @@ class TermScores {
   [[nodiscard]] std::vector<double> Predict(const std::vector<Eigen::Index>& places) const;
   [[nodiscard]] std::optional<double> TestEffects(const std::vector<Eigen::Index>& before,
                                                   const std::vector<Eigen::Index>& added) const;
-  void PutValues(std::size_t choice, const Step& step, std::map<std::string, double>& to) const;
+  void PutValues(std::size_t choice, const Eigen::VectorXd& step,
+                 std::map<std::string, double>& to) const;
 
   std::vector<std::string> covariates_;
   loop::PreparedRecords prepared_;

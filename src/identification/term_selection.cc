@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/extremes.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/intervals.h"
-#include "identification/judge/judge.h"
+#include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
@@ -25,6 +22,17 @@ namespace mindahl::identification {
 using loop::RecordView;
 
 namespace {
+
+/// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes of
+/// both directions.
+constexpr std::size_t kFoldsOfParts = 5;
+/// Largest probability with which the gain of a term that is added is chance, over all candidates
+/// of a round (Bonferroni).
+constexpr double kChance = 0.05;
+/// Least fraction by which the error of prediction falls with a term that is added.
+constexpr double kWorthwhileGain = 0.03;
+/// Fits in all, nearly all of them at Depth::kEstimate.
+constexpr std::size_t kMostFits = 15;
 
 /// Central differences; enough to recognise a measured velocity.
 std::vector<double> RoughVelocity(const RecordView& record) {
@@ -71,10 +79,6 @@ bool IsConstant(std::span<const double> values) {
 struct TermCandidate {
   ConsideredTerm considered;
   TermChoice choice;
-
-  [[nodiscard]] bool Has(std::string_view term) const {
-    return std::ranges::find(choice.terms, term) != choice.terms.end();
-  }
 };
 
 TermCandidate CandidateOf(const TermGroup& group) {
@@ -207,9 +211,8 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
 /// Adds terms to a law, one after the other.
 class Selection {
  public:
-  Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
-            TermSelection& result)
-      : records_(records), selection_(options), result_(result) {}
+  Selection(std::span<const RecordView> records, Depth depth, TermSelection& result)
+      : records_(records), depth_(depth), result_(result) {}
 
   void Run(const FitOptions& options);
   bool RunNamed(FitOptions options, std::span<const std::string> names);
@@ -235,10 +238,8 @@ class Selection {
   std::vector<Gain> Score();
   [[nodiscard]] bool IsRefused(const Gain& gain);
   [[nodiscard]] const Gain& Simplest(std::span<const Gain> gains) const;
-  Model FitWith(const TermChoice& choice, const std::map<std::string, double>& starts);
-  Model FitAnew(const TermChoice& choice);
+  Model FitWith(const TermChoice& choice, const std::map<std::string, double>* starts);
   FitResult FitTo(const FitOptions& options, Depth depth);
-  Model Fitted(FitOptions with, FitOptions options);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(std::size_t candidate, Model model);
@@ -249,8 +250,9 @@ class Selection {
 
   static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
   std::span<const RecordView> records_;
-  const TermSelectionOptions& selection_;
+  Depth depth_;  // of the fit that is returned
   TermSelection& result_;
+  std::size_t fits_ = 0;  // that were made
   std::vector<TermCandidate> candidates_;
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
@@ -297,7 +299,8 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
         counts_alike && std::ranges::equal(held_out_[r], law.records[r].counts, {}, {},
                                            [](unsigned char counts) { return counts == 0; });
   }
-  if (!counts_alike) base_ = FitWith({}, {});
+  const std::map<std::string, double> none;
+  if (!counts_alike) base_ = FitWith({}, &none);
   if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
   // Into cycles where there are four, else into strokes; several cycles a part where there are
   // many.
@@ -308,7 +311,6 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
   for (const RecordFit& record : base_.fit.records) cycles += record.reversals.size() / 2;
   parts_ = PartsOf(base_.fit, samples.mask, 0, 2 * (cycles / kMostParts + 1), 2);
   if (parts_.size() < kEnoughCycles) parts_ = PartsOf(base_.fit, samples.mask, 0, 1, 4);
-  result_.held_out_parts = parts_.size();
   return true;
 }
 
@@ -320,7 +322,7 @@ std::vector<Selection::Gain> Selection::Score() {
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
     choices.push_back(candidate.considered.added ? TermChoice() : candidate.choice);
   }
-  std::size_t folds = std::min(selection_.folds, parts_.size());
+  std::size_t folds = std::min(kFoldsOfParts, parts_.size());
   if (folds % 2 == 0 && folds > 2) --folds;
   scores_->StepFrom(base_.fit, base_.options, choices, parts_, folds);
   std::vector<Gain> gains;
@@ -331,8 +333,6 @@ std::vector<Selection::Gain> Selection::Score() {
     if (!stays) considered.obstacle = "";
     std::optional<TermScore> score = scores_->Of(c);
     considered.gain = score ? score->gain : 0.0;
-    considered.p_value = score ? score->p_value : 1.0;
-    considered.is_predicted = !parts_.empty();
     if (score) gains.push_back({c, std::move(*score)});
   }
   std::ranges::stable_sort(gains, std::greater(), [](const Gain& one) { return one.score.gain; });
@@ -360,9 +360,10 @@ const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
   const Gain* best = &most;
   for (const Gain& one : gains) {
     const TermChoice& choice = candidates_[one.candidate].choice;
+    const std::vector<std::string>& all = candidates_[most.candidate].choice.terms;
     const bool is_part =
         choice.covariate.empty() && std::ranges::all_of(choice.terms, [&](const std::string& term) {
-          return candidates_[most.candidate].Has(term);
+          return std::ranges::find(all, term) != all.end();
         });
     const bool is_smaller = one.score.values.size() < best->score.values.size();
     if (is_part && is_smaller && one.score.gain >= kOfGain * most.score.gain) best = &one;
@@ -370,44 +371,34 @@ const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
   return *best;
 }
 
-/// Fits the present model with some more terms, from its solution.
+/// Fits the present model with some more terms.
+/// @param starts  of these, beside its solution; null: from starts of its own
 Selection::Model Selection::FitWith(const TermChoice& choice,
-                                    const std::map<std::string, double>& starts) {
-  const FitOptions with = choice.AddedTo(base_.options);
-  FitOptions options = with;
-  HoldInitialStates(base_.fit, options);
-  StartFrom(base_.fit, options);
-  for (const auto& [name, value] : starts) options.start[name] = value;
-  return Fitted(with, options);
-}
-
-/// Fits it from starts of its own.
-Selection::Model Selection::FitAnew(const TermChoice& choice) {
-  const FitOptions with = choice.AddedTo(base_.options);
-  return Fitted(with, with);
+                                    const std::map<std::string, double>* starts) {
+  constexpr int kEnoughIterations = 60;  // what needs more is nearly confounded with the rest
+  Model model{.options = choice.AddedTo(base_.options), .fit = {}};
+  FitOptions options = model.options;
+  if (starts != nullptr) {
+    options.initial_state = base_.fit.initial_state;
+    StartFrom(base_.fit, options);
+    for (const auto& [name, value] : *starts) options.start[name] = value;
+  }
+  options.preparation.force_sense = base_.fit.force_sense;
+  options.preparation.held_out = held_out_;
+  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
+  model.fit = FitTo(options, Depth::kEstimate);
+  return model;
 }
 
 /// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
 /// loop.
 FitResult Selection::FitTo(const FitOptions& options, Depth depth) {
   try {
-    ++result_.estimates;
+    ++fits_;
     return Fitter(options).Fit(records_, depth);
   } catch (const InvalidArgument&) {
     return {};
   }
-}
-
-/// @param with     as the user gives them
-/// @param options  of the search
-Selection::Model Selection::Fitted(FitOptions with, FitOptions options) {
-  constexpr int kEnoughIterations = 60;  // what needs more is nearly confounded with the rest
-  Model model{.options = std::move(with), .fit = {}};
-  options.preparation.force_sense = base_.fit.force_sense;
-  options.preparation.held_out = held_out_;
-  options.max_iterations = std::min(options.max_iterations, kEnoughIterations);
-  model.fit = FitTo(options, Depth::kEstimate);
-  return model;
 }
 
 /// True if Tc leaves the half gap that was measured, and more than noise is left.
@@ -420,7 +411,7 @@ std::string_view Selection::ObstacleTo(const Model& model) const {
   const FitResult& fit = model.fit;
   if (!IsFitted(fit) || !fit.converged) return "not_converged";
   if (IsUnphysical(fit)) return "unphysical";
-  const bool gains = fit.rms <= (1 - selection_.smallest_gain) * base_.fit.rms;
+  const bool gains = fit.rms <= (1 - kWorthwhileGain) * base_.fit.rms;
   const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
   return Leaves(fit) || stops || !gains ? "confounded" : "";
 }
@@ -434,11 +425,9 @@ bool Selection::Add(std::size_t candidate, Model model) {
   result_.added.push_back(considered.name);
   base_ = std::move(model);
   // An initial state that was found without the term may be another with it.
-  Model anew = FitAnew({});
+  Model anew = FitWith({}, nullptr);
   const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
-  if (is_fit && anew.fit.rms < (1 - selection_.smallest_gain) * base_.fit.rms) {
-    base_ = std::move(anew);
-  }
+  if (is_fit && anew.fit.rms < (1 - kWorthwhileGain) * base_.fit.rms) base_ = std::move(anew);
   return true;
 }
 
@@ -462,17 +451,16 @@ void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains)
 /// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
   std::vector<Gain> gains = Score();
-  const double chance =
-      selection_.chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
+  const double chance = kChance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
   std::erase_if(gains, [&](const Gain& gain) {
-    return gain.score.gain < selection_.smallest_gain || !(gain.score.p_value < chance);
+    return gain.score.gain < kWorthwhileGain || !(gain.score.p_value < chance);
   });
   const std::vector<Gain> explaining = gains;
   std::erase_if(gains, [&](const Gain& gain) { return IsRefused(gain); });
-  while (!gains.empty() && result_.estimates + kLastFits < selection_.most_fits) {
+  while (!gains.empty() && fits_ + kLastFits < kMostFits) {
     const Gain& best = Simplest(gains);
     const std::size_t candidate = best.candidate;
-    if (Add(candidate, FitWith(candidates_[candidate].choice, best.score.values))) {
+    if (Add(candidate, FitWith(candidates_[candidate].choice, &best.score.values))) {
       KeepAlternatives(best, explaining);
       return true;
     }
@@ -482,7 +470,7 @@ bool Selection::Round() {
 }
 
 void Selection::Run(const FitOptions& options) {
-  ++result_.estimates;
+  ++fits_;
   result_.options = options;
   result_.fit = Fitter(options).Fit(records_, Depth::kFull);
   const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
@@ -493,7 +481,7 @@ void Selection::Run(const FitOptions& options) {
   // too soft for the want of a gap predicts it.
   if (HasGap(law)) {
     const std::size_t gap = *Find("backlash");
-    Add(gap, FitAnew(candidates_[gap].choice));
+    Add(gap, FitWith(candidates_[gap].choice, nullptr));
   }
   while (Round()) {
   }
@@ -513,14 +501,14 @@ void Selection::Run(const FitOptions& options) {
 FitResult Selection::FitFromHere() {
   FitOptions from_here = base_.options;
   StartFrom(base_.fit, from_here);
-  return FitTo(from_here, selection_.depth);
+  return FitTo(from_here, depth_);
 }
 
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these leave
 /// more than is known to be left, else from where it is. The law stays where its Tc would be lost.
 void Selection::FitLast(const FitResult& law) {
-  FitResult last = FitTo(base_.options, selection_.depth);
-  const double most_left = (1 + selection_.smallest_gain) * base_.fit.rms;
+  FitResult last = FitTo(base_.options, depth_);
+  const double most_left = (1 + kWorthwhileGain) * base_.fit.rms;
   if (!IsFitted(last) || last.rms > most_left) last = FitFromHere();
   if (IsFitted(last) && !Leaves(last) &&
       !OpensSlipForce(law, last, base_.options.thresholds.widest_ratio)) {
@@ -555,14 +543,13 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
                   [&](const std::string& term) { return std::erase(options.terms, term) == 0; });
     candidates.push_back(std::move(candidate));
   }
-  ++result_.estimates;
   const FitResult law = Fitter(options).Fit(records_, Depth::kErrors);
   if (!IsFitted(law) || !law.converged || !Begin(options, law, std::move(candidates))) return false;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const std::vector<Gain> gains = Score();
     const auto gain = std::ranges::find(gains, c, &Gain::candidate);
     if (gain == gains.end()) return false;
-    Model model = FitWith(candidates_[c].choice, gain->score.values);
+    Model model = FitWith(candidates_[c].choice, &gain->score.values);
     if (!IsFitted(model.fit) || !model.fit.converged) return false;
     base_ = std::move(model);
   }
@@ -577,7 +564,7 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return {};
   std::vector<Gain> tried = Score();
   std::erase_if(tried, [&](const Gain& gain) {
-    return gain.score.gain < selection_.smallest_gain || IsRefused(gain);
+    return gain.score.gain < kWorthwhileGain || IsRefused(gain);
   });
   if (HasGap(law)) {
     const std::size_t gap = *Find("backlash");
@@ -587,8 +574,8 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   tried.resize(std::min(tried.size(), most));
   std::multimap<double, std::string> by_rms;
   for (const auto& [c, score] : tried) {
-    const TermChoice& choice = candidates_[c].choice;
-    const Model model = score.values.empty() ? FitAnew(choice) : FitWith(choice, score.values);
+    const Model model =
+        FitWith(candidates_[c].choice, score.values.empty() ? nullptr : &score.values);
     if (ObstacleTo(model).empty()) by_rms.emplace(model.fit.rms, candidates_[c].considered.name);
   }
   std::vector<std::string> names;
@@ -598,28 +585,18 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
 
 }  // namespace
 
-TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
-                          const TermSelectionOptions& selection) {
-  const std::vector<RecordView> views(records.begin(), records.end());
-  return SelectTerms(views, options, selection);
+TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
+                          Depth depth) {
+  TermSelection result;
+  Selection(records, depth, result).Run(options);
+  return result;
 }
 
-TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions& options,
-                          const TermSelectionOptions& selection) {
-  if (selection.folds < 2) {
-    ThrowInvalid("folds [-]", static_cast<double>(selection.folds), "must be >= 2");
-  }
-  if (!(selection.chance > 0 && selection.chance < 1)) {
-    ThrowInvalid("chance [-]", selection.chance, "must lie between 0 and 1");
-  }
-  RequireNonNegative("smallest gain [-]", selection.smallest_gain);
+TermSelection FitNamedTerms(std::span<const RecordView> records, const FitOptions& options,
+                            std::span<const std::string> names, Depth depth) {
   TermSelection result;
-  if (selection.named.empty()) {
-    Selection(records, selection, result).Run(options);
-  } else if (!options.start.empty() ||
-             !Selection(records, selection, result).RunNamed(options, selection.named)) {
-    Fitter all_at_once(options);
-    result.fit = all_at_once.Fit(records, selection.depth);
+  if (!options.start.empty() || !Selection(records, depth, result).RunNamed(options, names)) {
+    result.fit = Fitter(options).Fit(records, depth);
   }
   return result;
 }
@@ -627,9 +604,8 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
 std::vector<std::string> LikelyTerms(std::span<const RecordView> records, const FitOptions& options,
                                      const FitResult& fit, std::size_t most) {
   if (options.response() != loop::Channel::kForce) return {};
-  const TermSelectionOptions defaults;
   TermSelection unused;
-  return Selection(records, defaults, unused).Likely(options, fit, most);
+  return Selection(records, Depth::kEstimate, unused).Likely(options, fit, most);
 }
 
 }  // namespace mindahl::identification

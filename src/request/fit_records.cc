@@ -181,9 +181,7 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
     io::KeepSamples(records[r], test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
-  if (all_cycled && !options.initial_state && options.initial_states.empty()) {
-    options.initial_state = models::InitialState::kSteady;
-  }
+  if (all_cycled && !options.initial_state) options.initial_state = models::InitialState::kSteady;
   return left_out;
 }
 
@@ -247,9 +245,10 @@ AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
     return identification::FindTermGroup(name) == nullptr;
   });
   if (options.response() == loop::Channel::kForce && (chooses_terms || !named.empty())) {
-    identification::TermSelection selected = identification::SelectTerms(
-        records, options,
-        {.depth = depth, .named = chooses_terms ? std::vector<std::string>() : std::move(named)});
+    const std::vector<loop::RecordView> views(records.begin(), records.end());
+    identification::TermSelection selected =
+        chooses_terms ? identification::SelectTerms(views, options, depth)
+                      : identification::FitNamedTerms(views, options, named, depth);
     asked.options = selected.options;
     asked.fit = std::move(selected.fit);
     if (chooses_terms) asked.terms = std::move(selected);

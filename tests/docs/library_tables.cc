@@ -9,7 +9,6 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/identification/thresholds.h"
 #include "mindahl/request/batch.h"
 #include "report/fields.h"
 #include "report/statements.h"
@@ -37,23 +36,11 @@ Json TermsTable() {
                     {"unit", term.unit},
                     {"meaning", term.meaning},
                     {"is_of_record", term.scope == identification::Scope::kRecord},
-                    {"is_linear", term.entry == identification::Entry::kLinear},
+                    {"is_linear", term.column != identification::Regressor::kNone ||
+                                      term.id == identification::TermId::kSlipForce},
                     {"presence", presences.at(static_cast<std::size_t>(term.presence))},
                     {"option", term.group},
                     {"needs_time", term.needs_time}});
-  }
-  return rows;
-}
-
-Json ThresholdsTable() {
-  Json rows = Json::array();
-  const identification::Thresholds defaults;
-  for (const identification::ThresholdRow& row : identification::ThresholdTable()) {
-    rows.push_back({{"name", row.name},
-                    {"value", defaults.*row.value},
-                    {"unit", row.unit},
-                    {"meaning", row.meaning},
-                    {"reason", row.reason}});
   }
   return rows;
 }
@@ -72,7 +59,7 @@ Json FindingsTable() {
 Json CausesTable() {
   Json rows = Json::array();
   for (const identification::Departure& row : identification::Departures()) {
-    rows.push_back({{"code", row.code}, {"meaning", row.meaning}, {"option", row.group}});
+    rows.push_back({{"code", row.code}, {"option", row.group}});
   }
   return rows;
 }
@@ -102,12 +89,9 @@ Json Columns() {
 }  // namespace mindahl
 
 int main() {
-  const mindahl::report::Json tables = {{"fields", mindahl::FieldsTable()},
-                                        {"terms", mindahl::TermsTable()},
-                                        {"thresholds", mindahl::ThresholdsTable()},
-                                        {"findings", mindahl::FindingsTable()},
-                                        {"causes", mindahl::CausesTable()},
-                                        {"flags", mindahl::FlagsTable()},
-                                        {"columns", mindahl::Columns()}};
+  const mindahl::report::Json tables = {
+      {"fields", mindahl::FieldsTable()},     {"terms", mindahl::TermsTable()},
+      {"findings", mindahl::FindingsTable()}, {"causes", mindahl::CausesTable()},
+      {"flags", mindahl::FlagsTable()},       {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

@@ -85,10 +85,14 @@ def terms_table(tables, _, __):
     return table(["name", "unit", "of", "enters", "fitted", "what it is"], rows)
 
 
-def thresholds_table(tables, _, __):
-    return table(["name", "value", "of what", "what it decides", "why there"],
-                 [[code(row["name"]), f"{row['value']:g}", cell(row["unit"]), cell(row["meaning"]),
-                   cell(row["reason"])] for row in tables["thresholds"]])
+def thresholds_table(*_):
+    header = (ROOT / "include/mindahl/identification/thresholds.h").read_text()
+    rows = []
+    for comment, name, value in re.findall(r"((?: *///.*\n)+) *double (\w+) = (.*);", header):
+        unit, decides, why = re.match(r"\[(.*?)\] (.*?)\. (.*)\.$",
+                                      " ".join(re.findall(r"/// (.*)", comment))).groups()
+        rows.append([code(name), f"{float(value):g}", cell(unit), cell(decides), cell(why)])
+    return table(["name", "value", "of what", "what it decides", "why there"], rows)
 
 
 def findings_table(tables, kind, kept):
@@ -105,8 +109,8 @@ def causes_table(tables, _, kept):
     rows = []
     for row in tables["causes"]:
         what, advice = kept.row(code(row["code"]), "what it is", "what to do")
-        rows.append([code(row["code"]), what, cell(row["meaning"]), code(row["option"]), advice])
-    return table(["`causes[].code`", "what it is", "the column", "`term`", "what to do"],
+        rows.append([code(row["code"]), what, code(row["option"]), advice])
+    return table(["`causes[].code`", "what it is", "`term`", "what to do"],
                  in_page_order(rows, kept))
 
 

@@ -27,7 +27,6 @@ const convert::ConversionOptions kConversion{.tolerance = 0.05};
 const identification::Expectation kExpectation{.law = {}, .force_noise = 0.1};
 const identification::FitOptions kFit{.force_noise = 0.1};
 const identification::FitOptions kFitWithBounds{.fixed = {{"alpha", 0.0}}};
-const identification::TermSelectionOptions kTerms{.folds = 3};
 const identification::ValidationOptions kValidation{.cases = 3};
 const io::Plot kPlot{.title = "loop"};
 const io::PlotPanel kPanel{.y_label = "force [N]"};

@@ -126,7 +126,7 @@ TEST(Backlash, ThatWasMeasuredIsAddedFirstAndLeavesNothingToAdd) {
   const Record record = testing::WithForceNoise(
       BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 3.1, kSamplesPerCycle), kGap),
       0.01 * kLaw.slip_force, generator);
-  const TermSelection selection = SelectTerms(std::vector<Record>{record}, {}, {});
+  const TermSelection selection = SelectTerms(std::vector<RecordView>{record}, {});
   EXPECT_THAT(selection.added, ::testing::ElementsAre("backlash"));
   EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   const ParameterEstimate& gap = *selection.fit.Find("backlash");

@@ -88,9 +88,9 @@ TEST_P(OfEveryLawAndTerm, GradientsAgreeWithDifferences) {
     // Where the law holds α at 0, differences need room below.
     if (parameter.name == "alpha") parameter.theta = std::max(parameter.theta, 0.05);
   }
-  const auto cost = problem.MakeCostFunction(0);
+  const auto cost = problem.MakeCostFunction();
   std::vector<const double*> blocks;
-  for (const std::size_t place : problem.BlocksOf(0)) {
+  for (const std::size_t place : problem.blocks()) {
     blocks.push_back(&problem.parameters()[place].theta);
   }
   const std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
@@ -107,7 +107,7 @@ TEST_P(OfEveryLawAndTerm, GradientsAgreeWithDifferences) {
     const double norm = results.jacobians[b].norm();
     EXPECT_LE((results.jacobians[b] - results.numeric_jacobians[b]).norm(),
               tolerance * std::max(norm, 1e-3))
-        << problem.parameters()[problem.BlocksOf(0)[b]].name << ", norm " << norm;
+        << problem.parameters()[problem.blocks()[b]].name << ", norm " << norm;
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
-#include "identification/intervals.h"
 #include "identification/stages.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"

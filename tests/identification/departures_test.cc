@@ -511,7 +511,7 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
   ASSERT_NEAR(stages.data.length / kLength, 1, 1e-9);
   const std::vector<double> theta = TrueTheta(stages, contact);
   const DepartureColumns columns =
-      ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, 100);
+      ColumnsOfDepartures(stages.problem, theta, stages.solver.response, 100);
   std::vector<Case> cases = Cases();
   // Of a contact that had slipped before an asymmetry is an offset, and Dahl's own has none.
   const bool tells_asymmetry =
@@ -536,7 +536,7 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       const std::vector<double> with = tested.simulate(departed[r], size);
       const std::vector<double> without = tested.simulate(departed[r], 0.0);
-      const LoadingPath& path = stages.buffers.response.PathOf(r, theta);
+      const LoadingPath& path = stages.solver.response.PathOf(r, theta);
       for (std::size_t i = 0; i < with.size(); ++i, ++row) {
         // Next to a reversal, and where a loop closes, differences see both branches, and a gap or
         // a lag is not yet over: the force is not of first order in them there.
@@ -604,7 +604,7 @@ Record Complete() {
 
 DepartureColumns ColumnsOf(Stages& stages) {
   const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
-  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), stages.buffers.response,
+  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), stages.solver.response,
                              100);
 }
 

@@ -107,7 +107,7 @@ TEST(Estimates, AtABoundReachOneSidedFromIt) {
     const bool is_lower = bounds.lower > 0;
     ASSERT_EQ(solution.side[kShape], is_lower ? BoundSide::kLower : BoundSide::kUpper);
     const Noise noise = KnownNoise(1e-4, stages.data.counted);
-    const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+    const Estimates estimates = testing::EstimatesOf(stages, solution, noise);
     const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
     const Eigen::MatrixXd all = SandwichOf(jacobian, 0.0).covariance;
     ParameterEstimate alpha;
@@ -160,7 +160,7 @@ TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
                  stages.data.counted);
   noise.is_known = false;
   noise.autocorrelation = process;
-  const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+  const Estimates estimates = testing::EstimatesOf(stages, solution, noise);
   const double once = estimates.ErrorOfTheta(kShape);
   EXPECT_NEAR(*fit.Find("alpha")->standard_error / (std::sqrt(repeating) * once), 1.0, 1e-4);
 }

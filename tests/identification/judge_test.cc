@@ -1,5 +1,4 @@
-#include "identification/judge/judge.h"
-
+#include "identification/diagnosis/adequacy.h"
 #include "support/prelude.h"
 
 // Verdicts from estimates and findings alone, by precedence.

@@ -1,6 +1,6 @@
 
 
-#include "identification/inference/rig_alternative.h"
+#include "identification/inference/profile.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"

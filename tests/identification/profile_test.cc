@@ -31,11 +31,11 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const Solution best = stages.Solve();
     Noise noise = KnownNoise(variance, stages.data.counted);
     if (rho > 0) noise.autocorrelation = testing::FirstOrder(rho);
-    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+    const Estimates estimates = testing::EstimatesOf(stages, best, noise);
     const double share = estimates.WhiteShare(kSlipForce);
     EXPECT_EQ(share<0.5, rho> 0);
     const Ends ends = Profile({stages.problem, best, noise, estimates}, kSlipForce, stages.options,
-                              stages.buffers);
+                              stages.solver);
     ASSERT_TRUE(ends.lower && ends.upper);
     for (const double end : {*ends.lower, *ends.upper}) {
       FitOptions held;
@@ -59,9 +59,9 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   ASSERT_EQ(best.side[kShape], BoundSide::kInside);
   for (const double variance : {1e-6, 1e-3}) {
     const Noise noise = KnownNoise(variance, stages.data.counted);
-    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+    const Estimates estimates = testing::EstimatesOf(stages, best, noise);
     const Ends ends = Profile({stages.problem, best, noise, estimates}, kSlipForce, stages.options,
-                              stages.buffers);
+                              stages.solver);
     EXPECT_EQ(ends.upper.has_value(), variance < 1e-5);
   }
 }

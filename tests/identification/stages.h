@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
@@ -50,8 +51,8 @@ class Stages {
     identification::ThinnedRecords thin(data);
     identification::Candidate candidate(data, options, problem.state);
     identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
-                                 buffers);
-    identification::Descend(candidate, options, buffers);
+                                 solver);
+    identification::Descend(candidate, options, solver);
     return candidate.solution;
   }
 
@@ -105,7 +106,7 @@ class Stages {
   loop::PreparedRecords prepared;
   identification::ScaledRecords data;
   identification::Problem problem;
-  identification::SearchBuffers buffers;
+  identification::Solver solver;
 };
 
 struct WeightedFit {
@@ -118,11 +119,24 @@ inline WeightedFit FitWeighted(Stages& stages) {
   WeightedFit result;
   result.solution = stages.Solve();
   const identification::DisplacementErrors errors(stages.prepared, stages.data);
-  EXPECT_TRUE(identification::FitWithWeights(stages.problem, stages.data, stages.options, errors,
-                                             stages.buffers.solver, stages.buffers.response,
-                                             identification::SolverOptionsOf(stages.options),
-                                             result.solution, result.noise));
+  EXPECT_TRUE(identification::FitWithWeights(
+      stages.problem, stages.data, stages.options, errors, stages.solver,
+      identification::SolverOptionsOf(stages.options), result.solution, result.noise));
   return result;
+}
+
+/// The parabola's errors of a solution.
+inline identification::Estimates EstimatesOf(Stages& stages,
+                                             const identification::Solution& solution,
+                                             const identification::Noise& noise,
+                                             const identification::Thresholds& thresholds = {}) {
+  return {stages.problem,
+          solution,
+          noise,
+          {},
+          thresholds,
+          identification::LinearizeAt(stages.problem, solution.theta, stages.solver.response,
+                                      stages.problem.parameters.free())};
 }
 
 /// White noise of a known variance [units of the data²].

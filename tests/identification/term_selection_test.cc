@@ -39,8 +39,9 @@ Record Noisy(const Record& record, std::uint64_t seed) {
   return WithForceNoise(record, kNoise, generator);
 }
 
-TermSelection Select(const Record& record, const TermSelectionOptions& options = {}) {
-  return SelectTerms(std::vector{record}, {}, options);
+TermSelection Select(const Record& record, const FitOptions& options = {}) {
+  const RecordView view(record);
+  return SelectTerms({&view, 1}, options);
 }
 
 const ConsideredTerm& TermOf(const TermSelection& selection, std::string_view name) {
@@ -73,13 +74,10 @@ TEST(TermSelection, ViscousForceIsAddedAloneAndRecovered) {
   const double bias = viscous * (1 - std::sin(step) / step);
   EXPECT_NEAR(estimate.value, viscous, kStandardErrors * *estimate.standard_error + bias);
 
-  // 8.3 cycles turn 17 times, from a quarter of the first on: 8 cycles close, each predicted once.
-  EXPECT_EQ(selection.held_out_parts, 8u);
   const ConsideredTerm& term = TermOf(selection, "viscous");
-  EXPECT_TRUE(term.added && term.is_predicted);
+  EXPECT_TRUE(term.added);
   // What is left is noise: of an rms of viscous force and noise before, Pythagoras.
   EXPECT_GT(term.gain, 0.5);
-  EXPECT_LT(term.p_value, 0.01);
 }
 
 TEST(TermSelection, LargeViscousForceIsNotLeftToASlipForceOfTheSpeedAndADrag) {
@@ -169,14 +167,12 @@ TEST(TermSelection, NamedTermsAreAddedWithoutJudgementAndFitAsWellAsTogether) {
   const Record noisy = Noisy(record, 11);
   FitOptions options;
   options.terms = {"viscous", "slip_trend"};  // of which nothing is in the record
-  const TermSelection named =
-      SelectTerms(std::vector{noisy}, options, {.named = {"viscous", "slip_trend"}});
+  const RecordView view(noisy);
+  const TermSelection named = FitNamedTerms({&view, 1}, options, options.terms);
   const FitResult together = Fit(std::vector{noisy}, options);
   ASSERT_NE(named.fit.Find("slip_trend"), nullptr);
   constexpr double kSameMinimum = 1e-6;  // of the rms: ten thousand times the tolerance of the cost
   EXPECT_LE(named.fit.rms, (1 + kSameMinimum) * together.rms);
-  // The law, two terms, and with intervals.
-  EXPECT_EQ(named.estimates, 4u);
 }
 
 TEST(TermSelection, NegativeDampingIsNotAdded) {
@@ -265,31 +261,10 @@ TEST(TermSelection, BoundOfTheUserIsKept) {
   const double lowest = free.value + 0.5 * *free.standard_error;  // which noise does not exclude
   FitOptions options;
   options.bounds["slip_force"] = {lowest, 10 * kLaw.slip_force};
-  const TermSelection selection = SelectTerms(std::vector{record}, options, {});
+  const TermSelection selection = Select(record, options);
   EXPECT_THAT(selection.added, ElementsAre("viscous"));
   EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   EXPECT_GE(selection.fit.Find("slip_force")->value, lowest);
-}
-
-TEST(TermSelection, MakesNoMoreFitsThanAreAllowed) {
-  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] *= 1 + 0.2 * std::pow(record.displacement[i] / kReach, 2);
-    record.force[i] += viscous * SpeedAt(i);
-  }
-  const TermSelection free = Select(Noisy(record, 8));
-  ASSERT_GT(free.estimates, 7u);
-  EXPECT_LE(free.estimates, TermSelectionOptions{}.most_fits);
-  const TermSelection few = Select(Noisy(record, 8), {.most_fits = 7});
-  EXPECT_LE(few.estimates, 7u);
-  EXPECT_TRUE(few.fit.converged);
-}
-
-TEST(TermSelection, OptionsThatBreakARuleAreRefused) {
-  EXPECT_THROW(Select(Clean(), {.folds = 1}), InvalidArgument);
-  EXPECT_THROW(Select(Clean(), {.chance = 0.0}), InvalidArgument);
-  EXPECT_THROW(Select(Clean(), {.smallest_gain = -0.1}), InvalidArgument);
 }
 
 }  // namespace

@@ -29,9 +29,6 @@ TEST(Terms, EveryRowIsComplete) {
     EXPECT_FALSE(term.meaning.empty());
     EXPECT_LT(term.lowest, term.highest);
     EXPECT_TRUE(!term.positive || (term.lowest > 0 && term.scale(kUnits) > 0));
-    // Who enters linearly has a column, but for the factor of the model's own force.
-    EXPECT_EQ(term.column != Regressor::kNone,
-              term.entry == Entry::kLinear && term.name != "slip_force");
     // A term that leads a group is asked for.
     const bool is_asked_for =
         term.presence == Presence::kOnDemand || term.presence == Presence::kReported;

@@ -1,14 +1,11 @@
 #include "mindahl/identification/thresholds.h"
 
-#include <map>
-
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/rig_alternative.h"
-#include "identification/law_choice.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/models/steady_loop.h"
@@ -83,14 +80,14 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   Stages stages(record, With(thresholds));
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
-  const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
+  const Estimates estimates = testing::EstimatesOf(stages, best, noise, thresholds);
   ThinnedRecords thin(stages.data);
   ParameterEstimate shape;
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;
   shape.upper95 = shape.value;
   return TryRig({stages.problem, best, noise, estimates}, thin, shape, stages.options,
-                stages.buffers)
+                stages.solver)
       .has_value();
 }
 
@@ -175,9 +172,10 @@ bool LoadIsFollowed(const Thresholds& thresholds, double amplitude) {
   return Stages(loop, With(thresholds)).data.load_varies;
 }
 
-const std::map<std::string_view, Case>& Cases() {
-  static const std::map<std::string_view, Case> cases = {
-      {"shape_effect",
+using Row = std::pair<double Thresholds::*, Case>;
+const std::vector<Row>& Cases() {
+  static const std::vector<Row> cases = {
+      {&Thresholds::shape_effect,
        [](const Thresholds& t) {
          const auto looks_for_a_rig = [&](double effect) {
            const BranchLaw law{4e7, 1.0 / 3 - effect, 40.0};
@@ -185,7 +183,7 @@ const std::map<std::string_view, Case>& Cases() {
          };
          return !looks_for_a_rig(kBelow * 0.05) && looks_for_a_rig(kAbove * 0.05);
        }},
-      {"rigid_beside_rig",
+      {&Thresholds::rigid_beside_rig,
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {
            const ParameterEstimates before = Made().parameters;
@@ -194,17 +192,17 @@ const std::map<std::string_view, Case>& Cases() {
          };
          return widens_alpha(kBelow * 30) && !widens_alpha(kAbove * 30);
        }},
-      {"failing_misfit",
+      {&Thresholds::failing_misfit,
        [](const Thresholds& t) {
          return UseAt(t, kBelow * 0.15) == Use::kIndicative &&
                 UseAt(t, kAbove * 0.15) == Use::kNone;
        }},
-      {"quantitative_misfit",
+      {&Thresholds::quantitative_misfit,
        [](const Thresholds& t) {
          return UseAt(t, kBelow * 0.05) == Use::kQuantitative &&
                 UseAt(t, kAbove * 0.05) == Use::kIndicative;
        }},
-      {"main_stroke",
+      {&Thresholds::main_stroke,
        [](const Thresholds& t) {
          // Strokes of 1, 0.6 and 0.9 of the longest, there and back.
          History displacement = {0.0};
@@ -218,32 +216,32 @@ const std::map<std::string_view, Case>& Cases() {
          return Evaluated(t, displacement, noise).records[0].structure.strokes ==
                 std::array<std::size_t, 2>{3, 3};
        }},
-      {"path_excess",
+      {&Thresholds::path_excess,
        [](const Thresholds& t) {
          return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
        }},
-      {"widest_ratio",
+      {&Thresholds::widest_ratio,
        [](const Thresholds& t) {
          return !IsWide(t, 0, 1.0, kBelow * 9) && IsWide(t, 0, 1.0, kAbove * 9) &&
                 !IsWide(t, 2, 0.5, kBelow * 4.5) && IsWide(t, 2, 0.5, kAbove * 4.5);
        }},
-      {"widest_shape",
+      {&Thresholds::widest_shape,
        [](const Thresholds& t) {
          // Of an α of 2, twice as wide.
          return !IsWide(t, 1, 0.5, 0.5 + kBelow * 2) && IsWide(t, 1, 0.5, 0.5 + kAbove * 2);
        }},
-      {"doubt",
+      {&Thresholds::doubt,
        [](const Thresholds& t) {
          return IsDoubted(t, kBelow * 0.005) && !IsDoubted(t, kAbove * 0.005);
        }},
-      {"cause",
+      {&Thresholds::cause,
        [](const Thresholds& t) {
          const auto causes = [&](double p_value) {
            return CausesAmong(t, {FitWith(p_value, -20)});
          };
          return causes(kBelow * 1e-3) == 1 && causes(kAbove * 1e-3) == 0;
        }},
-      {"rival_cause",
+      {&Thresholds::rival_cause,
        [](const Thresholds& t) {
          const auto causes = [&](double share) {
            DepartureFit best = FitWith(1e-9, -90);
@@ -254,25 +252,25 @@ const std::map<std::string_view, Case>& Cases() {
          };
          return causes(kBelow * 0.5) == 1 && causes(kAbove * 0.5) == 2;
        }},
-      {"noise_memory",
+      {&Thresholds::noise_memory,
        [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},
-      {"poor_misfit",
+      {&Thresholds::poor_misfit,
        [](const Thresholds& t) {
          return IsSlow(t, 1.0, kAbove * 0.02) && !IsSlow(t, 1.0, kBelow * 0.02);
        }},
-      {"seen_loop",
+      {&Thresholds::seen_loop,
        [](const Thresholds& t) {
          return !LoopIsSeen(t, kBelow * 0.1) && LoopIsSeen(t, kAbove * 0.1);
        }},
-      {"load_difference",
+      {&Thresholds::load_difference,
        [](const Thresholds& t) {
          return !IsLoadSeries(t, kBelow * 0.01) && IsLoadSeries(t, kAbove * 0.01);
        }},
-      {"load_variation",
+      {&Thresholds::load_variation,
        [](const Thresholds& t) {
          return !LoadIsFollowed(t, kBelow * 0.01) && LoadIsFollowed(t, kAbove * 0.01);
        }},
-      {"prior_distance",
+      {&Thresholds::prior_distance,
        [](const Thresholds& t) {
          return !PriorIsContradicted(t, kBelow * 3.0) && PriorIsContradicted(t, kAbove * 3.0);
        }},
@@ -281,27 +279,14 @@ const std::map<std::string_view, Case>& Cases() {
   return cases;
 }
 
-TEST(ThresholdTable, HasARowForEachMemberInTheirOrder) {
-  ASSERT_EQ(ThresholdTable().size() * sizeof(double), sizeof(Thresholds));
-  const Thresholds thresholds;
-  const auto* first = reinterpret_cast<const double*>(&thresholds);
-  for (std::size_t i = 0; i < ThresholdTable().size(); ++i) {
-    const ThresholdRow& row = ThresholdTable()[i];
-    EXPECT_EQ(&(thresholds.*row.value), first + i) << row.name;
-    EXPECT_FALSE(row.name.empty() || row.unit.empty() || row.meaning.empty() || row.reason.empty())
-        << row.name;
-  }
-}
-
-TEST(ThresholdTable, RowsDecideWhereTheySayAndTwiceOrHalfOfThemElsewhere) {
-  for (const auto& [name, decides] : Cases()) {
-    const auto row = std::ranges::find(ThresholdTable(), name, &ThresholdRow::name);
-    ASSERT_NE(row, ThresholdTable().end()) << name;
-    EXPECT_TRUE(decides(Thresholds{})) << name;
+TEST(Thresholds, DecideWhereTheySayAndTwiceOrHalfOfThemElsewhere) {
+  for (std::size_t row = 0; row < Cases().size(); ++row) {
+    const auto& [threshold, decides] = Cases()[row];
+    EXPECT_TRUE(decides(Thresholds{})) << row;
     for (const double factor : {2.0, 0.5}) {
       Thresholds moved;
-      moved.*(row->value) *= factor;
-      EXPECT_FALSE(decides(moved)) << name << ' ' << factor;
+      moved.*threshold *= factor;
+      EXPECT_FALSE(decides(moved)) << row << ' ' << factor;
     }
   }
 }

@@ -194,10 +194,10 @@ Judgement Judge(const FitResult& fit, const Expected& expected) {
 Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed, bool adds_terms) {
   const Loop loop = MakeLoop(kind, level, seed);
   try {
-    const std::span<const mindahl::loop::Record> record(&loop.record, 1);
-    return Judge(
-        adds_terms ? identification::SelectTerms(record, {}).fit : identification::Fit(record),
-        loop.expected);
+    const mindahl::loop::RecordView record(loop.record);
+    return Judge(adds_terms ? identification::SelectTerms({&record, 1}, {}).fit
+                            : identification::Fit({&loop.record, 1}),
+                 loop.expected);
   } catch (const InvalidArgument& refusal) {
     return {.outcome = Outcome::kUndecided,
             .alarms = true,

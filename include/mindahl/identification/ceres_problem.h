@@ -9,7 +9,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
@@ -31,17 +30,15 @@ struct [[gnu::visibility("default")]] CeresParameter {
   double reference = 0.0;  ///< [unit]
   double scale = 1.0;      ///< [unit]
 
-  [[nodiscard]] double Value() const { return ValueAt(theta); }
-  [[nodiscard]] double ValueAt(double at_theta) const;
+  [[nodiscard]] double Value() const;
   [[nodiscard]] double ThetaAt(double value) const;
 };
 
 /// The least-squares problem of a fit, unprojected, as ceres::CostFunctions with analytic
 /// Jacobians:
 ///   rᵢ = √wᵢ·(T_model(δᵢ; σ, α, Tc, rig, offsets, terms) − Tᵢ)/residual_unit
-/// over all parameters of the fit, one residual block a record; σ, α, Tc and the terms of the
-/// contact are shared by all records, offsets belong to each. To it residuals and priors of one's
-/// own are added, and ceres::Solve is called:
+/// over all parameters of the fit, one residual block of all records. To it residuals and priors of
+/// one's own are added, and ceres::Solve is called:
 ///
 ///     CeresProblem contact(records, options, fit, fit.force_noise);
 ///     ceres::Problem problem;
@@ -73,14 +70,13 @@ class [[gnu::visibility("default")]] CeresProblem {
   /// @throws InvalidArgument where there is none of that name
   [[nodiscard]] CeresParameter& Find(std::string_view name);
 
-  [[nodiscard]] std::size_t records() const;
-  /// Returns the positions in parameters() of the blocks of a record's cost function, in order.
-  [[nodiscard]] std::span<const std::size_t> BlocksOf(std::size_t record) const;
-  /// Returns the residuals of all samples of a record, those that do not count are 0. It refers to
-  /// this problem.
-  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction(std::size_t record) const;
+  /// Returns the positions in parameters() of the blocks of the cost function, in order.
+  [[nodiscard]] std::span<const std::size_t> blocks() const;
+  /// Returns the residuals of all samples, one record after the other; those that do not count are
+  /// 0. It refers to this problem.
+  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction() const;
 
-  /// Adds a residual block for every record, bounds, and holds what the fit holds.
+  /// Adds the residual block, bounds, and holds what the fit holds.
   /// @param problem  takes ownership of what is added; this must outlive it
   /// @param loss     of each sample, in residual units; none: least squares. Taken over
   void AddTo(ceres::Problem & problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);

@@ -12,7 +12,7 @@
 namespace mindahl::identification {
 
 /// Thrown if fewer samples count than there are free parameters. The message has both numbers, and
-/// how many samples were left out for what.
+/// how many samples were left out.
 class TooFewSamples : public InvalidArgument {
  public:
   using InvalidArgument::InvalidArgument;

@@ -102,7 +102,7 @@ struct ValidationReport {
   std::size_t failures = 0;
   std::vector<std::string> failed_cases;  ///< description of each failed case with its error
   std::vector<CoverageVerdict> coverage;  ///< in order of law, then parameter; empty without noise
-  /// Coverages that contradict the stated confidence, of `coverage` and of single rows.
+  /// Coverages that contradict the stated confidence.
   std::vector<std::string> failed_coverages;
 
   [[nodiscard]] bool passed() const { return failures == 0 && failed_coverages.empty(); }
@@ -111,8 +111,8 @@ struct ValidationReport {
 /// Draws contacts with N in 1e-6 … 1e5 N, a in 1e-8 … 3e-2 m, G* in 1e-12 … 1e-8 1/Pa (all
 /// log-uniform), μ in 0.05 … 1.2, one to four cycles, both starting directions, sine and triangle;
 /// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
-/// fits them with free α by either law and compares. Coverage is judged by binomial tests, one a
-/// parameter, law and row with noise, and over all rows, at kCoverageFalseAlarm over their number.
+/// fits them with free α by either law and compares. Coverage is judged by binomial tests, two a
+/// parameter and law over all rows with noise, at kCoverageFalseAlarm over their number.
 /// @throws InvalidArgument for options out of range
 ValidationReport ValidateMapping(const ValidationOptions& options);
 

@@ -42,8 +42,6 @@ struct ModelScore {
 /// from the full fit, the samples held out still making history. Records with fewer than two closed
 /// cycles are never held out.
 ///
-/// With a robust loss, samples that the best candidate puts beyond 4.685 robust standard deviations
-/// are not scored in any.
 /// @param options  of every fit; `model` and the term rig_stiffness are set here. A fixed rig
 ///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
 ///                 another

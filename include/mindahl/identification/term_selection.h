@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,31 +11,12 @@
 
 namespace mindahl::identification {
 
-/// Sets how terms are added to the law.
-struct TermSelectionOptions {
-  /// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes
-  /// of both directions.
-  std::size_t folds = 5;
-  /// Largest probability with which the gain of a term that is added is chance, over all candidates
-  /// of a round (Bonferroni).
-  double chance = 0.05;
-  /// Least fraction by which the error of prediction falls with a term that is added.
-  double smallest_gain = 0.03;
-  std::size_t most_fits = 15;  ///< in all, nearly all of them at Depth::kEstimate
-  Depth depth = Depth::kFull;  ///< depth of the fit that is returned
-  /// Names of groups that the options have: they are added one after the other, each from the
-  /// solution without it, and are not judged. Nothing is selected then.
-  std::vector<std::string> named = {};
-};
-
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
   std::string name;  ///< name of the group, or NameOfCovariate()
   /// Fraction by which the rms error of predicted cycles would fall to first order, of fitted
-  /// samples where `is_predicted` is false; of a term that is added that of the fit falls [–].
+  /// samples where there are too few strokes to predict [–].
   double gain = 0.0;
-  double p_value = 1.0;  ///< probability that the gain to first order is chance
-  bool is_predicted = false;
   bool added = false;
   /// Reason why it was not added: "", of one that gains "confounded", "unphysical" or
   /// "not_converged", of a column that repeats another one "same_channel".
@@ -47,10 +27,8 @@ struct TermSelection {
   std::vector<ConsideredTerm>
       considered;  ///< those added first, in their order; then by their gain
   std::vector<std::string> added;
-  std::size_t held_out_parts = 0;  ///< cycles or strokes, each predicted once
-  std::size_t estimates = 0;       ///< fits that were made, at any depth
-  FitOptions options;              ///< with the terms that were added
-  FitResult fit;                   ///< with them
+  FitOptions options;  ///< with the terms that were added
+  FitResult fit;       ///< with them
 };
 
 /// Fits a record with the terms that it requires and no others (forward selection).
@@ -59,10 +37,10 @@ struct TermSelection {
 /// Otherwise every candidate for which there are data is scored by one Gauss-Newton step from the
 /// present solution: on cycles held out of that step, on strokes where there are fewer than four
 /// cycles, by the fitted samples where there are fewer than four strokes. Of those that lower the
-/// error by `smallest_gain`, not by chance, the best is fitted, or what has some of its terms only
-/// and gains half as much; it is added unless its fit does not converge, gains less, ends at a
-/// bound or leaves the half gap, else the next one is tried. The rounds end when none is added or
-/// `most_fits` are made.
+/// error by 3 %, by chance with p < 0.05 over all candidates, the best is fitted, or what has some
+/// of its terms only and gains half as much; it is added unless its fit does not converge, gains
+/// less, ends at a bound or leaves the half gap, else the next one is tried. The rounds end when
+/// none is added or 15 fits are made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
 /// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:
@@ -70,12 +48,16 @@ struct TermSelection {
 /// of a loop that slides leaves the half gap that was measured, unless it leaves nothing but noise.
 /// @param records  [m], [N]
 /// @param options  of every fit; a term that these have is no candidate
-/// @throws InvalidArgument as Fit does, for folds < 2 or a chance outside (0, 1)
+/// @param depth    of the fit that is returned
+/// @throws InvalidArgument as Fit does
 /// Deterministic. Nothing is selected in a fit of the displacement.
 TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
-                          const TermSelectionOptions& selection = {});
-TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
-                          const TermSelectionOptions& selection = {});
+                          Depth depth = Depth::kFull);
+
+/// Fits groups of terms that the options have: they are added one after the other, each from the
+/// solution without it, and are not judged.
+TermSelection FitNamedTerms(std::span<const loop::RecordView> records, const FitOptions& options,
+                            std::span<const std::string> names, Depth depth = Depth::kFull);
 
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
 /// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are

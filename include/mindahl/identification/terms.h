@@ -14,12 +14,6 @@ namespace mindahl::identification {
 /// from 1 if there are several (force_offset_2).
 enum class Scope { kContact, kRecord };
 
-/// Names how a parameter enters the response, the fitted channel.
-enum class Entry {
-  kLaw,     ///< through the law or the path: the response is not linear in it
-  kLinear,  ///< a factor of a column that the record gives
-};
-
 /// Names the condition under which a parameter is fitted.
 enum class Presence {
   kAlways,      ///< unless it is fixed
@@ -56,7 +50,7 @@ struct TermScale {
 
 /// Names the column of which a linear parameter is the factor, sample by sample in those units.
 enum class Regressor {
-  kNone,          ///< it is not linear, or a factor of the model's own response
+  kNone,          ///< it enters through the law or the path, or scales the model's response
   kOne,           ///< an offset
   kDisplacement,  ///< δ
   kDisplacementSquared,
@@ -125,11 +119,10 @@ struct Term {
   std::string_view unit = "-";
   std::string_view meaning;  ///< one line, for tables of the documents
   Scope scope = Scope::kContact;
-  Entry entry = Entry::kLaw;
   Presence presence = Presence::kOnDemand;
   bool positive = false;
-  double lowest = 0.0;  ///< default bounds, in units of the data
-  double highest = 0.0;
+  double lowest = -10.0;  ///< default bounds, in units of the data
+  double highest = 10.0;
   /// How far a search may move θ in one step; α by so much of itself, where that is beyond 1.
   double longest_step = 1.5;
   TermScale powers = {};

@@ -1,67 +1,148 @@
 #pragma once
 
-#include <span>
-#include <string_view>
-
 namespace mindahl::identification {
 
-/// Holds every number on which a verdict, a finding or the choice of a method depends.
-/// ThresholdTable() has the unit and the reason of each, and a test that notices when one is
-/// changed by a factor of two. Limits on the work of a solver are not here.
+/// Holds every number on which a verdict, a finding or the choice of a method depends: its unit,
+/// what it decides, and why it is there. A test notices when one is changed by a factor of two.
+/// Limits on the work of a solver are not here.
 struct Thresholds {
+  /// [α] At a smaller difference from Mindlin's exponent no rig is tried. The branches then differ
+  /// by 1 % of Tc: less does not call for a rig, however certain.
   double shape_effect = 0.05;
+  /// [ΔAICc] Fits that differ by less are not distinguished. Evidence of e² to 1; by noise a
+  /// superfluous parameter gains more with probability P(χ²₁ > 6) = 1.4 %.
   double indistinguishable = 4.0;
+  /// [σ/k] A contact stiffer than this is taken as rigid. The contact then takes 3 % of the travel
+  /// before slip: the loop is that of a Jenkins element, whatever α.
   double rigid_beside_rig = 30.0;
+  /// [rms over half gap or T*] A smaller misfit may be noise however long that remembers. Two per
+  /// cent of the force are visible next to the loop's line in a plot.
   double poor_misfit = 0.02;
+  /// [missed over half gap or T*] A model that misses more is indicative, not quantitative.
+  /// Repeated tests of one seal differ by as much.
   double quantitative_misfit = 0.05;
+  /// [missed over half gap or T*] A model that misses more gives no parameters of the shape. Where
+  /// the law carries half of Tc, an error of 0.15 is a third of the force: the knee is elsewhere.
   double failing_misfit = 0.15;
+  /// [p] Chance at which white noise passes for repeatable. In one loop in a thousand standard
+  /// errors are then inflated needlessly.
   double repeat_chance = 1e-3;
+  /// [p] Records whose residual variances equal noise makes this different less often have each a
+  /// noise level of their own. One set in a hundred of records with equal noise is then weighted
+  /// by chance variances, at no visible cost.
   double noise_differs = 0.01;
+  /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
+  /// are nested loops, run-in or run-out; the same as for X and T*.
   double main_stroke = 0.75;
+  /// [of the strokes] A warning is given if the path through the samples exceeds the strokes by
+  /// more. White noise of 0.8 steps between samples makes this much: one step in five then goes
+  /// backward, and the fit takes it for a reversal.
   double path_excess = 0.25;
+  /// [upper over lower end] σ or Tc does not count as known if its 95 % interval is wider. A
+  /// factor of three either way: the order of magnitude.
   double widest_ratio = 9.0;
+  /// [max(α, 1)] α does not count as known if its 95 % interval is wider. 0 to 1 contains
+  /// Jenkins', Mindlin's and Dahl's exponents alike.
   double widest_shape = 1.0;
+  /// [2 ln Λ] A slip force of far_slip_force is not excluded if it costs less. Five standard
+  /// errors: by the 95 % test alone one loop in twenty far from slip would pass for one that
+  /// slips.
   double open_slip_force = 25.0;
+  /// [of the largest force] A slip force that is not excluded here leaves the interval of Tc open.
+  /// The loop is then that of an elastic contact, to a twentieth of its force.
   double far_slip_force = 20.0;
+  /// [half interval of ln Tc] Above it the likelihood is profiled, not approximated by a parabola.
+  /// exp(0.1) − 1 differs from 0.1 by a twentieth, and so do the ends of the interval.
   double parabola_error = 0.1;
+  /// [fraction of 2 ln Λ] A larger deviation from the parabola, at its 95 % ends of Tc, calls for
+  /// a profile. 15 % of 2 ln Λ are 7 % of the interval's width.
   double parabola_departure = 0.15;
+  /// [T* over Tc] A loop that reaches less is always profiled. Below it the parabola may miss the
+  /// curved valley of α and Tc.
   double parabola_mobilised = 0.9;
+  /// [standard errors] Turning points of the motion between samples are tried if they may move a
+  /// parameter by more. With a bias of this size a 95 % interval covers 94.5 %.
   double turning_point_shift = 0.2;
+  /// [of the samples] A fit is assumed to absorb no more of autocorrelated noise. Beyond it the
+  /// residuals no longer determine the noise: its variance is at most doubled.
   double most_absorbed = 0.5;
+  /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
+  /// by less than 1 % of Tc.
   double jenkins_shape = 0.01;
+  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
+  /// hundred is doubted.
   double doubt = 0.005;
+  /// [rms over noise] Larger residuals are not noise, whatever the tests of omitted terms say.
+  /// Noise by pure error or by neighbours is known to a few per cent: half as much again is what
+  /// no column explains.
   double above_noise = 1.5;
+  /// [samples] Columns of omitted terms are looked for if so many samples pay for each. With fewer
+  /// the columns together explain much of any noise.
   double samples_a_column = 8.0;
+  /// [p] An omitted term that noise alone makes less often is a cause. 22 are tried, so one loop
+  /// in forty has one by chance.
   double cause = 1e-3;
+  /// [of what the best explains] Intervals also include causes that explain at least this much.
+  /// Omitted terms are tried to first order: the better of two imperfect models need not be the
+  /// true one.
   double rival_cause = 0.5;
+  /// [strokes] A poor misfit whose residuals stay correlated for longer is not taken for noise.
+  /// Within half a stroke the force passes through the whole law: noise of that length cannot be
+  /// distinguished from a misfit.
   double noise_memory = 0.5;
+  /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
+  /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
   double undecided = 10.0;
+  /// [places of the loop] If every cycle samples fewer, σ and α are not identifiable. Four each
+  /// for σ, α, Tc and for where the motion turns between them.
   double fewest_places = 16.0;
+  /// [of X] Samples of the loop that are closer are at the same place. The force then differs by a
+  /// hundredth of σX at most.
   double same_place = 0.01;
+  /// [of the range] A record of two strokes that ends this near to its beginning, in both
+  /// channels, is a closed cycle. A step of 300 samples a cycle is as long, and noise of one per
+  /// cent.
   double one_cycle = 0.02;
+  /// [of the range] A record that starts nearer to the end of its strokes has turned there. A
+  /// virgin curve that is cut shorter shows no difference from a steady loop.
   double starts_inside = 0.1;
+  /// [of X] A contact unloaded this near to the first sample was unloaded before it. The end of a
+  /// record counts as a turning point within the same distance.
   double starts_unloaded = 0.02;
+  /// [of half its range] A record without reversals whose first force is as small began at both
+  /// zeros. Noise of the first reading is less: a force that was cut off is more.
   double starts_without_force = 0.1;
+  /// [sums of squares] An initial state that fits the thinned record worse by this factor is given
+  /// up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one parameter by which
+  /// they differ, however few samples the whole record adds.
   double hopeless_past = 4.0;
+  /// [of the last rms] A fit that goes on from the last one and leaves more starts again from a
+  /// scan. Similar cycles leave the same noise: half as much again is another minimum.
   double similar_misfit = 1.5;
+  /// [T* over Tc] A slip force of a loop that slides, and reaches less of it, ran away. A loop
+  /// that slides has carried its slip force, but for the last of an asymptote.
   double mobilised_by_asymptote = 0.9;
+  /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
+  /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.
   double one_amplitude = 0.01;
+  /// [R²] A loop that explains less of the force is not seen, and no parameter is given. The rest
+  /// of the force is three times the loop: if a tenth of it is regular, that is a third of the
+  /// loop.
   double seen_loop = 0.1;
+  /// [of the smaller] Records whose mean loads differ by more are a load series. Tc then differs
+  /// by as much, which a fit of one Tc sees; σ by a third of it.
   double load_difference = 0.01;
+  /// [of the mean] The law follows a load that varies by more: the amplitude of a sine with its
+  /// standard deviation, without the white noise of its readings. The force differs by as much
+  /// where the contact slips.
   double load_variation = 0.01;
+  /// [of Tc] A steady loop that leaves more of the slip force unreached determines no asymmetry.
+  /// The part that never slips may bear any force between its limits, which moves the asymmetry by
+  /// as much.
   double never_slips = 0.01;
+  /// [standard deviations] A prior further from the estimate without it contradicts the records. A
+  /// correct prior lies that far once in 370 fits.
   double prior_distance = 3.0;
 };
-
-struct ThresholdRow {
-  std::string_view name;
-  double Thresholds::*value;
-  std::string_view unit;
-  std::string_view meaning;
-  std::string_view reason;
-};
-
-/// Returns one row a member of Thresholds, in their order.
-std::span<const ThresholdRow> ThresholdTable();
 
 }  // namespace mindahl::identification

@@ -211,7 +211,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
     const double unloaded = solution.theta[offset];
     const auto [lowest, highest] = std::ranges::minmax(record.excitation());
     const double away = std::abs(record.excitation().front() - unloaded);
-    const bool starts_unloaded = problem.state.Of(r) == models::InitialState::kVirgin &&
+    const bool starts_unloaded = problem.state == models::InitialState::kVirgin &&
                                  away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
   }
@@ -311,8 +311,7 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
     const std::vector<double> direction = DirectionsOf(excitation, record.reversals);
     std::array<std::vector<double>, 2> ways;  // down, up
     for (std::size_t i = 0; i < record.size(); ++i) {
-      const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
-      if (record.counts[i] == 0 || is_inserted) continue;
+      if (record.counts[i] == 0) continue;
       ways[direction[i] > 0 ? 1 : 0].push_back(excitation[i]);
       ++samples;
     }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -68,7 +67,7 @@ std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates&
   std::vector<Rows> strokes;
   Eigen::Index begin = 0;
   for (const ScaledRecord& record : problem.data->records) {
-    for (const MainStroke& stroke : MainStrokes(record, thresholds)) {
+    for (const Stroke& stroke : MainStrokes(record, thresholds)) {
       strokes.push_back({begin + static_cast<Eigen::Index>(stroke.begin),
                          static_cast<Eigen::Index>(stroke.end - stroke.begin)});
     }
@@ -127,7 +126,7 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
         return record.force[i] +
                estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
       };
-      for (const MainStroke& stroke : MainStrokes(record, thresholds)) {
+      for (const Stroke& stroke : MainStrokes(record, thresholds)) {
         CrossProduct measured_here;
         CrossProduct model_here;
         std::optional<double> first;

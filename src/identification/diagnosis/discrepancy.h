@@ -1,7 +1,6 @@
 #pragma once
 
 #include "identification/inference/estimates.h"
-#include "identification/intervals.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/fit_result.h"

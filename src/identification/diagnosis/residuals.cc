@@ -9,21 +9,15 @@
 
 namespace mindahl::identification {
 
-std::vector<MainStroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
+std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds) {
   const std::span<const double> excitation = record.excitation();
-  std::vector<MainStroke> strokes;
-  strokes.reserve(record.reversals.size() + 1);
-  const auto length = [&](const MainStroke& stroke) {
+  std::vector<Stroke> strokes = StrokesOf(excitation, record.reversals);
+  const auto length = [&](const Stroke& stroke) {
     return std::abs(excitation[stroke.end] - excitation[stroke.begin]);
   };
   double longest = 0.0;
-  for (std::size_t k = 0; k <= record.reversals.size(); ++k) {
-    const std::size_t begin = k > 0 ? record.reversals[k - 1] : 0;
-    const std::size_t end = k < record.reversals.size() ? record.reversals[k] : record.size() - 1;
-    strokes.push_back({begin, end, excitation[end] > excitation[begin]});
-    longest = std::max(longest, length(strokes.back()));
-  }
-  std::erase_if(strokes, [&](const MainStroke& stroke) {
+  for (const Stroke& stroke : strokes) longest = std::max(longest, length(stroke));
+  std::erase_if(strokes, [&](const Stroke& stroke) {
     return !(length(stroke) > 0) || length(stroke) < thresholds.main_stroke * longest;
   });
   return strokes;
@@ -70,7 +64,7 @@ constexpr std::size_t kStrokeBins = 20;
 using BinMeans = std::array<double, kStrokeBins>;
 
 /// Means of one stroke's residuals over its parts; NaN where a part has none.
-BinMeans MeansOf(const MainStroke& stroke, const ScaledRecord& record,
+BinMeans MeansOf(const Stroke& stroke, const ScaledRecord& record,
                  std::span<const double> residual) {
   BinMeans sum{};
   std::array<std::size_t, kStrokeBins> count{};
@@ -99,8 +93,8 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   std::array<std::vector<BinMeans>, 2> means;
   std::array<double, 2> squares{};
   double samples = 0.0;
-  for (const MainStroke& stroke : MainStrokes(record, thresholds)) {
-    const std::size_t side = stroke.rises ? 0 : 1;
+  for (const Stroke& stroke : MainStrokes(record, thresholds)) {
+    const std::size_t side = stroke.direction > 0 ? 0 : 1;
     double own_squares = 0.0;
     double count = 0.0;
     for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,15 +10,8 @@
 
 namespace mindahl::identification {
 
-/// A stroke about as long as the record's longest.
-struct MainStroke {
-  std::size_t begin = 0;
-  std::size_t end = 0;  // the sample where it ends
-  bool rises = false;
-};
-
 /// Returns the strokes that are no shorter than `main_stroke` of the longest.
-std::vector<MainStroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
+std::vector<Stroke> MainStrokes(const ScaledRecord& record, const Thresholds& thresholds);
 
 /// Describes the residuals that count; differences are taken within a record. Effective samples and
 /// degrees of freedom, which need the noise, are left at 0.

@@ -1,7 +1,7 @@
 #include "identification/gram/gram.h"
 
+#include <Eigen/QR>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "identification/dense.h"
@@ -38,7 +38,9 @@ Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
   law_norms_ = Normalize(j);
   omitted_norms_ = Normalize(c);
   const Eigen::MatrixXd of_law = TransposedProduct(j, j);
-  inverse_of_law_ = j.cols() > 0 ? PseudoInverse(of_law) : of_law;
+  inverse_of_law_ = j.cols() > 0
+                        ? Eigen::MatrixXd(of_law.completeOrthogonalDecomposition().pseudoInverse())
+                        : of_law;
   const Eigen::MatrixXd mixed = TransposedProduct(j, c);
   shares_ = Product(inverse_of_law_, mixed);
   law_residual_ = j.transpose() * residual;

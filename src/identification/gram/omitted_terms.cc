@@ -8,9 +8,9 @@
 
 #include "core/probability.h"
 #include "identification/gram/gram.h"
+#include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
-#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {

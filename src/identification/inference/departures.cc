@@ -31,56 +31,44 @@ double BulgeOfDisplacement(const Place& at) {
 
 constexpr auto kDepartures = std::to_array<Departure>({
     {.code = "channel_lag",
-     .meaning = "delay of the force's channel",
      .group = "lag",
      .term = "lag",
      .columns = {{{Lag}}},
      // A force that is read late meets the displacement of later.
      .of_displacement = {{{[](const Place& at) { return at.rate; }}}}},
     {.code = "viscous_force",
-     .meaning = "C of a force C·dδ/dt; it dissipates where positive",
      .group = "viscous",
      .term = "viscous",
      .columns = {{{[](const Place& at) { return at.velocity; }}}}},
     {.code = "plateau_slope",
-     .meaning = "stiffness of a spring parallel to the contact",
      .group = "plateau_slope",
      .term = "plateau_slope",
      .columns = {{{[](const Place& at) { return at.displacement; }}}}},
     {.code = "force_drift",
-     .meaning = "rate of drift of the force, with the sign that it has in the file",
      .group = "force_drift",
      .term = "force_drift",
      .columns = {{{[](const Place& at) { return at.time; }}}}},
     {.code = "normal_load",
-     .meaning = "relative change of the contact's force over that of the measured load: 1 in "
-                "proportion",
      .columns = {{{[](const Place& at) { return at.force * at.load_change; }}}}},
     {.code = "shape_of_law",
-     .meaning = "bulge of each branch, halfway to slip",
      .columns = {{{Bulge<1>, true}, {Bulge<2>, true}, {Bulge<3>, true}}},
      .of_displacement = {{{BulgeOfDisplacement<1>, true},
                           {BulgeOfDisplacement<2>, true},
                           {BulgeOfDisplacement<3>, true}}}},
-    {.code = "guide_friction",
-     .meaning = "Coulomb friction parallel to the contact; it dissipates where positive",
-     .columns = {{{[](const Place& at) { return at.direction; }}}}},
+    {.code = "guide_friction", .columns = {{{[](const Place& at) { return at.direction; }}}}},
     {.code = "rig_in_series",
-     .meaning = "compliance of a spring in series",
      .group = "rig_stiffness",
      .term = "rig_stiffness",
      .columns = {{{[](const Place& at) { return -at.slope * (at.carried - at.origin_carried); },
                    true}}},
      .of_displacement = {{{[](const Place& at) { return at.force; }}}}},
     {.code = "backlash",
-     .meaning = "the whole travel that is lost at a reversal",
      .group = "backlash",
      .term = "backlash",
      .columns = {{{[](const Place& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; },
                    true}}},
      .of_displacement = {{{[](const Place& at) { return at.virgin ? 0.0 : at.direction / 2; }}}}},
     {.code = "displacement_sensor",
-     .meaning = "the contact sees x + size·x²/L, x from the record's middle; and x³",
      .columns = {{{[](const Place& at) {
                      return at.slope * (at.displacement * at.displacement - at.origin * at.origin);
                    },
@@ -91,25 +79,19 @@ constexpr auto kDepartures = std::to_array<Departure>({
                    true}}},
      .of_displacement = {{{[](const Place& at) { return -at.displacement * at.displacement; }},
                           {[](const Place& at) { return -Cube(at.displacement); }}}}},
-    {.code = "inertia",
-     .meaning = "mass in front of the sensor of the force, m·d²δ/dt²",
-     .group = "inertia",
-     .term = "inertia",
-     .columns = {{{[](const Place& at) { return at.acceleration; }}}}},
+    {.code = "inertia", .group = "inertia", .term = "inertia", .columns = {{{[](const Place& at) {
+                                                                 return at.acceleration;
+                                                               }}}}},
     {.code = "unequal_directions",
-     .meaning = "force (1 ± size)·T, + where it acts along positive displacement; for a virgin "
-                "contact also slip forces Tc(1 ± A)",
      .group = "asymmetry",
      .term = "asymmetry",
      .columns = {{{[](const Place& at) { return std::abs(at.force); }},
                   {[](const Place& at) { return at.asymmetry; }}}}},
     {.code = "running_in",
-     .meaning = "growth of the contact's force from the first record's beginning to its end",
      .group = "slip_trend",
      .term = "slip_trend",
      .columns = {{{[](const Place& at) { return at.force * at.time; }}}}},
     {.code = "force_saturates",
-     .meaning = "fraction lost of the excess over nine tenths of the largest force; and T³",
      .columns = {{{[](const Place& at) {
                     constexpr double kFrom = 0.9;  // of the largest force
                     return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak),
@@ -117,37 +99,23 @@ constexpr auto kDepartures = std::to_array<Departure>({
                   }},
                   {[](const Place& at) { return Cube(at.force); }}}}},
     {.code = "slip_position",
-     .meaning = "growth of the contact's force over L from the record's middle; and of |T|, which "
-                "differs by direction",
      .group = "slip_position",
      .term = "slip_slope",
      .columns = {{{Position}, {PositionOfSize}}}},
     {.code = "force_of_position",
-     .meaning = "force size·Tc·(x/L)²; and x³",
      .columns = {{{[](const Place& at) { return at.displacement * at.displacement; }},
                   {[](const Place& at) { return Cube(at.displacement); }}}}},
     // Its columns are those of the file.
-    {.code = "covariate",
-     .meaning = "C of a force C·column; each of up to 8 columns that no option names",
-     .group = "covariate",
-     .term = "covariate"},
-    {.code = "smoothing",
-     .meaning =
-         "standard deviation of the time window over which the force is averaged; of that of "
-         "the displacement where negative",
-     .columns = {{{[](const Place& at) { return at.curvature / 2; }}}}},
+    {.code = "covariate", .group = "covariate", .term = "covariate"},
+    {.code = "smoothing", .columns = {{{[](const Place& at) { return at.curvature / 2; }}}}},
     // A turn is the first of its repeats, where nothing is missed.
     {.code = "held_displacement",
-     .meaning = "fraction of the motion between two readings of the displacement that is not read",
      .columns = {{{[](const Place& at) { return at.slope * at.missed; }, true}}}},
     {.code = "displacement_drift",
-     .meaning = "rate of drift of a fitted displacement, with the sign that it has in the file",
      .group = "displacement_drift",
      .term = "displacement_drift",
      .of_displacement = {{{[](const Place& at) { return at.time; }}}}},
     {.code = "speed_power",
-     .meaning = "forces in proportion to the square root of the speed, along the motion, and to "
-                "the velocity",
      .group = "slip_speed",
      .term = "speed_exponent",
      .columns = {{{[](const Place& at) {
@@ -155,8 +123,6 @@ constexpr auto kDepartures = std::to_array<Departure>({
                   }},
                   {[](const Place& at) { return at.speed; }}}}},
     {.code = "slip_position_quadratic",
-     .meaning = "growth of the contact's force over L from the record's middle; and over x², each "
-                "also of |T|, which differs by direction",
      .group = "slip_position_quadratic",
      .term = "slip_slope",
      .columns = {{{Position},
@@ -164,8 +130,6 @@ constexpr auto kDepartures = std::to_array<Departure>({
                   {PositionOfSize},
                   {[](const Place& at) { return PositionOfSize(at) * at.displacement; }}}}},
     {.code = "clock_drift",
-     .meaning = "delay of the force that builds up from the first record's beginning to its end; "
-                "and a lag from there on",
      .columns = {{{[](const Place& at) { return Lag(at) * at.time; }}, {Lag}}}},
 });
 
@@ -208,7 +172,7 @@ std::vector<std::size_t> NewCovariates(const Problem& problem) {
   return covariates;
 }
 
-bool IsFitted(const Problem& problem, const Departure& departure) {
+bool HasTermOf(const Problem& problem, const Departure& departure) {
   return std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
     return problem.parameters[p].term->name == departure.term;
   });
@@ -258,7 +222,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       taken = std::min(covariates.size(), most - static_cast<std::size_t>(count));
       continue;
     }
-    if (IsFitted(problem, departure)) continue;
+    if (HasTermOf(problem, departure)) continue;
     OmittedTerm term{.departure = &departure};
     for (const DepartureColumn& column : departure.ColumnsOf(data.excitation)) {
       if (column.value == nullptr) continue;

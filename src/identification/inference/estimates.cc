@@ -1,14 +1,12 @@
 #include "identification/inference/estimates.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
+#include <optional>
 #include <utility>
 
 #include "core/probability.h"
-#include "identification/intervals.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
@@ -41,12 +39,6 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
   }
   return values;
 }
-
-Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     const DisplacementEffect& displacement, const Thresholds& thresholds,
-                     Response& response)
-    : Estimates(problem, solution, noise, displacement, thresholds,
-                LinearizeAt(problem, solution.theta, response, problem.parameters.free())) {}
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
                      const DisplacementEffect& displacement, const Thresholds& thresholds,
@@ -167,6 +159,34 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
   return white_variance_ * full_.white_factor(place, place) /
          (variance_ * full_.factor(place, place));
+}
+
+namespace {
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+}  // namespace
+
+void SetInterval(ParameterEstimate& estimate, Ends ends) {
+  const auto closed = [](double end) {
+    return std::isfinite(end) ? std::optional(end) : std::nullopt;
+  };
+  estimate.lower95 = closed(ends.lower.value_or(-kUnbounded));
+  estimate.upper95 = closed(ends.upper.value_or(kUnbounded));
+}
+
+void Include(ParameterEstimate& estimate, Ends ends) {
+  // std::min and std::max return their first argument where it is NaN, and SetInterval() opens that
+  // end.
+  const double lower =
+      std::min(ends.lower.value_or(-kUnbounded), estimate.lower95.value_or(-kUnbounded));
+  const double upper =
+      std::max(ends.upper.value_or(kUnbounded), estimate.upper95.value_or(kUnbounded));
+  SetInterval(estimate, {.lower = lower, .upper = upper});
+}
+
+void WithdrawInterval(ParameterEstimate& estimate) {
+  estimate.standard_error.reset();
+  estimate.lower95.reset();
+  estimate.upper95.reset();
 }
 
 }  // namespace mindahl::identification

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "identification/inference/local.h"
@@ -16,17 +13,37 @@
 
 namespace mindahl::identification {
 
+using ParameterEstimates = std::vector<ParameterEstimate>;
+
+/// Longest linear step of θ that an interval takes: beyond a factor of e³ it says only that little
+/// is known.
+inline constexpr double kFarthestStep = 3.0;
+
+/// Ends of an interval, or of a part of one; empty where it is open.
+struct Ends {
+  std::optional<double> lower = {};
+  std::optional<double> upper = {};
+};
+
+// The one place where the interval of an estimate is written, the union of its parts.
+
+/// Begins the interval anew. An end that is not finite is open.
+void SetInterval(ParameterEstimate& estimate, Ends ends);
+
+/// Extends the interval by a part: an end that is open in either is open from then on. Leaves an
+/// estimate without an interval, held or undetermined, as it is.
+void Include(ParameterEstimate& estimate, Ends ends);
+
+/// Takes back the interval and the standard error.
+void WithdrawInterval(ParameterEstimate& estimate);
+
 /// Standard errors, intervals and correlations of one fit, from the likelihood's parabola at its
 /// maximum.
 class Estimates {
  public:
   /// @param problem       with `solution`, must outlive this
   /// @param displacement  of the drawn errors, in units of the noise's variance
-  Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            const DisplacementEffect& displacement, const Thresholds& thresholds,
-            Response& response);
-
-  /// @param at  the problem by all its free parameters, near the solution
+  /// @param at            the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
             const DisplacementEffect& displacement, const Thresholds& thresholds, Linearization at);
 

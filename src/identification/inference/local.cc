@@ -1,13 +1,13 @@
 #include "identification/inference/local.h"
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "identification/dense.h"
-#include "identification/solve/turning_points.h"
 
 namespace mindahl::identification {
 namespace {
@@ -19,10 +19,13 @@ constexpr double kRegular = 1e-5;
 /// A parameter with more than this component in a null direction is not determined.
 constexpr double kNullComponent = 1e-3;
 
-/// Returns R of J = QR, which has J's singular values and is small, however long the record; its
-/// diagonal is not negative.
+/// Returns R of J = QR, of as many rows as J has columns, which has J's singular values and is
+/// small, however long the record; its diagonal is not negative.
 Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd triangle = UpperTriangle(columns);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> factors(columns);
+  Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  const Eigen::Index rows = std::min(columns.cols(), columns.rows());
+  triangle.topRows(rows) = factors.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
   for (Eigen::Index j = 0; j < triangle.rows(); ++j) {
     if (triangle(j, j) < 0) triangle.row(j) *= -1;
   }
@@ -32,7 +35,8 @@ Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
 /// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
 std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
   if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
-  Eigen::MatrixXd inverse = InverseOfTriangle(triangle);
+  Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
+      Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
   // |R|·|R⁻¹| bounds the ratio of the singular values.
   if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;
   return inverse;
@@ -43,13 +47,13 @@ std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle)
 Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& norms,
                                     LocalUncertainty& result) {
   const Eigen::Index size = triangle.cols();
-  const RightSingular svd = RightSingularVectors(triangle);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
   Eigen::MatrixXd half(size, size);
   Eigen::Index rank = 0;
   for (Eigen::Index k = 0; k < size; ++k) {
-    const double value = k < svd.values.size() ? svd.values[k] : 0.0;
-    const Eigen::VectorXd direction = svd.vectors.col(k);
-    if (value > kRankTolerance * svd.values[0]) {
+    const double value = svd.singularValues()[k];
+    const Eigen::VectorXd direction = svd.matrixV().col(k);
+    if (value > kRankTolerance * svd.singularValues()[0]) {
       half.col(rank++) = direction / value;
       continue;
     }

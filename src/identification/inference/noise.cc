@@ -162,7 +162,11 @@ Eigen::MatrixXd Autocorrelation::FilterBackwards(
 
 Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
   if (order == 0 || columns.cols() == 0) return TransposedProduct(columns, columns);
-  return innovation_share * SquareOf(FilterBackwards(columns));
+  // Symmetric to the last bit.
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  square.selfadjointView<Eigen::Lower>().rankUpdate(FilterBackwards(columns));
+  square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
+  return innovation_share * square;
 }
 
 double Noise::effective_samples() const {

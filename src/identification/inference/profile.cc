@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/noise.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/loop/disturbances.h"
 
 namespace mindahl::identification {
@@ -19,7 +21,7 @@ constexpr double kParabolic = 0.5;
 class HeldParameter {
  public:
   HeldParameter(const FittedProblem& fitted, std::size_t parameter, const SolverOptions& options,
-                SearchBuffers& buffers)
+                Solver& solver)
       : problem_(fitted.problem),
         parameter_(parameter),
         best_(fitted.solution),
@@ -27,9 +29,9 @@ class HeldParameter {
         evidence_(fitted.noise.samples, static_cast<double>(fitted.noise.samples) *
                                             fitted.estimates.WhiteShare(parameter)),
         options_(options),
-        solver_(buffers.solver) {
+        solver_(solver) {
     problem_.parameters.Fix(parameter, best_.theta[parameter]);
-    solver_.Bind(problem_, buffers.response);
+    solver_.Bind(problem_);
   }
   HeldParameter(const HeldParameter&) = delete;
   HeldParameter& operator=(const HeldParameter&) = delete;
@@ -167,7 +169,7 @@ bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter,
 /// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
 /// is badly known, and where the likelihood at the ends of the parabola's interval is another one.
 bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
-                  SearchBuffers& buffers) {
+                  Solver& solver) {
   const auto& [problem, best, noise, estimates] = fitted;
   if (problem.parameters[parameter].fixed || problem.parameters[parameter].absent) return false;
   const bool is_inside =
@@ -181,7 +183,7 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
   const double critical = estimates.critical();
   search.last_step = kLastGain * noise.variance / (best.sum_of_squares + critical * noise.variance);
-  HeldParameter held(fitted, parameter, search, buffers);
+  HeldParameter held(fitted, parameter, search, solver);
   return std::ranges::any_of(std::array{-half, half}, [&](double step) {
     const std::vector<double> start = estimates.Beside(parameter, step);
     const double ratio = held.At(start[parameter], start) / critical;
@@ -191,12 +193,12 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
 
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
 std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult& result,
-                                    const FitOptions& options, SearchBuffers& buffers) {
+                                    const FitOptions& options, Solver& solver) {
   const bool slips =
       result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
-  if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, buffers) ||
-      NeedsProfile(fitted, kRig, options, buffers)) {
+  if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, solver) ||
+      NeedsProfile(fitted, kRig, options, solver)) {
     return {kStiffness, kShape, kSlipForce, kRig};
   }
   // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
@@ -209,12 +211,12 @@ std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult
 }  // namespace
 
 Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
-             SearchBuffers& buffers) {
+             Solver& solver) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = fitted.problem.parameters.free().size() > kMany;
-  HeldParameter held(fitted, parameter, search, buffers);
+  HeldParameter held(fitted, parameter, search, solver);
   const Parameter& of = fitted.problem.parameters[parameter];
   const auto value_of = [&](std::optional<double> theta) {
     return theta ? std::optional(of.ToValue(*theta)) : std::nullopt;
@@ -226,15 +228,15 @@ Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOption
 }
 
 ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
-                                const FitOptions& options, SearchBuffers& buffers) {
+                                const FitOptions& options, Solver& solver) {
   ParameterEstimates parameters = result.parameters;
   const double quantile = fitted.estimates.quantile();
-  for (const std::size_t p : ProfiledOf(fitted, result, options, buffers)) {
+  for (const std::size_t p : ProfiledOf(fitted, result, options, solver)) {
     if (fitted.problem.parameters[p].fixed || fitted.problem.parameters[p].absent) continue;
     const auto& reported = fitted.problem.parameters.reported();
     const auto k = static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin());
     ParameterEstimate& estimate = parameters[k];
-    SetInterval(estimate, Profile(fitted, p, options, buffers));
+    SetInterval(estimate, Profile(fitted, p, options, solver));
     if (!estimate.lower95 || !estimate.upper95) {
       estimate.standard_error.reset();
     } else if (estimate.standard_error) {
@@ -263,6 +265,53 @@ ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult&
     SetInterval(slip_force, {.lower = carried});
   }
   return slip_force;
+}
+
+using contact::kMindlinShapeExponent;
+
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
+                                     const ParameterEstimate& shape, const FitOptions& options,
+                                     Solver& solver) {
+  const auto& [problem, best, noise, estimates] = fitted;
+  // The law of a load that varies has none, nor has that of an imposed force.
+  if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
+      shape.status == ParameterStatus::kFixed || !shape.upper95 ||
+      !(*shape.upper95 < kMindlinShapeExponent) ||
+      !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
+    return std::nullopt;
+  }
+  FitOptions with_rig = options;
+  with_rig.terms.emplace_back("rig_stiffness");
+  with_rig.fixed["alpha"] = kMindlinShapeExponent;
+  with_rig.start.clear();
+  Candidate sprung(*problem.data, with_rig, problem.state);
+  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), solver);
+  Descend(sprung, with_rig, solver);
+  const Solution& solution = sprung.solution;
+  // Both have as many parameters: ΔAICc is 2 ln Λ.
+  const auto samples = static_cast<double>(noise.samples);
+  const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))
+                          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
+  if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
+  return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
+                        .law = sprung.problem.parameters.LawAt(solution.theta)};
+}
+
+ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
+                              ParameterEstimates parameters) {
+  const models::BranchLaw& law = rig.law;
+  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
+    return parameters;
+  }
+  Include(parameters[kShape], {.lower = kMindlinShapeExponent, .upper = kMindlinShapeExponent});
+  for (const auto& [p, value] :
+       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
+    ParameterEstimate& estimate = parameters[p];
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    const double ratio = value / estimate.value;
+    Include(estimate, {.lower = ratio * *estimate.lower95, .upper = ratio * *estimate.upper95});
+  }
+  return parameters;
 }
 
 }  // namespace mindahl::identification

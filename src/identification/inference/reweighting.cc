@@ -386,8 +386,9 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const DisplacementErrors& displacement_errors, Solver& solver,
-                    Response& response, const SolverOptions& solver_options, Solution& solution,
-                    Noise& noise, bool by_record) {
+                    const SolverOptions& solver_options, Solution& solution, Noise& noise,
+                    bool by_record) {
+  Response& response = solver.response;
   Weighting weighting(problem, data, options, displacement_errors, by_record);
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
@@ -412,7 +413,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
       // Weights and forces that chase each other meet at the weights' mean.
       weighting.GoPartOfTheWay(last_weight, 1.0 / std::max(round - kHuberRounds + 2, 1));
       const std::vector<double> start = solution.theta;
-      solver.Bind(problem, response);
+      solver.Bind(problem);
       solver.Solve(start, solver_options, solution);
     }
     response.Bind(problem);

@@ -75,7 +75,7 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const DisplacementErrors& displacement_errors, Solver& solver,
-                    Response& response, const SolverOptions& solver_options, Solution& solution,
-                    Noise& noise, bool by_record = false);
+                    const SolverOptions& solver_options, Solution& solution, Noise& noise,
+                    bool by_record = false);
 
 }  // namespace mindahl::identification

@@ -12,40 +12,35 @@
 namespace mindahl::identification {
 namespace {
 
-/// Times of samples that were measured, made to go on.
-/// @param samples  places of the measured among all
-void SpreadEvenly(std::span<const std::size_t> samples, std::span<double> clock) {
+/// Makes times go on: those that stand still or step back lie evenly between the last that went on
+/// and the next that does.
+void SpreadEvenly(std::span<double> clock) {
   std::size_t begin = 0;
   const auto spread = [&](std::size_t end, double step) {
     for (std::size_t k = begin + 1; k < end; ++k) {
-      clock[samples[k]] = clock[samples[begin]] + step * static_cast<double>(k - begin);
+      clock[k] = clock[begin] + step * static_cast<double>(k - begin);
     }
   };
-  for (std::size_t k = 1; k < samples.size(); ++k) {
-    const double way = clock[samples[k]] - clock[samples[begin]];
+  for (std::size_t k = 1; k < clock.size(); ++k) {
+    const double way = clock[k] - clock[begin];
     if (!(way > 0)) continue;
     spread(k, way / static_cast<double>(k - begin));
     begin = k;
   }
-  spread(samples.size(), clock[samples[begin]] - clock[samples[begin - 1]]);
+  spread(clock.size(), clock[begin] - clock[begin - 1]);
 }
 
 bool GoesOn(std::span<const double> time) {
   return std::ranges::any_of(time, [&](double at) { return at > time.front(); });
 }
 
-struct Lags {
-  double least = 0.0;  // [s], or samples
-  double most = 0.0;
-};
-
-/// Returns the lags that the options allow.
+/// Returns the lags that the options allow [s, or samples].
 /// @param first  the first record, whose cycles the bounds are of
-Lags LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
+loop::Interval LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
   const auto fixed = options.fixed.find("lag");
   if (fixed != options.fixed.end()) return {fixed->second, fixed->second};
   const auto bound = options.bounds.find("lag");
-  if (bound != options.bounds.end()) return {bound->second.lower, bound->second.upper};
+  if (bound != options.bounds.end()) return bound->second;
   const std::size_t reversals = first.reversals.size();
   const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
                          MeanCycleDuration(first.record.time, first.size(), reversals);
@@ -61,21 +56,9 @@ double LongestLag(double samples_a_cycle) {
 }
 
 void SetClocks(ScaledRecords& data) {
-  std::vector<std::size_t> samples;
   for (ScaledRecord& record : data.records) {
-    const auto is_inserted = [&](std::size_t i) {
-      return !record.inserted.empty() && record.inserted[i] != 0;
-    };
-    record.clock.assign(record.time.begin(), record.time.end());
-    samples.clear();
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (!is_inserted(i)) samples.push_back(i);
-    }
-    SpreadEvenly(samples, record.clock);
-    // A turning point between two samples, which has a neighbour on either side.
-    for (std::size_t i = 1; i + 1 < record.size(); ++i) {
-      if (is_inserted(i)) record.clock[i] = (record.clock[i - 1] + record.clock[i + 1]) / 2;
-    }
+    record.clock = record.time;
+    SpreadEvenly(record.clock);
   }
 }
 
@@ -88,7 +71,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     throw InvalidArgument(
         "lag needs a time that increases in every record, or records without a time");
   }
-  const Lags lags = LagsOf(options, first);
+  const loop::Interval lags = LagsOf(options, first);
   for (std::size_t r = 0; r < records.records.size(); ++r) {
     loop::PreparedRecord& record = records.records[r];
     const auto time = [&](std::size_t i) {
@@ -97,14 +80,14 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     const double begin = time(0);
     const double end = time(record.size() - 1);
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (time(i) - lags.most < begin || time(i) - lags.least > end) record.counts[i] = 0;
+      if (time(i) - lags.upper < begin || time(i) - lags.lower > end) record.counts[i] = 0;
     }
     record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
     if (record.left_out < record.size()) continue;
     throw InvalidArgument(
         fmt::format("nothing is left of record {}: with lags of {:.6g} to {:.6g} every sample that "
                     "counts is moved beyond one of its ends: give smaller ones, --bound lag=LO:HI",
-                    r + 1, lags.least, lags.most));
+                    r + 1, lags.lower, lags.upper));
   }
 }
 
@@ -199,14 +182,11 @@ void SamplesBehindGap::Fill(const ScaledRecord& record, double gap,
   for (auto* places : {&places_, &unloading_, &loading_}) places->resize(record.size());
   direction_.resize(record.size());
   bears_.assign(record.size(), 1);
-  std::vector<Stroke> strokes;
+  const std::vector<Stroke> strokes = StrokesOf(x, record.reversals);
   std::vector<Place> ends;
-  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
-    const std::size_t begin = s == 0 ? 0 : strokes.back().end;
-    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
-    const double direction = x[end] >= x[begin] ? 1.0 : -1.0;
+  ends.reserve(strokes.size());
+  for (const auto& [begin, end, direction] : strokes) {
     const double side = record.force[end] == 0 ? direction : std::copysign(1.0, record.force[end]);
-    strokes.push_back({begin, end, direction});
     ends.push_back({x[end] - side * half, -side / 2});
   }
   Place from;

@@ -120,11 +120,6 @@ class SamplesBehindGap : public MovedSamples {
     double displacement = 0.0;
     double rate = 0.0;
   };
-  struct Stroke {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    double direction = 1.0;
-  };
 
   void Fill(const ScaledRecord& record, double gap, const models::InitialContact& initial) override;
   /// Fills the places of a stroke's samples from `first`, in the order in which the contact comes

@@ -1,7 +1,6 @@
 #include "identification/problem/parameters.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -29,9 +28,7 @@ Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
   Eigen::MatrixXd forces(2 * static_cast<Eigen::Index>(data.samples()), 2);  // ends count twice
   Eigen::Index count = 0;
   for (const ScaledRecord& record : data.records) {
-    std::size_t begin = 0;
-    for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
-      const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
+    for (const auto& [begin, end, direction] : StrokesOf(record.displacement, record.reversals)) {
       const double from = record.displacement[begin];
       const double way = record.displacement[end] - from;
       for (std::size_t i = begin; i <= end && (way > 0) == is_up; ++i) {
@@ -39,7 +36,6 @@ Eigen::MatrixXd SlidingForces(const ScaledRecords& data, bool is_up) {
         if ((position - from) / way < kMayStick || record.counts[i] == 0) continue;
         forces.row(count++) << position, record.force[i];
       }
-      begin = end;
     }
   }
   if (count < kFewest) count = 0;
@@ -147,7 +143,7 @@ bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
   if (BeginsAtZero(data, options)) {
     Hold(parameter, 0.0);
-  } else if (parameter.term->entry != Entry::kLinear) {
+  } else if (parameter.term->column == Regressor::kNone) {
     parameter.theta = data.excitation().front();
     parameter.fixed = parameter.assumed = true;
   }
@@ -250,7 +246,7 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
-                       const RecordStates& state)
+                       models::InitialState state)
     : records_(data.records.size()), origin_(OriginId(data.excitation)) {
   const std::span<const Term> terms = Terms(loop::Other(data.excitation));
   parameters_.reserve(terms.size() * records_ + options.covariates.size());
@@ -269,17 +265,16 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     for (const Term& term : terms) {
       if (term.scope != Scope::kRecord) continue;
       Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.id == origin_ && state.Of(r) == models::InitialState::kSteady) {
+      if (term.id == origin_ && state == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
   }
   ApplyOptions(options, state, data.prior_noise);
-  RequireShapedColumns();
   RequireNeededTerms();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
-    if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
+    if (state == models::InitialState::kSteady) HoldConfoundedAsymmetry();
     if (data.load_varies) KeepShapeBelowOne(options);
   }
   for (const Parameter& parameter : parameters_) {
@@ -294,34 +289,10 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   Sort();
 }
 
-Parameters::Parameters(const Parameters& all, std::size_t record) : origin_(all.origin_) {
-  for (const Parameter& parameter : all) {
-    const bool is_own = parameter.term->scope == Scope::kRecord;
-    if (is_own && parameter.record != record) continue;
-    parameters_.push_back(parameter);
-    if (is_own) parameters_.back().record = 0;
-  }
-  Sort();
-}
-
 bool Parameters::any_zero_is_known() const {
   return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
     return parameter.term->id == TermId::kForceOffset && parameter.fixed;
   });
-}
-
-/// Refuses a parameter that shapes columns of others where none of these is fitted.
-void Parameters::RequireShapedColumns() const {
-  for (const Parameter& shaping : parameters_) {
-    if (shaping.absent || shaping.term->shapes.empty()) continue;
-    const bool any = std::ranges::any_of(parameters_, [&](const Parameter& parameter) {
-      return !parameter.absent && parameter.term->column != Regressor::kNone &&
-             parameter.term->name.starts_with(shaping.term->shapes);
-    });
-    if (any) continue;
-    throw InvalidArgument(fmt::format("{} has no effect without a term {}: add it",
-                                      shaping.term->name, shaping.term->shapes));
-  }
 }
 
 /// Refuses a parameter without the one that it needs.
@@ -441,7 +412,7 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options, const RecordStates& state,
+void Parameters::ApplyOptions(const FitOptions& options, models::InitialState state,
                               double prior_noise) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name, options.response());
@@ -476,7 +447,7 @@ void Parameters::ApplyOptions(const FitOptions& options, const RecordStates& sta
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->id == origin_ && state.AreAll(models::InitialState::kSteady)) {
+    if (parameter.term->id == origin_ && state == models::InitialState::kSteady) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",

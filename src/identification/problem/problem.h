@@ -21,7 +21,7 @@ namespace mindahl::identification {
 struct Problem {
   const ScaledRecords* data;
   const models::FrictionModel* model;
-  RecordStates state;
+  models::InitialState state;  // of all records
   Parameters parameters;
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }

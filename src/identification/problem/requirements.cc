@@ -1,7 +1,6 @@
 #include "identification/problem/requirements.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,28 +42,14 @@ void RequireTermsOfResponse(const FitOptions& options) {
   }
 }
 
-/// Counts the samples left out by reason: "; of 12 that were read 8 are left out: 2 glitches, …".
-std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOptions& fit) {
-  const loop::PreparationOptions& options = fit.preparation;
+/// Says how many samples do not count: "; of 12 that were read 8 are left out, 2 of them glitches".
+std::string WhatIsLeftOut(const loop::PreparedRecords& prepared) {
   const std::size_t left_out = prepared.samples() - prepared.counted();
   if (left_out == 0) return "";
   std::size_t glitches = 0;
   for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total();
-  std::vector<std::string> reasons;
-  if (glitches > 0) reasons.push_back(fmt::format("{} glitches", glitches));
-  std::vector<std::string> masks;
-  if (options.load_window) masks.emplace_back("outside the load window");
-  if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
-  if (options.cycles) masks.emplace_back("outside the requested cycles");
-  if (options.samples) masks.emplace_back("outside the requested samples");
-  if (!options.held_out.empty()) masks.emplace_back("held out");
-  if (HasTerm(fit, TermId::kLag)) masks.emplace_back("beyond the motion that a lag needs");
-  if (!masks.empty() && left_out > glitches) {
-    reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
-  }
-  if (reasons.empty()) return "";
-  return fmt::format("; of {} that were read {} are left out: {}", prepared.samples(), left_out,
-                     fmt::join(reasons, ", "));
+  return fmt::format("; of {} that were read {} are left out, {} of them glitches",
+                     prepared.samples(), left_out, glitches);
 }
 
 constexpr std::size_t kChords = 10;
@@ -121,41 +106,30 @@ void RequireOptions(const FitOptions& options) {
   }
 }
 
-void RequireInitialStates(const FitOptions& options, std::size_t records) {
-  const std::size_t states = options.initial_states.size();
-  if (states == 0 || states == records) return;
-  throw InvalidArgument(
-      fmt::format("{} initial states for {} records: give one a record", states, records));
-}
-
-void RequireOneLoad(const ScaledRecords& data) {
-  if (!data.is_forced()) return;
+void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
+  const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
-  if (!data.is_load_series && !data.load_varies && !varies) return;
-  throw InvalidArgument(
-      "the normal load differs or varies, which a fit of the displacement does not model: fit the "
-      "records of one load, or fit the force");
-}
-
-void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
+  if (is_forced && (data.is_load_series || data.load_varies || varies)) {
+    throw InvalidArgument(
+        "the normal load differs or varies, which a fit of the displacement does not model: fit "
+        "the records of one load, or fit the force");
+  }
   constexpr double kLargest = 1e100;  // in half ranges of the force
   const std::optional<double> noise = options.response_noise();
   if (!noise || *noise / data.response_unit() < kLargest) return;
-  const bool is_forced = data.is_forced();
   ThrowInvalid(is_forced ? "displacement noise [m]" : "force noise [N]", *noise,
                fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
                            is_forced ? "displacement" : "force", data.response_unit(),
                            is_forced ? "m" : "N"));
 }
 
-void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
-                          const FitOptions& options) {
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared) {
   const std::size_t free = problem.parameters.free().size();
   if (problem.data->counted >= free) return;
   throw TooFewSamples(
       fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
-                  problem.data->counted, free, WhatIsLeftOut(prepared, options)));
+                  problem.data->counted, free, WhatIsLeftOut(prepared)));
 }
 
 void RequireToldAsymmetry(const Problem& problem) {

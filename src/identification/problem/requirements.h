@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "identification/problem/problem.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/preparation.h"
@@ -13,18 +11,12 @@ namespace mindahl::identification {
 /// Refuses options that break a rule whatever the records are.
 void RequireOptions(const FitOptions& options);
 
-/// Refuses initial states that are neither none nor one a record.
-void RequireInitialStates(const FitOptions& options, std::size_t records);
-
-/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load.
-void RequireOneLoad(const ScaledRecords& data);
-
-/// Refuses noise of which squares overflow; it is a unit that is meant otherwise.
-void RequireNoise(const FitOptions& options, const ScaledRecords& data);
+/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load, and
+/// noise of which squares overflow.
+void RequireRecords(const FitOptions& options, const ScaledRecords& data);
 
 /// Refuses fewer samples that count than free parameters, and says what was left out.
-void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
-                          const FitOptions& options);
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared);
 
 /// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
 void RequireToldAsymmetry(const Problem& problem);

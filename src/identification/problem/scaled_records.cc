@@ -291,16 +291,9 @@ std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t cov
       return acceleration;
     case Regressor::kCovariate:
       return covariates[covariate];
-    case Regressor::kNone:
-    case Regressor::kOne:
-    case Regressor::kDisplacementSquared:
-    case Regressor::kRippleCosineUp:
-    case Regressor::kRippleSineUp:
-    case Regressor::kRippleCosineDown:
-    case Regressor::kRippleSineDown:
-      break;
+    default:
+      return {};
   }
-  return {};
 }
 
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
@@ -368,15 +361,25 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   return scaled;
 }
 
+std::vector<Stroke> StrokesOf(std::span<const double> excitation,
+                              std::span<const std::size_t> reversals) {
+  std::vector<Stroke> strokes(reversals.size() + 1);
+  for (std::size_t s = 0; s < strokes.size(); ++s) {
+    Stroke& stroke = strokes[s];
+    stroke.begin = s > 0 ? reversals[s - 1] : 0;
+    stroke.end = s < reversals.size() ? reversals[s] : excitation.size() - 1;
+    stroke.direction = excitation[stroke.end] >= excitation[stroke.begin] ? 1.0 : -1.0;
+  }
+  return strokes;
+}
+
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals) {
   std::vector<double> directions(excitation.size());
-  std::size_t begin = 0;
-  for (std::size_t s = 0; s <= reversals.size(); ++s) {
-    const std::size_t end = s < reversals.size() ? reversals[s] : excitation.size() - 1;
-    const double direction = excitation[end] >= excitation[begin] ? 1.0 : -1.0;
-    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) directions[i] = direction;
-    begin = end;
+  for (const Stroke& stroke : StrokesOf(excitation, reversals)) {
+    for (std::size_t i = stroke.begin == 0 ? 0 : stroke.begin + 1; i <= stroke.end; ++i) {
+      directions[i] = stroke.direction;
+    }
   }
   return directions;
 }
@@ -461,18 +464,15 @@ const ScaledRecords& ThinnedRecords::Get() {
   thin_->counted = 0;
   for (std::size_t r = 0; r < data_.records.size(); ++r) {
     const ScaledRecord& record = data_.records[r];
-    const std::size_t strokes = record.reversals.size() + 1;
+    const std::vector<Stroke> strokes = StrokesOf(record.displacement, record.reversals);
     // Under a load that varies the path between samples is part of the history.
-    const bool is_dense = strokes <= kDenseStrokes || !record.load_ratio.empty();
+    const bool is_dense = strokes.size() <= kDenseStrokes || !record.load_ratio.empty();
     const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
     std::vector<std::size_t> samples = {0};
-    samples.reserve(std::min(record.size(), strokes * (kept + 1) + 1));
+    samples.reserve(std::min(record.size(), strokes.size() * (kept + 1) + 1));
     std::vector<std::size_t> turns;
     turns.reserve(record.reversals.size());
-    std::size_t begin = 0;
-    for (std::size_t stroke = 0; stroke < strokes; ++stroke) {
-      const bool turns_at_end = stroke < record.reversals.size();
-      const std::size_t end = turns_at_end ? record.reversals[stroke] : record.size() - 1;
+    for (const auto& [begin, end, direction] : strokes) {
       const double way = record.displacement[end] - record.displacement[begin];
       std::size_t next = 1;
       for (std::size_t i = begin + 1; way != 0 && i < end && next < kept; ++i) {
@@ -486,8 +486,7 @@ const ScaledRecords& ThinnedRecords::Get() {
         }
       }
       if (end > begin) samples.push_back(end);
-      if (turns_at_end) turns.push_back(samples.size() - 1);
-      begin = end;
+      if (turns.size() < record.reversals.size()) turns.push_back(samples.size() - 1);
     }
     ScaledRecord& thin = thin_->records[r] = record.At(samples);
     thin.reversals = std::move(turns);

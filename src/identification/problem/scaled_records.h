@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -122,8 +121,16 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 void AddColumns(const FitOptions& options, const loop::PreparedRecords& records, bool with_others,
                 ScaledRecords& data);
 
-/// Returns +1 for samples of strokes of growing excitation, −1 for others: of the stroke that ends
-/// at a reversal, or begins at the last one.
+/// A stroke: from the record's beginning or a reversal to the next reversal or its end.
+struct Stroke {
+  std::size_t begin = 0;
+  std::size_t end = 0;     // the sample where it ends
+  double direction = 1.0;  // +1 where the excitation grows, else −1
+};
+std::vector<Stroke> StrokesOf(std::span<const double> excitation,
+                              std::span<const std::size_t> reversals);
+
+/// Returns the direction of the stroke of each sample; a reversal is the last one's.
 std::vector<double> DirectionsOf(std::span<const double> excitation,
                                  std::span<const std::size_t> reversals);
 

@@ -14,7 +14,6 @@ constexpr double kHighestStiffness = 1e9;
 constexpr double kLowestSlipForce = 1e-3;
 constexpr double kHighestSlipForce = 1e4;
 constexpr double kHighestShapeExponent = 20.0;
-constexpr double kWidest = 10.0;
 // Longest lag, in cycles: a longer one is a filter or a clock of its own. Samples that near to the
 // ends of a record do not count under a lag that is fitted.
 constexpr double kLongestLag = 0.05;
@@ -49,14 +48,7 @@ constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
 /// Makes one of the four factors of a ripple, which differ in their column.
 constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, Regressor column) {
-  return {.name = name,
-          .unit = "N",
-          .meaning = meaning,
-          .entry = Entry::kLinear,
-          .lowest = -kWidest,
-          .highest = kWidest,
-          .powers = kForceUnit,
-          .column = column};
+  return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .column = column};
 }
 
 constexpr std::array kTermRows = {
@@ -78,7 +70,6 @@ constexpr std::array kTermRows = {
     Term{.name = "slip_force",
          .unit = "N",
          .meaning = "Tc",
-         .entry = Entry::kLinear,
          .presence = Presence::kAlways,
          .positive = true,
          .lowest = kLowestSlipForce,
@@ -108,9 +99,6 @@ constexpr std::array kTermRows = {
     Term{.name = "plateau_slope",
          .unit = "N/m",
          .meaning = "slope of an additional force slope·δ",
-         .entry = Entry::kLinear,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = kStiffnessUnit,
          .column = Regressor::kDisplacement,
          .is_planned = true,
@@ -118,9 +106,6 @@ constexpr std::array kTermRows = {
     Term{.name = "viscous",
          .unit = "N s/m",
          .meaning = "C of an additional force C·dδ/dt",
-         .entry = Entry::kLinear,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = {.force = 1, .length = -1, .time = 1},
          .column = Regressor::kVelocity,
          .needs_time = true,
@@ -138,13 +123,11 @@ constexpr std::array kTermRows = {
          .has_start = true,
          .start = 0.5,
          .shapes = "viscous",
+         .needs = "viscous",
          .group = "speed_exponent"},
     Term{.name = "inertia",
          .unit = "kg",
          .meaning = "M of an additional force M·d²δ/dt²",
-         .entry = Entry::kLinear,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = {.force = 1, .length = -1, .time = 2},
          .column = Regressor::kAcceleration,
          .needs_time = true,
@@ -219,9 +202,6 @@ constexpr std::array kTermRows = {
          .unit = "N/m²",
          .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
                     "stroke",
-         .entry = Entry::kLinear,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = {.force = 1, .length = -2},
          .column = Regressor::kDisplacementSquared},
     Term{.name = "ripple_period",
@@ -234,6 +214,7 @@ constexpr std::array kTermRows = {
          .powers = kLengthUnit,
          .has_start = true,
          .shapes = "ripple_",
+         .needs = "ripple_cosine_up",
          .group = "ripple"},
     FactorOfRipple("ripple_cosine_up",
                    "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
@@ -272,9 +253,6 @@ constexpr std::array kTermRows = {
                     "`covariate_COLUMN`, with _ for blanks and signs; N/ the column's unit where "
                     "the header has one. force_offset is then its value in the middle of the "
                     "column's range",
-         .entry = Entry::kLinear,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = kFileForceUnit,
          .column = Regressor::kCovariate,
          .of_column = true,
@@ -283,10 +261,7 @@ constexpr std::array kTermRows = {
          .unit = "N",
          .meaning = "force added to the model's; with a drift, its value at the record's middle",
          .scope = Scope::kRecord,
-         .entry = Entry::kLinear,
          .presence = Presence::kOffsets,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = kFileForceUnit,
          .column = Regressor::kOne},
     Term{
@@ -296,8 +271,6 @@ constexpr std::array kTermRows = {
                    "taken from the data",
         .scope = Scope::kRecord,
         .presence = Presence::kOffsets,
-        .lowest = -kWidest,
-        .highest = kWidest,
         .longest_step = 0.5,
         .powers = kLengthUnit,
     },
@@ -305,10 +278,7 @@ constexpr std::array kTermRows = {
          .unit = "N/s",
          .meaning = "rate of a force linear in time; in N a sample where the record has no time",
          .scope = Scope::kRecord,
-         .entry = Entry::kLinear,
          .presence = Presence::kReported,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = {.force = 1, .time = -1, .of_file = true},
          .column = Regressor::kTime,
          .is_planned = true,
@@ -318,10 +288,7 @@ constexpr std::array kTermRows = {
          .meaning = "rate of a displacement linear in time, where the displacement is fitted; in m "
                     "a sample where the record has no time",
          .scope = Scope::kRecord,
-         .entry = Entry::kLinear,
          .presence = Presence::kNever,
-         .lowest = -kWidest,
-         .highest = kWidest,
          .powers = {.length = 1, .time = -1},
          .column = Regressor::kTime,
          .unit_by_sample = "m/sample"},
@@ -338,21 +305,15 @@ static_assert(kTerms.back().id == TermId::kDisplacementDrift);
 constexpr auto kTermsOfDisplacement = [] {
   auto terms = kTerms;
   for (Term& term : terms) {
-    if (term.id == TermId::kSigma) {
-      term.entry = Entry::kLinear;
-    } else if (term.id == TermId::kSlipForce) {
-      term.entry = Entry::kLaw;
-    } else if (term.id == TermId::kForceOffset) {
-      term.entry = Entry::kLaw;
+    if (term.id == TermId::kForceOffset) {
       term.column = Regressor::kNone;
       term.longest_step = 0.5;
     } else if (term.id == TermId::kDisplacementOffset) {
-      term.entry = Entry::kLinear;
       term.column = Regressor::kOne;
       term.longest_step = 1.5;
     } else if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;
-    } else if (term.id != TermId::kAlpha && term.id != TermId::kLoadExponent) {
+    } else if (term.id > TermId::kSlipForce && term.id != TermId::kLoadExponent) {
       term.presence = Presence::kNever;
     }
   }

@@ -4,14 +4,13 @@
 #include <ceres/normal_prior.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "identification/solve/unprojected_record.h"
+#include "identification/solve/unprojected_residual.h"
 
 namespace mindahl::identification {
 
@@ -24,7 +23,7 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
 }
 
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
-                    double rival, SearchBuffers& buffers) {
+                    double rival, Solver& solver) {
   if (auto given = GivenStart(candidate.problem.parameters, options)) {
     candidate.starts = {std::move(*given)};
     return 0.0;
@@ -43,23 +42,13 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
       is_enough && !has_covariate && !has_kinks ? thin : *candidate.problem.data;
   const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
                         candidate.problem.parameters};
-  candidate.starts =
-      FindStarts(problem, options, rival, buffers.solver, buffers.response, buffers.scratch);
+  candidate.starts = FindStarts(problem, options, rival, solver);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
 }
 
-namespace {
-
-/// Returns the value with which a term on demand has no effect: a rigid rig, or zero.
-double NeutralTheta(const Parameters& parameters, std::size_t p) {
-  return p == kRig ? parameters[p].upper : parameters[p].ToTheta(0.0);
-}
-
-}  // namespace
-
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
-                              const FitOptions& options, SearchBuffers& buffers) {
+                              const FitOptions& options, Solver& solver) {
   constexpr std::size_t kMostNested = 3;
   if (!options.start.empty()) return;
   const Parameters& parameters = candidate.problem.parameters;
@@ -71,15 +60,15 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
     if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
   for (const std::size_t p : terms) {
-    const double neutral = NeutralTheta(parameters, p);
+    const double neutral = p == kRig ? parameters[p].upper : parameters[p].ToTheta(0.0);
     if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;
     Candidate smaller = candidate;
     smaller.problem.parameters.Fix(p, neutral);
-    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), buffers);
+    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), solver);
     if (terms.size() <= kMostNested) {
-      AddStartsOfSmallerModels(smaller, thinned, options, buffers);
+      AddStartsOfSmallerModels(smaller, thinned, options, solver);
     }
-    Descend(smaller, options, buffers);
+    Descend(smaller, options, solver);
     const Solution& solution = smaller.solution;
     if (!std::isfinite(solution.sum_of_squares)) continue;
     candidate.starts.push_back({.theta = solution.theta, .cost = solution.sum_of_squares});
@@ -97,13 +86,13 @@ bool IsAmongKinks(const Parameters& parameters, const Solution& solution) {
 /// Searches of one problem, of which the lowest end is kept.
 struct Rivals {
   void From(std::span<const double> theta) {
-    Solution& scratch = buffers.scratch;
-    buffers.solver.Solve(theta, SolverOptionsOf(options), scratch);
+    Solution scratch;
+    solver.Solve(theta, SolverOptionsOf(options), scratch);
     if (scratch.sum_of_squares < best.sum_of_squares) std::swap(best, scratch);
   }
 
   const FitOptions& options;
-  SearchBuffers& buffers;
+  Solver& solver;
   Solution& best;
 };
 
@@ -150,20 +139,20 @@ void SearchOtherRigs(Rivals& rivals) {
 
 }  // namespace
 
-void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
+void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
   Solution& best = candidate.solution;
   best = {.sum_of_squares = std::numeric_limits<double>::infinity()};
   best.report.message = "no loop is seen: the force does not follow the displacement";
   if (candidate.starts.empty()) return;
-  buffers.solver.Bind(candidate.problem, buffers.response);
-  Rivals rivals{options, buffers, best};
+  solver.Bind(candidate.problem);
+  Rivals rivals{options, solver, best};
   for (const StartingPoint& start : candidate.starts) rivals.From(start.theta);
 }
 
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver) {
   Solution& best = candidate.solution;
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
-  Rivals rivals{options, buffers, best};
+  Rivals rivals{options, solver, best};
   const Parameters& parameters = candidate.problem.parameters;
   const Parameter& rig = parameters[kRig];
   if (!rig.absent && !rig.fixed && !rig.has_prior()) SearchOtherRigs(rivals);
@@ -195,12 +184,10 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
   ceres::Problem::Options of_problem;
   of_problem.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres_problem(of_problem);
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const auto record = std::make_shared<UnprojectedRecord>(problem, r, scale);
-    std::vector<double*> blocks;
-    for (const std::size_t p : record->blocks()) blocks.push_back(&theta[p]);
-    AddRecord(record, blocks, loss_function.get(), ceres_problem);
-  }
+  const auto residual = std::make_shared<UnprojectedResidual>(problem, scale);
+  std::vector<double*> blocks;
+  for (const std::size_t p : residual->blocks()) blocks.push_back(&theta[p]);
+  AddResidual(residual, blocks, loss_function.get(), ceres_problem);
   for (const std::size_t p : problem.parameters.with_prior()) {
     const Parameter& parameter = problem.parameters[p];
     ceres_problem.AddResidualBlock(

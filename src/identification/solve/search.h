@@ -1,24 +1,23 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
-#include "identification/solve/starts.h"
 #include "mindahl/identification/fit_options.h"
 
 namespace mindahl::identification {
 
-/// Holds the buffers of a search, kept from one to the next.
-struct SearchBuffers {
-  Solver solver;
-  Response response;
-  Solution scratch;
+struct StartingPoint {
+  std::vector<double> theta;  // all parameters
+  double cost = 0.0;          // on the thinned record
+  double look = 0.0;          // of the best look there
 };
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state)
+  Candidate(const ScaledRecords& data, const FitOptions& options, models::InitialState state)
       : problem{&data, options.model, state, Parameters(data, options, state)} {}
 
   Problem problem;
@@ -32,21 +31,21 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// @param rival  of another initial state, as FindStarts() takes it
 /// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
-                    double rival, SearchBuffers& buffers);
+                    double rival, Solver& solver);
 
 /// Adds the solutions of the models with one term less as starting points, so that a model never
 /// fits worse than one that it contains. Those are solved from starting points of their own and,
 /// for at most three terms, from the solutions of the models that they contain in turn.
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
-                              const FitOptions& options, SearchBuffers& buffers);
+                              const FitOptions& options, Solver& solver);
 
 /// Solves from each starting point and keeps the best solution.
-void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
+void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Solves once more from next to the best solution where there may be lower minima, and keeps the
 /// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
 /// where the rig takes another part of the compliance. Where a start is given it is the only one.
-void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers);
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Constants of the losses, each 95 % efficient for normal noise (Huber 1981; Holland & Welsch
 /// 1977).
@@ -62,5 +61,26 @@ inline constexpr double kTukeyConstant = 4.685;
 /// @param solution  θ is where the search starts; written but for sum of squares and residual
 void SolveRobustly(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
                    Solution& solution);
+
+/// True if α is held at 0: the likelihood has a kink wherever a sample begins to slip, and minima
+/// next to each other; all samples are used, and four starts followed.
+bool HasKinks(const Parameters& parameters);
+
+/// The options' own start, where it leaves nothing to be looked for.
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options);
+
+/// Starting points from the data, best first.
+///
+/// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
+/// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
+/// is tried unloaded at the first sample, at the centre of the record and at displacement zero; a
+/// rig of unknown stiffness at some ratios to the contact's. The best of each α, or where α is held
+/// of each third of the plane, goes on to the minimum of the thinned record.
+/// @param thin      the problem on its thinned record
+/// @param rival     look of another initial state; of looks ten times as dear the best alone
+///                  is followed. Infinite where there is none
+/// @returns empty where no point has the sign of the force
+std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
+                                      Solver& solver);
 
 }  // namespace mindahl::identification

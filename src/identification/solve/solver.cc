@@ -24,9 +24,6 @@ ceres::Solver::Options CeresOptionsOf(const SolverOptions& options,
 
 namespace {
 
-/// A residual that refuses a trial: ½ of its square is beyond any cost that is finite, and finite.
-constexpr double kRefused = 1e150;
-
 /// ceres::Solve sees the same compressed residual, with its Jacobian at every point.
 class CompressedCost final : public ceres::CostFunction {
  public:

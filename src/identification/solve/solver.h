@@ -46,9 +46,8 @@ struct Solution {
 /// Keeps its buffers.
 class Solver {
  public:
-  /// @param problem   must outlive the solves; its weights may change between them
-  /// @param response  bound to the problem here
-  void Bind(const Problem& problem, Response& response) { residual_.Bind(problem, response); }
+  /// @param problem  must outlive the solves; its weights may change between them
+  void Bind(const Problem& problem) { residual_.Bind(problem, response); }
 
   /// Moves a parameter that the problem holds, of those without a column of their own.
   void HoldAt(std::size_t parameter, double theta) { residual_.HoldAt(parameter, theta); }
@@ -64,6 +63,8 @@ class Solver {
 
   /// @param start  θ, moved into the bounds
   void Solve(std::span<const double> start, const SolverOptions& options, Solution& solution);
+
+  Response response;  ///< may be bound to another problem between the solves
 
  private:
   void SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution);

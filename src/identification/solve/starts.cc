@@ -1,14 +1,12 @@
-#include "identification/solve/starts.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "core/extremes.h"
+#include "identification/solve/search.h"
 
 namespace mindahl::identification {
 namespace {
@@ -301,8 +299,8 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
   StartingPoint start;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
-    const bool is_searched = p == kSlipForce || (parameters[p].term->entry == Entry::kLaw &&
-                                                 !parameters[p].term->has_start);
+    const Term& term = *parameters[p].term;
+    const bool is_searched = term.column == Regressor::kNone && !term.has_start;
     if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
     if (is_searched) return std::nullopt;
   }
@@ -314,13 +312,14 @@ bool HasKinks(const Parameters& parameters) {
 }
 
 std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
-                                      Solver& solver, Response& response, Solution& scratch) {
+                                      Solver& solver) {
   // A look that is that much worse than the best does not lead to a better minimum.
   constexpr double kHopeless = 4.0;
   // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
   constexpr double kBeyondRival = 10.0;
   std::vector<StartingPoint> starts;
-  solver.Bind(thin, response);
+  solver.Bind(thin);
+  Solution scratch;
   Plane plane(thin, options, solver);
   const Looks looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
