@@ -44,14 +44,9 @@ void RequireTerms(const FitOptions& options) {
 void RequirePlan(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
   models::Validate(expected.law);
   models::Validate(expected.rig);
-  RequireFinite("load exponent [-]", expected.load_exponent);
   RequirePositive("force noise [N]", expected.force_noise);
   RequireNonNegative("displacement noise [m]", expected.displacement_noise);
-  if (!(expected.autocorrelation >= 0 && expected.autocorrelation < 1)) {
-    ThrowInvalid("autocorrelation of the noise [-]", expected.autocorrelation, "must be in [0, 1)");
-  }
   RequirePositive("amplitude [m]", protocol.amplitude);
-  for (const double load : protocol.loads) RequirePositive("load over that of the law [-]", load);
   if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
   if (options.model == nullptr || options.model->memory != models::Memory::kReturnPoint) {
     throw InvalidArgument("the model of a plan must have Masing's rules: mindlin-dahl, mindlin");
@@ -59,13 +54,8 @@ void RequirePlan(const Expectation& expected, const Protocol& protocol, const Fi
   RequireTerms(options);
 }
 
-std::vector<double> LoadsOf(const Protocol& protocol) {
-  return protocol.loads.empty() ? std::vector{1.0} : protocol.loads;
-}
-
-/// The loop of a law as it would be measured without noise.
-loop::Record LoopOf(const models::BranchLaw& law, const models::SeriesSpring& rig,
-                    const Protocol& protocol) {
+/// The loop as it would be measured without noise.
+loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
   models::Excitation excitation =
       models::MakeExcitation({.amplitude = protocol.amplitude,
                               .cycles = protocol.cycles,
@@ -78,29 +68,18 @@ loop::Record LoopOf(const models::BranchLaw& law, const models::SeriesSpring& ri
   const models::LoadingPath path = models::MakeLoadingPath(
       record.displacement, reversals, masing.memory, {.state = protocol.initial_state});
   record.force.resize(record.size());
-  models::EvaluateForce(masing, law, path, record.displacement, record.force, rig);
+  models::EvaluateForce(masing, expected.law, path, record.displacement, record.force,
+                        expected.rig);
   return record;
 }
 
-/// Returns one a load.
-std::vector<loop::Record> LoopsOf(const Expectation& expected, const Protocol& protocol) {
-  std::vector<loop::Record> records;
-  for (const double load : LoadsOf(protocol)) {
-    records.push_back(
-        LoopOf(models::AtLoad(expected.law, load, expected.load_exponent), expected.rig, protocol));
-  }
-  return records;
-}
-
-/// θ of what is expected, the law being that at the mean load; terms that are fitted in addition
-/// are expected to be nothing.
-Solution SolutionAt(const Expectation& expected, const models::BranchLaw& law,
-                    const Parameters& parameters) {
+/// θ of what is expected; terms that are fitted in addition are expected to be nothing.
+Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
   Solution solution;
   solution.converged = true;
-  const std::array of_contact = {law.tangential_stiffness, law.shape_exponent, law.slip_force,
-                                 expected.rig.stiffness, expected.load_exponent};
-  static_assert(kLoadExponent + 1 == std::tuple_size_v<decltype(of_contact)>);
+  const auto& [stiffness, shape_exponent, slip_force] = expected.law;
+  const std::array of_contact = {stiffness, shape_exponent, slip_force, expected.rig.stiffness};
+  static_assert(kRig + 1 == std::tuple_size_v<decltype(of_contact)>);
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Parameter& parameter = parameters[p];
     double theta = parameter.theta;
@@ -116,43 +95,27 @@ Solution SolutionAt(const Expectation& expected, const models::BranchLaw& law,
   return solution;
 }
 
-Autocorrelation FirstOrder(double correlation) {
-  Autocorrelation result;
-  if (correlation == 0) return result;
-  result.order = 1;
-  result.coefficients[0] = correlation;
-  result.correlations[0] = 1.0;
-  result.correlations[1] = correlation;
-  result.innovation_share = 1 - correlation * correlation;
-  return result;
-}
-
 /// 2 ln Λ of the loops fitted by Dahl's own law: Σ(T_Dahl − T)² over the variance of the noise,
 /// errors of the displacement acting as force noise by the slope of the loop.
-double LawEvidence(const std::vector<loop::Record>& records, const Expectation& expected,
+double LawEvidence(const loop::Record& record, const Expectation& expected,
                    const Protocol& protocol) {
   if (protocol.initial_state == InitialState::kSteady) return 0.0;
   FitOptions options;
   options.model = models::FindFrictionModel("dahl");
   options.initial_state = protocol.initial_state;
-  options.normal_loads = protocol.loads;
   if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
-  const FitResult other = Fit(records, options, Depth::kEstimate);
+  const FitResult other = Fit({&record, 1}, options, Depth::kEstimate);
   double slopes = 0.0;  // Σ(dT/dδ)²
-  double samples = 0.0;
-  for (const loop::Record& record : records) {
-    for (std::size_t i = 1; i < record.size(); ++i) {
-      const double step = record.displacement[i] - record.displacement[i - 1];
-      const double rise = record.force[i] - record.force[i - 1];
-      if (step != 0) slopes += (rise / step) * (rise / step);
-    }
-    samples += static_cast<double>(record.size());
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double step = record.displacement[i] - record.displacement[i - 1];
+    const double rise = record.force[i] - record.force[i - 1];
+    if (step != 0) slopes += (rise / step) * (rise / step);
   }
+  const auto samples = static_cast<double>(record.size());
   const double of_force = expected.force_noise * expected.force_noise;
   const double of_displacement = expected.displacement_noise * expected.displacement_noise;
   const double variance = of_force + slopes / samples * of_displacement;
-  const double independent = FirstOrder(expected.autocorrelation).SquaredCorrelations();
-  return samples * other.rms * other.rms / (variance * independent);
+  return samples * other.rms * other.rms / variance;
 }
 
 }  // namespace
@@ -160,9 +123,8 @@ double LawEvidence(const std::vector<loop::Record>& records, const Expectation& 
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                       const FitOptions& given) {
   RequirePlan(expected, protocol, given);
-  const std::vector<loop::Record> records = LoopsOf(expected, protocol);
+  const loop::Record record = LoopOf(expected, protocol);
   FitOptions options = given;
-  options.normal_loads = protocol.loads;
   options.initial_state = protocol.initial_state;
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
@@ -171,20 +133,12 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   if (!IsRigid(expected.rig) && !fits_rig) {
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   }
-  const std::vector<loop::RecordView> views(records.begin(), records.end());
-  const loop::PreparedRecords prepared = loop::Prepare(views, options.preparation);
+  const loop::RecordView view = record;
+  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation);
   ScaledRecords data = Scale(prepared, options);
-  if (records.size() > 1 && !data.is_load_series) {
-    throw InvalidArgument(
-        fmt::format("loads are one load: the largest must exceed the least by more than {:g} %",
-                    100 * options.thresholds.load_difference));
-  }
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state)};
-  const double mean_load = protocol.loads.empty() ? 1.0 : data.reference_load;
-  Solution solution =
-      SolutionAt(expected, models::AtLoad(expected.law, mean_load, expected.load_exponent),
-                 problem.parameters);
+  Solution solution = SolutionAt(expected, problem.parameters);
   const DisplacementErrors errors(prepared, data);
   Solver solver;
   Noise noise;
@@ -196,22 +150,19 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   } else {
     noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
   }
-  noise.autocorrelation = FirstOrder(expected.autocorrelation);
   const Estimates estimates(
       problem, solution, noise, EffectOf(errors, problem, solution, noise), options.thresholds,
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;
-  for (const loop::Record& record : records) {
-    for (const double force : record.force) {
-      result.peak_force = std::max(result.peak_force, std::abs(force));
-    }
+  for (const double force : record.force) {
+    result.peak_force = std::max(result.peak_force, std::abs(force));
   }
   result.parameters = ValuesOf(problem, solution);
   for (std::size_t k = 0; k < result.parameters.size(); ++k) {
     estimates.Fill(problem.parameters.reported()[k], result.parameters[k]);
   }
-  result.law_evidence = LawEvidence(records, expected, protocol);
+  result.law_evidence = LawEvidence(record, expected, protocol);
   return result;
 }
 

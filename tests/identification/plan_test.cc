@@ -39,19 +39,10 @@ double ErrorOf(const ExpectedFit& fit, std::string_view name) {
   return estimate != nullptr && estimate->standard_error ? *estimate->standard_error : NAN;
 }
 
-/// The law at a load over the one it is of: σ ∝ N^p, Tc ∝ N.
-BranchLaw AtLoad(const Expectation& expected, double load) {
-  return {expected.law.tangential_stiffness * std::pow(load, expected.load_exponent),
-          expected.law.shape_exponent, expected.law.slip_force * load};
-}
-
-/// What Scatter looks at: the load exponent is 1 where there is one load.
-constexpr std::array kFitted = {"sigma", "alpha", "slip_force", "load_exponent"};
-using Deviations = std::array<double, kFitted.size()>;
+using Deviations = std::array<double, 3>;  // of σ, α, Tc
 
 /// Standard deviations over fits of simulated loops, by the public interface alone.
-Deviations Scatter(const Expectation& expected, const Protocol& protocol, int loops,
-                   const std::vector<std::string>& terms = {}) {
+Deviations Scatter(const Expectation& expected, const Protocol& protocol, int loops) {
   const models::Excitation sine =
       models::MakeExcitation({.amplitude = protocol.amplitude,
                               .cycles = protocol.cycles,
@@ -64,48 +55,36 @@ Deviations Scatter(const Expectation& expected, const Protocol& protocol, int lo
   const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   const models::LoadingPath path = models::MakeLoadingPath(
       sine.displacement, reversals, model.memory, {.state = protocol.initial_state});
-  std::vector<std::vector<double>> forces;
-  for (const double load : protocol.loads.empty() ? std::vector{1.0} : protocol.loads) {
-    std::vector<double>& force = forces.emplace_back(sine.displacement.size());
-    models::EvaluateForce(model, AtLoad(expected, load), path, sine.displacement, force,
-                          expected.rig);
-  }
+  std::vector<double> force(sine.displacement.size());
+  models::EvaluateForce(model, expected.law, path, sine.displacement, force, expected.rig);
   FitOptions options;
-  options.normal_loads = protocol.loads;
-  options.terms = terms;
   options.initial_state = protocol.initial_state;
   options.preparation.displacement_noise = expected.displacement_noise;
   options.force_noise = expected.force_noise;
-  if (std::isfinite(expected.rig.stiffness) && terms.empty())
+  if (std::isfinite(expected.rig.stiffness))
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
   Deviations sums{};
   Deviations squares{};
   for (int k = 0; k < loops; ++k) {
-    std::vector<Record> records;
-    for (const std::vector<double>& force : forces) {
-      Record& record = records.emplace_back();
-      record.time = sine.time;
-      double noise = normal(generator);
-      for (std::size_t i = 0; i < force.size(); ++i) {
-        record.displacement.push_back(sine.displacement[i] +
-                                      expected.displacement_noise * normal(generator));
-        record.force.push_back(force[i] + expected.force_noise * noise);
-        const double rho = expected.autocorrelation;
-        noise = rho * noise + std::sqrt(1 - rho * rho) * normal(generator);
-      }
+    Record record;
+    record.time = sine.time;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      record.displacement.push_back(sine.displacement[i] +
+                                    expected.displacement_noise * normal(generator));
+      record.force.push_back(force[i] + expected.force_noise * normal(generator));
     }
-    const FitResult fit = Fit(records, options, Depth::kEstimate);
-    for (std::size_t j = 0; j < kFitted.size(); ++j) {
-      const ParameterEstimate* estimate = fit.Find(kFitted[j]);
-      const double value = estimate != nullptr ? estimate->value : 1.0;
-      sums[j] += value;
-      squares[j] += value * value;
+    const FitResult fit = Fit({&record, 1}, options, Depth::kEstimate);
+    const std::array values = {fit.law.tangential_stiffness, fit.law.shape_exponent,
+                               fit.law.slip_force};
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      sums[j] += values[j];
+      squares[j] += values[j] * values[j];
     }
   }
   Deviations deviations{};
-  for (std::size_t j = 0; j < kFitted.size(); ++j) {
+  for (std::size_t j = 0; j < deviations.size(); ++j) {
     deviations[j] = std::sqrt((squares[j] - sums[j] * sums[j] / loops) / (loops - 1));
   }
   return deviations;
@@ -119,18 +98,15 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
     double lambda;
     InitialState state;
     double displacement_noise;
-    double autocorrelation;
     double rig_stiffness;
   };
   constexpr double kRigid = std::numeric_limits<double>::infinity();
-  for (const Case& c : {Case{0.8, InitialState::kVirgin, 0.0, 0.0, kRigid},
-                        {1.2, InitialState::kSteady, 0.0, 0.0, kRigid},
-                        {1.2, InitialState::kVirgin, 5e-9, 0.0, kRigid},
-                        {3.0, InitialState::kSteady, 0.0, 0.6, kRigid},
-                        {3.0, InitialState::kVirgin, 0.0, 0.0, 8e7}}) {
+  for (const Case& c : {Case{0.8, InitialState::kVirgin, 0.0, kRigid},
+                        {1.2, InitialState::kSteady, 0.0, kRigid},
+                        {1.2, InitialState::kVirgin, 5e-9, kRigid},
+                        {3.0, InitialState::kVirgin, 0.0, 8e7}}) {
     Expectation expected = Quiet();
     expected.displacement_noise = c.displacement_noise;
-    expected.autocorrelation = c.autocorrelation;
     expected.rig.stiffness = c.rig_stiffness;
     const Protocol protocol = Loop(c.lambda, c.state);
     const ExpectedFit fit = ExpectFit(expected, protocol);
@@ -139,24 +115,6 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
     EXPECT_NEAR(ErrorOf(fit, "alpha") / scatter[1], 1.0, kTolerance) << c.lambda;
     EXPECT_NEAR(ErrorOf(fit, "slip_force") / scatter[2], 1.0, kTolerance) << c.lambda;
   }
-}
-
-TEST(Plan, ExpectedErrorsOfALoadSeriesAreTheScatterOfItsFits) {
-  constexpr int kLoops = 300;
-  constexpr double kTolerance = 0.12;  // three standard deviations, as above
-  Expectation expected = Quiet();
-  expected.rig.stiffness = 8e7;
-  expected.load_exponent = 0.5;
-  Protocol protocol = Loop(2.0);
-  protocol.loads = {0.5, 1.0, 2.0};
-  FitOptions with_rig;
-  with_rig.terms = {"rig_stiffness"};
-  const ExpectedFit fit = ExpectFit(expected, protocol, with_rig);
-  const Deviations scatter = Scatter(expected, protocol, kLoops, with_rig.terms);
-  for (std::size_t j = 0; j < kFitted.size(); ++j) {
-    EXPECT_NEAR(ErrorOf(fit, kFitted[j]) / scatter[j], 1.0, kTolerance) << kFitted[j];
-  }
-  EXPECT_NEAR(fit.Find("load_exponent")->value, 0.5, 1e-12);
 }
 
 TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
@@ -215,9 +173,6 @@ TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
 
 TEST(Plan, RefusesWhatMeansNothing) {
   Expectation expected = Quiet();
-  expected.autocorrelation = 1.0;
-  EXPECT_THROW(ExpectFit(expected, Loop(1.0)), InvalidArgument);
-  expected = Quiet();
   expected.force_noise = 0.0;
   EXPECT_THROW(ExpectFit(expected, Loop(1.0)), InvalidArgument);
   EXPECT_THROW(ExpectFit(Quiet(), Loop(0.0)), InvalidArgument);
@@ -227,11 +182,6 @@ TEST(Plan, RefusesWhatMeansNothing) {
   FitOptions late;
   late.terms = {"lag"};
   EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), late), InvalidArgument);
-  Protocol alike = Loop(1.0);
-  alike.loads = {1.0, 1.001};
-  EXPECT_THROW(ExpectFit(Quiet(), alike), InvalidArgument);
-  alike.loads = {1.0, 0.0};
-  EXPECT_THROW(ExpectFit(Quiet(), alike), InvalidArgument);
   const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);

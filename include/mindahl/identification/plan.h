@@ -20,31 +20,25 @@ namespace mindahl::identification {
 struct Expectation {
   models::BranchLaw law{};          ///< law with Masing's memory
   models::SeriesSpring rig{};       ///< in series; its stiffness known unless it is fitted
-  double load_exponent = 1.0 / 3;   ///< p of σ ∝ N^p between loads; finite; 1/3 is Hertz's
   double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
-  double autocorrelation = 0.0;     ///< correlation of successive force readings, 0 <= ρ < 1
 };
 
-/// Loops that may be measured: a sine of one amplitude, at one load or at several.
+/// A loop that may be measured: a sine of one amplitude.
 struct Protocol {
-  double amplitude = 0.0;               ///< X [m], finite, > 0, the same at every load
+  double amplitude = 0.0;               ///< X [m], finite, > 0
   double cycles = 3.0;                  ///< finite, >= 1
   std::size_t samples_per_cycle = 200;  ///< >= 4
   /// Virgin: the record has the first loading of the contact. Steady: it begins later.
   models::InitialState initial_state = models::InitialState::kVirgin;
-  /// Loads over the one of the expected law [-], each finite, > 0, a loop of `cycles` at each: σ is
-  /// as the load to p, Tc as the load, α one. Empty: one loop at the load of the expected law.
-  std::vector<double> loads = {};
 };
 
 /// Holds the expected result of a fit of the planned loop.
 struct ExpectedFit {
   Protocol protocol;
-  double peak_force = 0.0;  ///< T* [N], at the largest load
+  double peak_force = 0.0;  ///< T* [N]
   /// σ, α, Tc and all else that is fitted or reported: values that are expected, standard errors,
-  /// 95 % intervals; without errors what the loop does not determine. No verdicts. Of a series
-  /// "load_exponent" too, and σ and Tc at the mean of the loads.
+  /// 95 % intervals; without errors what the loop does not determine. No verdicts.
   std::vector<ParameterEstimate> parameters;
   /// 2 ln Λ by which the loop is expected to distinguish Masing's rules from Dahl's own law; 0 for
   /// a steady loop, where both are one curve.
