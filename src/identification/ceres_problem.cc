@@ -34,14 +34,17 @@ ProblemOfFit::ProblemOfFit(std::span<const loop::RecordView> records, FitOptions
   LeaveOutBeyondLags(options, prepared);
   data = Scale(prepared, options);
   AddColumns(options, prepared, /*with_others=*/false, data);
+  std::vector<models::InitialState> states;
+  states.reserve(data.records.size());
   for (std::size_t r = 0; r < data.records.size(); ++r) {
+    states.push_back(fit.records[r].initial_state);
     // Records whose noise differs weigh as in the fit.
     const double own = fit.records[r].response_noise;
     if (own == fit.ResponseNoise() || !(own > 0)) continue;
     for (double& weight : data.records[r].root_weight) weight *= fit.ResponseNoise() / own;
   }
-  problem = Problem{&data, options.model, fit.initial_state,
-                    Parameters(data, options, fit.initial_state)};
+  const RecordStates state(std::move(states));
+  problem = Problem{&data, options.model, state, Parameters(data, options, state)};
   for (std::size_t p = 0; p < problem->parameters.size(); ++p) {
     const Parameter& parameter = problem->parameters[p];
     const ParameterEstimate* const estimate = fit.Find(problem->parameters.NameOf(p));

@@ -50,6 +50,11 @@ const Finding* FitResult::FindFinding(FindingCode code) const {
   return found == findings.end() ? nullptr : &*found;
 }
 
+bool FitResult::has_mixed_states() const {
+  return std::ranges::any_of(
+      records, [&](const RecordFit& record) { return record.initial_state != initial_state; });
+}
+
 const RecordFit& FitResult::WidestRecord() const {
   return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
     return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);

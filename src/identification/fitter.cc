@@ -27,6 +27,7 @@ namespace mindahl::identification {
 namespace {
 
 using loop::RecordView;
+using models::InitialState;
 
 /// The fitted response and residuals as the files have them, of every sample, and their rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
@@ -77,6 +78,7 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
                     : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
+    fit.initial_state = solved.best.problem.state.Of(r);
     fit.response_noise =
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
     fit.displacement_noise =
@@ -108,7 +110,8 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
     result.findings = FindInRecords(result.records, attempt.options.thresholds, data.excitation);
     Append(result.findings, FindVaryingLoads(data));
   }
-  result.initial_state = problem.state;
+  const bool any_virgin = problem.state.Any(InitialState::kVirgin);
+  result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;
   result.solver = solution.report;
   result.solver.final_cost *= data.response_unit() * data.response_unit();
   if (!std::isfinite(solution.sum_of_squares)) {

@@ -91,6 +91,13 @@ std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::siz
   return parts;
 }
 
+void HoldInitialStates(const FitResult& fit, FitOptions& options) {
+  options.initial_states.clear();
+  for (const RecordFit& record : fit.records) {
+    options.initial_states.push_back(record.initial_state);
+  }
+}
+
 void StartFrom(const FitResult& fit, FitOptions& options) {
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status != ParameterStatus::kFixed) {
@@ -101,7 +108,7 @@ void StartFrom(const FitResult& fit, FitOptions& options) {
 
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   options.model = fit.model;
-  options.initial_state = fit.initial_state;
+  HoldInitialStates(fit, options);
   options.preparation.force_sense = fit.force_sense;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status == ParameterStatus::kFixed) continue;

@@ -59,6 +59,9 @@ double SumOfSquares(double rms, const ScoredSamples& samples);
 std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles,
                           std::size_t strokes, std::size_t least);
 
+/// Gives the options the initial states that a fit found.
+void HoldInitialStates(const FitResult& fit, FitOptions& options);
+
 /// Gives the options the values that a fit found, for a search to begin with.
 void StartFrom(const FitResult& fit, FitOptions& options);
 

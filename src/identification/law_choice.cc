@@ -123,13 +123,16 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
                          : models::MasingEquivalent(fit.law, amplitude);
   FitOptions others = OptionsOfOther(options, fit, *choice.alternative, choice.law);
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
-  const bool is_one_curve =
-      fit.initial_state == InitialState::kSteady && HasOneAmplitude(data, options.thresholds);
+  const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
+    return record.initial_state == InitialState::kSteady;
+  });
+  const bool is_one_curve = is_steady && HasOneAmplitude(data, options.thresholds);
   if (is_one_curve) {
+    const bool is_open = !options.initial_state && options.initial_states.empty();
     const auto starts_inside = [&](const ScaledRecord& record) {
       return StartsInside(record, options.thresholds);
     };
-    if (options.initial_state || std::ranges::none_of(data.records, starts_inside)) return choice;
+    if (!is_open || std::ranges::none_of(data.records, starts_inside)) return choice;
     others.initial_state = InitialState::kVirgin;
   }
   FitResult other;

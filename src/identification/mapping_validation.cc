@@ -224,7 +224,7 @@ std::string Describe(const Case& drawn, std::size_t index, double noise, const T
 
 /// Judges the coverage of every parameter and law, over all rows with noise.
 void JudgeCoverage(ValidationReport& report) {
-  constexpr std::size_t kTests = 2 * 2 * kValidatedParameters.size();  // of laws and sides
+  constexpr auto kTests = 4.0 * static_cast<double>(kValidatedParameters.size());  // laws and sides
   for (const bool by_dahl : {false, true}) {
     for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
       CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};

@@ -17,8 +17,9 @@ namespace {
 
 using models::InitialState;
 
-/// Returns the initial state that the options name; nothing where both have to be tried.
-std::optional<InitialState> GivenState(const Attempt& attempt) {
+/// Returns the initial states that the options name; nothing where both have to be tried.
+std::optional<RecordStates> GivenState(const Attempt& attempt) {
+  if (!attempt.options.initial_states.empty()) return RecordStates(attempt.options.initial_states);
   if (attempt.options.initial_state) return attempt.options.initial_state;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
@@ -30,10 +31,65 @@ std::optional<InitialState> GivenState(const Attempt& attempt) {
   return std::nullopt;
 }
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers.
+/// Returns the states of a candidate's records with one of them turned to the other.
+RecordStates Flipped(const Problem& problem, std::size_t record) {
+  std::vector<InitialState> states;
+  states.reserve(problem.data->records.size());
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    states.push_back(problem.state.Of(r));
+  }
+  states[record] =
+      states[record] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
+  return RecordStates(std::move(states));
+}
+
+/// Returns θ of a solution for a problem that holds other origins; one that it has free starts
+/// unloaded.
+std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
+                             const Solution& solution) {
+  std::vector<double> theta = solution.theta;
+  for (std::size_t p = 0; p < theta.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    if (parameter.fixed) {
+      theta[p] = parameter.theta;
+    } else if (solved.parameters[p].fixed) {
+      theta[p] = problem.data->records[parameter.record].excitation().front();
+    }
+  }
+  return theta;
+}
+
+/// Turns the initial state of one record after the other, as long as one of them is clearly the
+/// better for it; `criterion` is Akaike's of a candidate.
+/// @returns nothing where all records stay as they are
+template <typename Criterion>
+std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate& pure,
+                                        const Criterion& criterion) {
+  std::optional<Candidate> best;
+  constexpr int kMostPasses = 3;
+  bool any = true;
+  for (int pass = 0; pass < kMostPasses && any; ++pass) {
+    any = false;
+    for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
+      const Candidate& from = best ? *best : pure;
+      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r));
+      const std::vector<double> start = ThetaFor(trial.problem, from.problem, from.solution);
+      attempt.solver.Bind(trial.problem);
+      attempt.solver.Solve(start, SolverOptionsOf(attempt.options), trial.solution);
+      const double gain = criterion(from) - criterion(trial);
+      if (!(gain >= attempt.options.thresholds.undecided)) continue;
+      best.emplace(std::move(trial));
+      any = true;
+    }
+  }
+  return best;
+}
+
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
+/// several records also some as virgin and some as steady, where all as one does not fit.
 Candidate FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
-  const auto make = [&](InitialState state) {
+  const auto make = [&](const RecordStates& state) {
     Candidate candidate(attempt.data, options, state);
     RequireEnoughSamples(candidate.problem, attempt.prepared);
     return candidate;
@@ -47,7 +103,7 @@ Candidate FitBestState(const Attempt& attempt) {
     Descend(candidate, options, attempt.solver);
     SearchBesideMinimum(candidate, options, attempt.solver);
   };
-  if (const std::optional<InitialState> given = GivenState(attempt)) {
+  if (const std::optional<RecordStates> given = GivenState(attempt)) {
     Candidate candidate = make(*given);
     find_starts(candidate);
     descend(candidate);
@@ -60,7 +116,7 @@ Candidate FitBestState(const Attempt& attempt) {
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
   const double clearly_worse = options.thresholds.hopeless_past;
-  const bool is_one = attempt.data.records.size() == 1;
+  const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
   if (is_one && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
     if (virgin.solution.converged) return virgin;
@@ -72,15 +128,23 @@ Candidate FitBestState(const Attempt& attempt) {
   descend(steady);
   const Candidate& better =
       virgin.solution.sum_of_squares < steady.solution.sum_of_squares ? virgin : steady;
-  if (!std::isfinite(better.solution.sum_of_squares)) return virgin;  // neither was even started
-  const Evidence evidence(
-      attempt.data.counted,
-      EffectiveSamples(better.problem, better.solution.theta, attempt.solver.response));
-  const auto criterion = [&](const Candidate& candidate) {
-    return evidence.Aicc(candidate.solution.sum_of_squares,
-                         candidate.problem.parameters.free().size());
-  };
-  return std::move(criterion(virgin) < criterion(steady) ? virgin : steady);
+  bool is_virgin = true;
+  std::optional<Candidate> mixed;
+  if (std::isfinite(better.solution.sum_of_squares)) {  // else neither was even started
+    const Evidence evidence(
+        attempt.data.counted,
+        EffectiveSamples(better.problem, better.solution.theta, attempt.solver.response));
+    const auto criterion = [&](const Candidate& candidate) {
+      return evidence.Aicc(candidate.solution.sum_of_squares,
+                           candidate.problem.parameters.free().size());
+    };
+    is_virgin = criterion(virgin) < criterion(steady);
+    if (!is_one) {
+      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion);
+    }
+  }
+  if (mixed) return std::move(*mixed);
+  return std::move(is_virgin ? virgin : steady);
 }
 
 /// True if the noise of the records is not one, where it is not known.

@@ -45,7 +45,8 @@ struct SolvedFit {
   [[nodiscard]] const Solution& solution() const { return best.solution; }
 };
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers. Samples
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
+/// several records also some as virgin and some as steady, where all as one does not fit. Samples
 /// are weighted where the displacement is inexact, the loss is robust or records differ in their
 /// noise, and turning points put in where the record is sampled so coarsely that it misses them.
 /// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish

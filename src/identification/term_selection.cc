@@ -379,7 +379,7 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
   Model model{.options = choice.AddedTo(base_.options), .fit = {}};
   FitOptions options = model.options;
   if (starts != nullptr) {
-    options.initial_state = base_.fit.initial_state;
+    HoldInitialStates(base_.fit, options);
     StartFrom(base_.fit, options);
     for (const auto& [name, value] : *starts) options.start[name] = value;
   }

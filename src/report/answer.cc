@@ -415,8 +415,10 @@ std::vector<Line> DetailLines(const Report& report) {
   if (report.notes.size() > 1) {
     for (const std::string& note : report.notes) lines.push_back({"read as", note});
   }
-  lines.push_back(
-      {"model", fmt::format("{}, {} contact", fit.model->title, Name(fit.initial_state))});
+  lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
+                                        fit.has_mixed_states()
+                                            ? std::string("initial states differ")
+                                            : fmt::format("{} contact", Name(fit.initial_state)))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
     const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;

@@ -315,8 +315,10 @@ const std::vector<Field>& Fields() {
        "they are not in a row"},
       {"model", "", "the law that was fitted",
        [](R report) { return Json(report.fit.model->name); }},
-      {"initial_state", "", "`virgin` or `steady`",
-       [](R report) { return Json(Name(report.fit.initial_state)); }},
+      {"initial_state", "", "`virgin`, `steady` or `mixed`",
+       [](R report) {
+         return Json(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
+       }},
       {"parameters", "",
        "by name: `value`, `unit`, `ci95`, `standard_error`, `status`, `identifiability`",
        Parameters},

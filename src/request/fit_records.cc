@@ -181,7 +181,9 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
     io::KeepSamples(records[r], test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
-  if (all_cycled && !options.initial_state) options.initial_state = models::InitialState::kSteady;
+  if (all_cycled && !options.initial_state && options.initial_states.empty()) {
+    options.initial_state = models::InitialState::kSteady;
+  }
   return left_out;
 }
 

@@ -97,6 +97,7 @@ struct RecordFit {
   loop::LoopMeasures measures;         ///< with the force's sign that of the displacement
   loop::LoopFacts facts;               ///< likewise, cycle by cycle; from depth kErrors on
   double displacement_noise = 0.0;     ///< noise of the readings [m]; 0 if exact
+  models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.
   double response_noise = 0.0;
@@ -125,7 +126,7 @@ struct FitResult {
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
-  /// Initial state of all records.
+  /// Initial state of the records; kVirgin if they differ.
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
@@ -159,6 +160,9 @@ struct FitResult {
 
   /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
+
+  /// True if the initial state is not the same in all records.
+  [[nodiscard]] bool has_mixed_states() const;
 
   /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
   /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.

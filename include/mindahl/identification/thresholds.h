@@ -90,8 +90,10 @@ struct Thresholds {
   /// Within half a stroke the force passes through the whole law: noise of that length cannot be
   /// distinguished from a misfit.
   double noise_memory = 0.5;
-  /// [ΔAICc] Masing's law and Dahl's own are not distinguished if they differ by less. Evidence of
-  /// e⁵ = 150 to 1: what either law misses of a real loop can be worth less.
+  /// [ΔAICc] Masing's law and Dahl's own, and a record of several that is virgin or steady unlike
+  /// the others, are not distinguished if they differ by less. Evidence of e⁵ = 150 to 1: initial
+  /// states differ in a few samples only, where a single odd reading decides, and what either law
+  /// misses of a real loop can be worth less.
   double undecided = 10.0;
   /// [places of the loop] If every cycle samples fewer, σ and α are not identifiable. Four each
   /// for σ, α, Tc and for where the motion turns between them.

@@ -300,7 +300,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
   const std::vector<Sampling> samplings = SamplingsOf(data);
   if (data.is_forced()) return PlacesUnderForce(problem, theta, response, samplings);
   const LawPoint point = PointAt(problem, theta);
-  const bool tells_asymmetry = problem.state == models::InitialState::kVirgin &&
+  const bool tells_asymmetry = problem.state.Any(models::InitialState::kVirgin) &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !data.load_varies;
   std::vector<double> force(problem.size());
@@ -360,7 +360,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
                             .gain = sensitivity.gain[b]});
     }
     FollowBranches(*problem.model, of);
-    if (problem.state == models::InitialState::kSteady) {
+    if (problem.state.Of(r) == models::InitialState::kSteady) {
       of.extreme = SteadyExtreme(problem, point, record);
     }
     begin += record.size();

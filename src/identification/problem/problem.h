@@ -21,7 +21,7 @@ namespace mindahl::identification {
 struct Problem {
   const ScaledRecords* data;
   const models::FrictionModel* model;
-  models::InitialState state;  // of all records
+  RecordStates state;
   Parameters parameters;
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }

@@ -107,6 +107,11 @@ void RequireOptions(const FitOptions& options) {
 }
 
 void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
+  const std::size_t states = options.initial_states.size();
+  if (states != 0 && states != data.records.size()) {
+    throw InvalidArgument(fmt::format("{} initial states for {} records: give one a record", states,
+                                      data.records.size()));
+  }
   const bool is_forced = data.is_forced();
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });

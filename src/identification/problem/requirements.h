@@ -11,8 +11,8 @@ namespace mindahl::identification {
 /// Refuses options that break a rule whatever the records are.
 void RequireOptions(const FitOptions& options);
 
-/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load, and
-/// noise of which squares overflow.
+/// Refuses initial states that are neither none nor one a record, loads that differ or vary in a
+/// fit of the displacement, which is that of one load, and noise of which squares overflow.
 void RequireRecords(const FitOptions& options, const ScaledRecords& data);
 
 /// Refuses fewer samples that count than free parameters, and says what was left out.

@@ -56,8 +56,9 @@ const double kHighestLogTravel = std::log(1e3);
 double LeastLogSlipForce(const Problem& problem) {
   constexpr double kShortOfSlip = 1e-9;
   double largest = 0.0;
-  for (const ScaledRecord& record : problem.data->records) {
-    if (problem.state != models::InitialState::kSteady) break;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    if (problem.state.Of(r) != models::InitialState::kSteady) continue;
+    const ScaledRecord& record = problem.data->records[r];
     const auto [low, high] = std::ranges::minmax(record.excitation());
     largest = std::max(largest, (high - low) / 2);
   }

@@ -17,7 +17,7 @@ struct StartingPoint {
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options, models::InitialState state)
+  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state)
       : problem{&data, options.model, state, Parameters(data, options, state)} {}
 
   Problem problem;

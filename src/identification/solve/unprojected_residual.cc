@@ -51,8 +51,8 @@ UnprojectedResidual::UnprojectedResidual(const Problem& problem, double unit)
   for (const Parameter& parameter : parameters) theta_.push_back(parameter.theta);
   for (const std::size_t p : parameters.reported()) {
     const std::size_t record = parameters[p].record;
-    const bool is_steady_origin =
-        p == parameters.PositionOfOrigin(record) && problem.state == models::InitialState::kSteady;
+    const bool is_steady_origin = p == parameters.PositionOfOrigin(record) &&
+                                  problem.state.Of(record) == models::InitialState::kSteady;
     if (!is_steady_origin) blocks_.push_back(p);
   }
   for (const ScaledRecord& record : problem.data->records) {
