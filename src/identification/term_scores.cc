@@ -239,46 +239,6 @@ std::vector<double> TermScores::Predict(const std::vector<Eigen::Index>& places)
   return squares;
 }
 
-/// Tests whether the products of the residuals with the added columns, freed of the others, have a
-/// mean over the parts: by F, as Hotelling's T², of parts that are independent of each other. Their
-/// scatter is that of the residuals with the terms: a trend has little effect on the parts in the
-/// middle, which is no scatter. Where the terms weigh the same in all parts it is T² itself.
-/// @returns nothing where the parts are too few
-std::optional<double> TermScores::TestEffects(const std::vector<Eigen::Index>& before,
-                                              const std::vector<Eigen::Index>& added) const {
-  constexpr std::size_t kLeastDegrees = 3;
-  const std::size_t parts = of_part_.size();
-  if (parts < added.size() + kLeastDegrees) return std::nullopt;
-  const Eigen::Index last = whole_.cols() - 1;
-  const auto terms = std::ssize(added);
-  Eigen::MatrixXd of_others = whole_(before, before);
-  of_others.diagonal().array() += kOwnSquare;
-  // The added columns and the residuals, freed of the others, as combinations of all columns.
-  Eigen::MatrixXd freed = Eigen::MatrixXd::Zero(whole_.rows(), terms + 1);
-  std::vector<Eigen::Index> all = Joined(added, std::array{last});
-  freed(before, Eigen::all) = -SolveSymmetric(of_others, whole_(before, all));
-  for (Eigen::Index c = 0; c <= terms; ++c) freed(all[static_cast<std::size_t>(c)], c) += 1.0;
-  const Eigen::MatrixXd products = freed.transpose() * whole_ * freed;
-  const Eigen::VectorXd taken =
-      SolveLeastSquares(products.topLeftCorner(terms, terms), products.topRightCorner(terms, 1));
-  const Eigen::VectorXd after = freed.col(terms) - freed.leftCols(terms) * taken;
-  Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(terms, terms);
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(terms);
-  const auto count = static_cast<double>(parts);
-  for (const Eigen::MatrixXd& part : of_part_) {
-    mean += freed.leftCols(terms).transpose() * (part * freed.col(terms)) / count;
-    const Eigen::VectorXd effect = freed.leftCols(terms).transpose() * (part * after);
-    scatter += effect * effect.transpose() / (count - 1);
-  }
-  Eigen::Index rank = 0;
-  const Eigen::VectorXd weighed = SolveLeastSquares(scatter, mean, &rank);
-  if (rank < terms) return std::nullopt;
-  const auto columns = static_cast<double>(terms);
-  const double t_squared = count * mean.dot(weighed);
-  return PValueOfF((count - columns) / (columns * (count - 1)) * t_squared, columns,
-                   count - columns);
-}
-
 /// Writes the values of a choice's parameters after a step, well inside their bounds.
 void TermScores::PutValues(std::size_t choice, const Eigen::VectorXd& step,
                            std::map<std::string, double>& to) const {
@@ -332,11 +292,8 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
     }
     score.gain = 1 - std::exp(-sum / samples);
   }
-  const std::optional<double> by_parts = TestEffects(of_fit_, added);
   const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
-  score.p_value = by_parts    ? *by_parts
-                  : ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(added.size()))
-                              : 1.0;
+  if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, static_cast<double>(added.size()));
   return score;
 }
 

@@ -78,8 +78,6 @@ class TermScores {
                                                 std::vector<Eigen::VectorXd>& columns);
   void TakeProducts(const std::vector<Eigen::VectorXd>& columns, std::span<const Part> parts);
   [[nodiscard]] std::vector<double> Predict(const std::vector<Eigen::Index>& places) const;
-  [[nodiscard]] std::optional<double> TestEffects(const std::vector<Eigen::Index>& before,
-                                                  const std::vector<Eigen::Index>& added) const;
   void PutValues(std::size_t choice, const Eigen::VectorXd& step,
                  std::map<std::string, double>& to) const;
 
