@@ -74,7 +74,7 @@ class BuildByCMake(build_ext):
         subprocess.run(
             ["cmake", "-S", str(ROOT), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release",
              "-DMINDAHL_BUILD_PYTHON=ON", "-DMINDAHL_BUILD_TESTS=OFF", "-DMINDAHL_BUILD_EXAMPLES=OFF",
-             "-DMINDAHL_INSTALL=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=12",
+             "-DMINDAHL_INSTALL=OFF", "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=0",
              f"-DMINDAHL_PYTHON={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python_package",
                         "--parallel", str(os.cpu_count() or 1)], check=True)
