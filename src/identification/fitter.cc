@@ -13,6 +13,7 @@
 #include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
+#include "identification/law_choice.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/requirements.h"
 #include "identification/problem/scaled_records.h"

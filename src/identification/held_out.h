@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "identification/problem/scaled_records.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
@@ -76,16 +75,5 @@ FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 std::optional<double> PredictParts(std::span<const loop::RecordView> records, FitOptions options,
                                    std::size_t free, const ScoredSamples& samples,
                                    std::span<const Part> parts, std::size_t folds);
-
-/// Masing's law against Dahl's own, whichever of them was fitted, by AICc on the effective samples
-/// of the one that leaves less. The other is fitted too where the record may distinguish them, from
-/// where its loop at the widest amplitude would be the same; of one amplitude it follows in closed
-/// form.
-/// @param data  the records, scaled
-/// @param fit   of them, from Depth::kErrors on
-/// @returns empty where the laws are one (α = 0), and where they are not compared
-std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
-                                     const FitOptions& options, const ScaledRecords& data,
-                                     const FitResult& fit);
 
 }  // namespace mindahl::identification

@@ -15,6 +15,7 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
+#include "identification/inference/rig_alternative.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solved_fit.h"

@@ -1,3 +1,4 @@
+#include "identification/law_choice.h"
 
 #include <algorithm>
 #include <array>

@@ -6,6 +6,7 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
+#include "identification/inference/rig_alternative.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/models/steady_loop.h"

@@ -1,3 +1,5 @@
+#include "identification/inference/places.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 
-#include "identification/inference/departures.h"
 #include "mindahl/models/friction_model.h"
 #include "models/normalized_response.h"
 

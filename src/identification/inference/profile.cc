@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/inference/noise.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/loop/disturbances.h"
 
 namespace mindahl::identification {
@@ -265,53 +263,6 @@ ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult&
     SetInterval(slip_force, {.lower = carried});
   }
   return slip_force;
-}
-
-using contact::kMindlinShapeExponent;
-
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
-                                     const ParameterEstimate& shape, const FitOptions& options,
-                                     Solver& solver) {
-  const auto& [problem, best, noise, estimates] = fitted;
-  // The law of a load that varies has none, nor has that of an imposed force.
-  if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
-      shape.status == ParameterStatus::kFixed || !shape.upper95 ||
-      !(*shape.upper95 < kMindlinShapeExponent) ||
-      !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
-    return std::nullopt;
-  }
-  FitOptions with_rig = options;
-  with_rig.terms.emplace_back("rig_stiffness");
-  with_rig.fixed["alpha"] = kMindlinShapeExponent;
-  with_rig.start.clear();
-  Candidate sprung(*problem.data, with_rig, problem.state);
-  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), solver);
-  Descend(sprung, with_rig, solver);
-  const Solution& solution = sprung.solution;
-  // Both have as many parameters: ΔAICc is 2 ln Λ.
-  const auto samples = static_cast<double>(noise.samples);
-  const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))
-                          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
-  if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
-  return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-                        .law = sprung.problem.parameters.LawAt(solution.theta)};
-}
-
-ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
-                              ParameterEstimates parameters) {
-  const models::BranchLaw& law = rig.law;
-  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
-    return parameters;
-  }
-  Include(parameters[kShape], {.lower = kMindlinShapeExponent, .upper = kMindlinShapeExponent});
-  for (const auto& [p, value] :
-       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
-    ParameterEstimate& estimate = parameters[p];
-    if (!estimate.lower95 || !estimate.upper95) continue;
-    const double ratio = value / estimate.value;
-    Include(estimate, {.lower = ratio * *estimate.lower95, .upper = ratio * *estimate.upper95});
-  }
-  return parameters;
 }
 
 }  // namespace mindahl::identification

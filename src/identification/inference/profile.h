@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "identification/inference/estimates.h"
 #include "identification/solve/search.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/models/branch_law.h"
 
 /// Intervals by the likelihood, where the parabola of its maximum is wrong.
 ///
@@ -34,25 +32,5 @@ ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& re
 /// Returns Tc, a limit of which is no less than the force that the contact is seen to carry, unless
 /// the fit is too poor to say.
 ParameterEstimate KeepAboveCarriedForce(const Problem& problem, const FitResult& result);
-
-/// Holds α = 1/3 in a compliant rig.
-struct RigAlternative {
-  double rig_stiffness = 0.0;  // [N/m]
-  models::BranchLaw law;       // of the contact
-};
-
-/// A rig makes a loop more angular, as a smaller α does: where Mindlin's exponent lies above the
-/// interval of α for a rigid rig, a compliant one may restore it.
-/// @param shape  the estimate of α
-/// @returns empty where 1/3 does not, a rig is there already, or none helps
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
-                                     const ParameterEstimate& shape, const FitOptions& options,
-                                     Solver& solver);
-
-/// Includes in the intervals of σ, α and Tc those that they have in a compliant rig: the record
-/// does not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the
-/// same curve, no other α.
-ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
-                              ParameterEstimates parameters);
 
 }  // namespace mindahl::identification

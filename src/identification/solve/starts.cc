@@ -1,3 +1,5 @@
+#include "identification/solve/starts.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <span>
 
 #include "core/extremes.h"
-#include "identification/solve/search.h"
 
 namespace mindahl::identification {
 namespace {
