@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/mended.h"
+#include "loop/interpolated.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
@@ -179,11 +179,13 @@ double UsualStep(Readings values) {
 }
 
 /// A column, what is wrong in it, and the column with lines over that.
-class MendedChannel {
+class InterpolatedChannel {
  public:
-  explicit MendedChannel(Readings values) : values_(values) {}
+  explicit InterpolatedChannel(Readings values) : values_(values) {}
 
-  [[nodiscard]] Readings values() const { return mended_.empty() ? values_ : Readings(mended_); }
+  [[nodiscard]] Readings values() const {
+    return interpolated_.empty() ? values_ : Readings(interpolated_);
+  }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
   /// Returns the usual step of the column as it is when this is first called.
@@ -195,7 +197,7 @@ class MendedChannel {
   void LeaveOut(std::size_t begin, std::size_t end, Glitch kind) {
     if (glitches_.empty()) {
       glitches_.assign(values_.size(), Glitch::kNone);
-      mended_.assign(values_.begin(), values_.end());
+      interpolated_.assign(values_.begin(), values_.end());
     }
     std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
               glitches_.begin() + static_cast<std::ptrdiff_t>(end), kind);
@@ -207,7 +209,7 @@ class MendedChannel {
     const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
     if (!(count > most * static_cast<double>(values_.size()))) return;
     std::ranges::replace(glitches_, kind, Glitch::kNone);
-    mended_.assign(values_.begin(), values_.end());
+    interpolated_.assign(values_.begin(), values_.end());
     for (std::size_t begin = 0; begin < size(); ++begin) {
       if (glitches_[begin] == Glitch::kNone) continue;
       std::size_t end = begin + 1;
@@ -221,23 +223,23 @@ class MendedChannel {
     return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
   }
   [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
-  std::vector<double> TakeMended() { return std::move(mended_); }
+  std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
 
  private:
   /// Draws a line between the samples about [begin, end); a level one at the record's ends.
   void BridgeOver(std::size_t begin, std::size_t end) {
     if (begin == 0 && end == size()) return;
-    const double last = mended_[end < size() ? end : begin - 1];
-    const double first = begin > 0 ? mended_[begin - 1] : last;
+    const double last = interpolated_[end < size() ? end : begin - 1];
+    const double first = begin > 0 ? interpolated_[begin - 1] : last;
     const auto steps = static_cast<double>(end - begin + 1);
     for (std::size_t i = begin; i < end; ++i) {
       const double share = static_cast<double>(i - begin + 1) / steps;
-      mended_[i] = first + share * (last - first);
+      interpolated_[i] = first + share * (last - first);
     }
   }
 
   Readings values_;
-  std::vector<double> mended_;
+  std::vector<double> interpolated_;
   std::vector<Glitch> glitches_;
   std::optional<double> usual_step_;
 };
@@ -285,8 +287,8 @@ std::vector<Run> ZeroRuns(const RecordView& record) {
   return runs;
 }
 
-void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChannel& displacement,
-                  MendedChannel& force) {
+void FindDropouts(const RecordView& record, const GlitchRules& rules,
+                  InterpolatedChannel& displacement, InterpolatedChannel& force) {
   const std::vector<Run> runs = ZeroRuns(record);
   if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
   const Readings x = record.displacement;
@@ -314,7 +316,7 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChan
 
 /// Returns the third largest step about [begin, end), that into it and that out of it aside: a
 /// second spike makes two. 0 with fewer.
-double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t end,
+double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::size_t end,
                  const GlitchRules& rules) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
@@ -334,7 +336,7 @@ double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t en
 }
 
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(MendedChannel& channel, std::size_t i, const GlitchRules& rules) {
+std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i, const GlitchRules& rules) {
   const Readings values = channel.values();
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
@@ -365,7 +367,7 @@ std::size_t NextLeap(Readings values, std::size_t from, double factor) {
 }
 
 /// Makes one pass: a spike may hide another, until it is interpolated.
-bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
+bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
   if (channel.size() < 5) return false;
   bool found = false;
   Readings values = channel.values();
@@ -380,7 +382,7 @@ bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
   return found;
 }
 
-double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t end) {
+double LargestStep(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
   double largest = 0.0;
   const std::size_t last = std::min(end, channel.size());
   for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
@@ -390,14 +392,14 @@ double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t 
 }
 
 /// True if half of the samples of [begin, end) have another value than the one before them.
-bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
+bool Moves(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
   std::size_t moves = 0;
   for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
   return 2 * moves >= end - begin;
 }
 
 /// True if the column jumps at the end of the run [begin, end) of equal values.
-bool JumpsAtTheEnd(const MendedChannel& channel, std::size_t begin, std::size_t end,
+bool JumpsAtTheEnd(const InterpolatedChannel& channel, std::size_t begin, std::size_t end,
                    const GlitchRules& rules) {
   const std::size_t length = end - begin;
   const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
@@ -427,7 +429,7 @@ Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
 }
 
 /// Finds where one channel reads one value, away from what it read before and reads again after.
-void FindFlatDropouts(MendedChannel& channel, const MendedChannel& other,
+void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& other,
                       const GlitchRules& rules) {
   const std::size_t size = channel.size();
   Readings values = channel.values();
@@ -449,7 +451,8 @@ void FindFlatDropouts(MendedChannel& channel, const MendedChannel& other,
   }
 }
 
-void FindHeld(MendedChannel& channel, const MendedChannel& other, const GlitchRules& rules) {
+void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
+              const GlitchRules& rules) {
   const std::size_t size = channel.size();
   Readings values = channel.values();
   for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
@@ -466,12 +469,12 @@ void FindHeld(MendedChannel& channel, const MendedChannel& other, const GlitchRu
 
 }  // namespace
 
-Mended FindAndMend(const RecordView& record, const GlitchRules& rules) {
+Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rules) {
   constexpr int kPasses = 3;
-  MendedChannel displacement(record.displacement);
-  MendedChannel force(record.force);
+  InterpolatedChannel displacement(record.displacement);
+  InterpolatedChannel force(record.force);
   FindDropouts(record, rules, displacement, force);
-  for (MendedChannel* channel : {&displacement, &force}) {
+  for (InterpolatedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
     channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
@@ -480,18 +483,20 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules) {
   FindFlatDropouts(force, displacement, rules);
   FindHeld(displacement, force, rules);
   FindHeld(force, displacement, rules);
-  Mended mended;
-  for (MendedChannel* channel : {&displacement, &force}) {
+  Interpolated interpolated;
+  for (InterpolatedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
     if (channel->IsWhole()) continue;
-    if (mended.glitches.empty()) mended.glitches.assign(record.size(), Glitch::kNone);
+    if (interpolated.glitches.empty()) interpolated.glitches.assign(record.size(), Glitch::kNone);
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (channel->glitches()[i] != Glitch::kNone) mended.glitches[i] = channel->glitches()[i];
+      if (channel->glitches()[i] != Glitch::kNone)
+        interpolated.glitches[i] = channel->glitches()[i];
     }
-    (channel == &displacement ? mended.displacement : mended.force) = channel->TakeMended();
+    (channel == &displacement ? interpolated.displacement : interpolated.force) =
+        channel->TakeInterpolated();
   }
-  return mended;
+  return interpolated;
 }
 
 }  // namespace mindahl::loop

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/mended.h"
+#include "loop/interpolated.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
@@ -65,11 +65,11 @@ void Smooth(PreparedRecord& prepared) {
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
-  Mended mended = FindAndMend(prepared.record, {});
-  if (mended.glitches.empty()) return;
+  Interpolated interpolated = FindAndInterpolate(prepared.record, {});
+  if (interpolated.glitches.empty()) return;
   GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    const Glitch glitch = mended.glitches[i];
+    const Glitch glitch = interpolated.glitches[i];
     if (glitch == Glitch::kNone) continue;
     prepared.counts[i] = 0;
     if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
@@ -77,8 +77,8 @@ void LeaveOutGlitches(PreparedRecord& prepared) {
        : glitch == Glitch::kDropout ? count.dropouts
                                     : count.held);
   }
-  prepared.mended_displacement = std::move(mended.displacement);
-  prepared.mended_force = std::move(mended.force);
+  prepared.interpolated_displacement = std::move(interpolated.displacement);
+  prepared.interpolated_force = std::move(interpolated.force);
 }
 
 void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {

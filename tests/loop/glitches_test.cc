@@ -1,7 +1,7 @@
 
 #include <type_traits>
 
-#include "loop/mended.h"
+#include "loop/interpolated.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
@@ -61,7 +61,9 @@ void Count(History& values, double step) {
   for (double& value : values) value = step * std::round(value / step);
 }
 
-std::vector<Glitch> FindGlitches(const Record& record) { return FindAndMend(record, {}).glitches; }
+std::vector<Glitch> FindGlitches(const Record& record) {
+  return FindAndInterpolate(record, {}).glitches;
+}
 
 GlitchCount CountIn(const Record& record) {
   const RecordView view = record;
@@ -261,17 +263,17 @@ TEST(FindGlitches, FindsNoneInARecordThatIsEmptyOrAllZero) {
   EXPECT_TRUE(FindGlitches(Record{{0, 0}, {0, 0}, {}, {}}).empty());
 }
 
-TEST(FindAndMend, InterpolatesLinearlyInChannelsWithGlitches) {
+TEST(FindAndInterpolate, InterpolatesLinearlyInChannelsWithGlitches) {
   Record record = Noisy();
   record.force[300] = 50;
   record.force[301] = 51;
-  const Mended mended = FindAndMend(record, {});
-  EXPECT_TRUE(mended.displacement.empty());
-  ASSERT_EQ(mended.force.size(), record.size());
+  const Interpolated interpolated = FindAndInterpolate(record, {});
+  EXPECT_TRUE(interpolated.displacement.empty());
+  ASSERT_EQ(interpolated.force.size(), record.size());
   const double rise = record.force[302] - record.force[299];
-  EXPECT_DOUBLE_EQ(mended.force[300], record.force[299] + rise / 3);
-  EXPECT_DOUBLE_EQ(mended.force[301], record.force[299] + 2 * rise / 3);
-  EXPECT_EQ(mended.force[302], record.force[302]);
+  EXPECT_DOUBLE_EQ(interpolated.force[300], record.force[299] + rise / 3);
+  EXPECT_DOUBLE_EQ(interpolated.force[301], record.force[299] + 2 * rise / 3);
+  EXPECT_EQ(interpolated.force[302], record.force[302]);
 }
 
 TEST(FindGlitches, MeasuredRecordsHaveHardlyAny) {
@@ -300,7 +302,7 @@ struct Rule {
 };
 
 bool HasGlitch(const Record& record, const GlitchRules& rules) {
-  return !FindAndMend(record, rules).glitches.empty();
+  return !FindAndInterpolate(record, rules).glitches.empty();
 }
 
 /// A triangle in steps of 1 and −1 with a force that follows it.
@@ -367,8 +369,8 @@ const std::vector<Rule>& Rules() {
              record.displacement[200 + pulse * apart] += 50;
              record.displacement[201 + pulse * apart] += 50;
            }
-           const Mended mended = FindAndMend(record, rules);
-           return !mended.glitches.empty() && mended.glitches[200] != Glitch::kNone;
+           const Interpolated interpolated = FindAndInterpolate(record, rules);
+           return !interpolated.glitches.empty() && interpolated.glitches[200] != Glitch::kNone;
          };
          return !has(5) && has(9);
        }},

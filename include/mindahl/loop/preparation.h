@@ -67,10 +67,10 @@ struct PreparationOptions {
 
 /// One record as every later stage sees it.
 struct PreparedRecord {
-  RecordView record;                        ///< measured record; must outlive this
-  GlitchCount glitches;                     ///< glitches left out, by kind
-  std::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
-  std::vector<double> mended_force;         ///< [N]; likewise
+  RecordView record;                              ///< measured record; must outlive this
+  GlitchCount glitches;                           ///< glitches left out, by kind
+  std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
+  std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
   ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;               ///< with the force's sign that of the displacement
@@ -90,10 +90,10 @@ struct PreparedRecord {
   [[nodiscard]] std::span<const double> force() const { return readings().force; }
   /// Returns the record with lines over glitches.
   [[nodiscard]] RecordView readings() const {
-    RecordView mended = record;
-    if (!mended_displacement.empty()) mended.displacement = mended_displacement;
-    if (!mended_force.empty()) mended.force = mended_force;
-    return mended;
+    RecordView interpolated = record;
+    if (!interpolated_displacement.empty()) interpolated.displacement = interpolated_displacement;
+    if (!interpolated_force.empty()) interpolated.force = interpolated_force;
+    return interpolated;
   }
   [[nodiscard]] std::size_t size() const { return record.size(); }
 };

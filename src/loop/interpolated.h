@@ -18,7 +18,7 @@ enum class Glitch : std::uint8_t {
 
 /// A record without its glitches: lines over the samples that are left out. All empty where there
 /// is no glitch; a channel is also empty where there is none in it.
-struct Mended {
+struct Interpolated {
   std::vector<Glitch> glitches;
   std::vector<double> displacement;  // [m]
   std::vector<double> force;         // [N]
@@ -43,6 +43,6 @@ struct Mended {
 ///
 /// @param record  valid
 /// Cost: linear in the samples.
-Mended FindAndMend(const RecordView& record, const GlitchRules& rules);
+Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rules);
 
 }  // namespace mindahl::loop
