@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
