@@ -23,7 +23,7 @@ for group in "$@"; do
   case $group in
     --tests)
       packages+=(
-        libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema pkg-config
+        libgtest-dev libgmock-dev python3-jsonschema pkg-config
         pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
