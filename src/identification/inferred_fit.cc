@@ -123,7 +123,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, estimates, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
-  const std::optional<Finding> limit = FindSearchLimit(problem, solution);
+  const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, solver, result);

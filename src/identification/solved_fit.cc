@@ -115,7 +115,7 @@ Candidate FitBestState(const Attempt& attempt) {
   const double virgin_look =
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
-  const double clearly_worse = options.thresholds.hopeless_past;
+  const double clearly_worse = options.thresholds.hopeless;
   const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
   if (is_one && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
@@ -157,7 +157,7 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
   }
   std::vector<double> residual(problem.size());
   EvaluateResidual(problem, candidate.solution.theta, attempt.solver.response, residual);
-  return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
+  return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.doubt;
 }
 
 /// Fits again with turning points where the motion has them, by the samples about each reversal: no

@@ -26,11 +26,6 @@ namespace {
 /// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes of
 /// both directions.
 constexpr std::size_t kFoldsOfParts = 5;
-/// Largest probability with which the gain of a term that is added is chance, over all candidates
-/// of a round (Bonferroni).
-constexpr double kChance = 0.05;
-/// Least fraction by which the error of prediction falls with a term that is added.
-constexpr double kWorthwhileGain = 0.03;
 /// Fits in all, nearly all of them at Depth::kEstimate.
 constexpr std::size_t kMostFits = 15;
 
@@ -49,7 +44,8 @@ std::vector<double> RoughVelocity(const RecordView& record) {
 /// Names what keeps a column out: it repeats another one.
 /// @param before  covariates that are candidates
 std::string_view ObstacleToColumn(const loop::Covariate& covariate, const RecordView& record,
-                                  const FitResult& law, std::span<const std::string> before) {
+                                  const FitResult& law, std::span<const std::string> before,
+                                  const Thresholds& thresholds) {
   const auto is_channel = [&](std::span<const double> other) {
     return AreOneChannel(covariate.values, other);
   };
@@ -62,7 +58,8 @@ std::string_view ObstacleToColumn(const loop::Covariate& covariate, const Record
     const bool is_before = std::ranges::find(before, other.name) != before.end();
     if (is_before && is_channel(other.values)) return "same_channel";
   }
-  return FollowsContact(covariate.values, law.records.front().fitted_force) ? "confounded" : "";
+  const std::vector<double>& contact = law.records.front().fitted_force;
+  return FollowsContact(covariate.values, contact, thresholds) ? "confounded" : "";
 }
 
 bool HasCovariate(const RecordView& record, const std::string& name) {
@@ -107,7 +104,8 @@ std::vector<TermCandidate> TermCandidates(std::span<const RecordView> records,
     if (is_there || !std::ranges::all_of(records, has_it) || IsConstant(covariate.values)) continue;
     TermCandidate& candidate = candidates.emplace_back();
     candidate.considered.name = NameOfCovariate(covariate.name);
-    candidate.considered.obstacle = ObstacleToColumn(covariate, records.front(), law, columns);
+    candidate.considered.obstacle =
+        ObstacleToColumn(covariate, records.front(), law, columns, options.thresholds);
     if (candidate.considered.obstacle == "same_channel") continue;  // reported, never fitted
     columns.push_back(covariate.name);
     candidate.choice.covariate = covariate.name;
@@ -122,9 +120,8 @@ bool HasGap(const FitResult& law) {
 }
 
 /// True if hardly more than white noise is left.
-bool IsNearlyWhite(const FitResult& fit) {
-  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
-  return fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
+bool IsNearlyWhite(const FitResult& fit, const Thresholds& thresholds) {
+  return fit.rms * fit.rms <= thresholds.nearly_white * WhiteVariance(fit);
 }
 
 /// True if the interval of the slip force was closed and is open.
@@ -234,6 +231,7 @@ class Selection {
 
   bool Begin(const FitOptions& options, const FitResult& law,
              std::vector<TermCandidate> candidates);
+  [[nodiscard]] const Thresholds& Limits() const { return base_.options.thresholds; }
   [[nodiscard]] std::optional<std::size_t> Find(std::string_view name) const;
   std::vector<Gain> Score();
   [[nodiscard]] bool IsRefused(const Gain& gain);
@@ -355,7 +353,6 @@ bool Selection::IsRefused(const Gain& gain) {
 
 /// Returns the best, or what has some of its terms only and gains at least half as much.
 const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
-  constexpr double kOfGain = 0.5;
   const Gain& most = gains.front();
   const Gain* best = &most;
   for (const Gain& one : gains) {
@@ -366,7 +363,7 @@ const Selection::Gain& Selection::Simplest(std::span<const Gain> gains) const {
           return std::ranges::find(all, term) != all.end();
         });
     const bool is_smaller = one.score.values.size() < best->score.values.size();
-    if (is_part && is_smaller && one.score.gain >= kOfGain * most.score.gain) best = &one;
+    if (is_part && is_smaller && one.score.gain >= Limits().rival * most.score.gain) best = &one;
   }
   return *best;
 }
@@ -403,7 +400,8 @@ FitResult Selection::FitTo(const FitOptions& options, Depth depth) {
 
 /// True if Tc leaves the half gap that was measured, and more than noise is left.
 bool Selection::Leaves(const FitResult& fit) const {
-  return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) && !IsNearlyWhite(fit);
+  return LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) &&
+         !IsNearlyWhite(fit, Limits());
 }
 
 /// Says why a larger model does not replace the present one; empty where it does.
@@ -411,7 +409,7 @@ std::string_view Selection::ObstacleTo(const Model& model) const {
   const FitResult& fit = model.fit;
   if (!IsFitted(fit) || !fit.converged) return "not_converged";
   if (IsUnphysical(fit)) return "unphysical";
-  const bool gains = fit.rms <= (1 - kWorthwhileGain) * base_.fit.rms;
+  const bool gains = fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
   const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
   return Leaves(fit) || stops || !gains ? "confounded" : "";
 }
@@ -427,18 +425,18 @@ bool Selection::Add(std::size_t candidate, Model model) {
   // An initial state that was found without the term may be another with it.
   Model anew = FitWith({}, nullptr);
   const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
-  if (is_fit && anew.fit.rms < (1 - kWorthwhileGain) * base_.fit.rms) base_ = std::move(anew);
+  if (is_fit && anew.fit.rms < (1 - Limits().worthwhile_gain) * base_.fit.rms)
+    base_ = std::move(anew);
   return true;
 }
 
 /// Keeps what candidates that gain at least half as much as the one that is added would make of the
 /// law: the record may have been made by them.
 void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains) {
-  constexpr double kOfGain = 0.5;
   for (const auto& [c, score] : gains) {
     const bool is_column = !candidates_[c].choice.covariate.empty();
     if (candidates_[c].considered.obstacle == "unphysical") continue;
-    if (is_column || score.gain < kOfGain * added.score.gain) continue;
+    if (is_column || score.gain < Limits().rival * added.score.gain) continue;
     Alternative& alternative =
         alternatives_.emplace_back(Alternative{candidates_[c].considered.name, {}, score.rms});
     for (const auto& [name, step] : score.law) {
@@ -451,9 +449,10 @@ void Selection::KeepAlternatives(const Gain& added, std::span<const Gain> gains)
 /// Adds the best candidate that can be added; false where there is none.
 bool Selection::Round() {
   std::vector<Gain> gains = Score();
-  const double chance = kChance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
+  const double chance =
+      Limits().added_by_chance / static_cast<double>(std::max<std::size_t>(gains.size(), 1));
   std::erase_if(gains, [&](const Gain& gain) {
-    return gain.score.gain < kWorthwhileGain || !(gain.score.p_value < chance);
+    return gain.score.gain < Limits().worthwhile_gain || !(gain.score.p_value < chance);
   });
   const std::vector<Gain> explaining = gains;
   std::erase_if(gains, [&](const Gain& gain) { return IsRefused(gain); });
@@ -508,10 +507,9 @@ FitResult Selection::FitFromHere() {
 /// more than is known to be left, else from where it is. The law stays where its Tc would be lost.
 void Selection::FitLast(const FitResult& law) {
   FitResult last = FitTo(base_.options, depth_);
-  const double most_left = (1 + kWorthwhileGain) * base_.fit.rms;
+  const double most_left = (1 + Limits().worthwhile_gain) * base_.fit.rms;
   if (!IsFitted(last) || last.rms > most_left) last = FitFromHere();
-  if (IsFitted(last) && !Leaves(last) &&
-      !OpensSlipForce(law, last, base_.options.thresholds.widest_ratio)) {
+  if (IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
         result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
@@ -519,7 +517,7 @@ void Selection::FitLast(const FitResult& law) {
       return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
              (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
     });
-    IncludeAlternatives(alternatives_, base_.options.thresholds, last);
+    IncludeAlternatives(alternatives_, Limits(), last);
     result_.fit = std::move(last);
     result_.options = base_.options;
     return;
@@ -564,7 +562,7 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return {};
   std::vector<Gain> tried = Score();
   std::erase_if(tried, [&](const Gain& gain) {
-    return gain.score.gain < kWorthwhileGain || IsRefused(gain);
+    return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
   });
   if (HasGap(law)) {
     const std::size_t gap = *Find("backlash");

@@ -155,14 +155,14 @@ constexpr std::string_view kWhyNoSphere =
 /// False where a loop that slides measures another force in that direction: then the asymmetry and
 /// the offset of the force stand for each other.
 bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
-  constexpr double kTolerance = 0.25;
   const loop::LoopFacts& facts = fit.WidestRecord().facts;
   if (!loop::Slides(facts) || !facts.half_gap || facts.cycles.empty()) return true;
   double centre = 0.0;
   for (const loop::CycleFacts& cycle : facts.cycles) centre += cycle.centre_force;
   centre /= static_cast<double>(facts.cycles.size());
   const double plateau = std::abs(*facts.half_gap) + sense * centre;
-  return std::abs(slip_force - plateau) < kTolerance * std::abs(*facts.half_gap);
+  return std::abs(slip_force - plateau) <
+         identification::Thresholds().off_plateau * std::abs(*facts.half_gap);
 }
 
 /// Returns the force at which the contact slips in one direction, Tc(1 ± A).
@@ -321,10 +321,10 @@ bool DeniesHertz(const FitResult& fit) {
 
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
                   double contact_amplitude) {
-  constexpr double kAsGoodAsSlip = 0.99;
   const double gross_slip = models::SteadyGrossSlipAmplitude(model, law);
   if (std::isfinite(gross_slip)) return contact_amplitude >= gross_slip;
-  return models::SteadyPeakForce(model, law, contact_amplitude) >= kAsGoodAsSlip * law.slip_force;
+  return models::SteadyPeakForce(model, law, contact_amplitude) >=
+         (1 - identification::Thresholds().never_slips) * law.slip_force;
 }
 
 }  // namespace mindahl::report

@@ -156,7 +156,6 @@ std::string ImpossibleContact(const Report& report) {
 
 /// Returns a question where half gaps of several files differ as loads would make them.
 std::string DifferentLoads(const Report& report) {
-  constexpr double kSeverally = 2.0;
   if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0.0;
@@ -166,7 +165,7 @@ std::string DifferentLoads(const Report& report) {
     least = std::min(least, half_gap);
     greatest = std::max(greatest, half_gap);
   }
-  if (!(greatest > kSeverally * least)) return "";
+  if (!(greatest > identification::Thresholds().other_test * least)) return "";
   const std::string_view unit = report.units.force;
   return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",
                      Quantity(least, unit, 3), Quantity(greatest, unit, 3),
@@ -196,10 +195,6 @@ Report MakeReport(ReportInput input) {
   if (report.fit.response == loop::Channel::kDisplacement) {
     report.units.response = report.units.displacement;
     report.units.excitation = report.units.force;
-  }
-  constexpr double kWorthwhile = 0.9;
-  if (report.next && !(report.next->misfit_after <= kWorthwhile * report.next->misfit_before)) {
-    report.next.reset();
   }
   if (!report.failed()) {
     RequireMoreSamplesThanParameters(report.fit);

@@ -335,13 +335,12 @@ bool LosesSlipForce(const FitResult& before, const FitResult& after) {
 }
 
 /// Fits the record again with the term that explains most of what the law misses, where the law
-/// alone is not adequate; with the next one where it does not gain a tenth, or the slip force is
+/// alone is not adequate; with the next one where it does not gain enough, or the slip force is
 /// lost.
 std::optional<report::NextStep> FindNextStep(const FitRequest& request, const FitOptions& options,
                                              std::span<const Record> records,
                                              const FitResult& fit) {
   constexpr std::size_t kMostTried = 3;
-  constexpr double kLeastGain = 0.1;
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !before || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       !options.terms.empty() || !options.covariates.empty()) {
@@ -368,7 +367,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
           FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
-      if (step.misfit_after > (1 - kLeastGain) * *before || LosesSlipForce(fit, found)) continue;
+      const double most = (1 - options.thresholds.advised_gain) * *before;
+      if (!(step.misfit_after <= most) || LosesSlipForce(fit, found)) continue;
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it

@@ -65,7 +65,7 @@ TEST(Adequacy, IsNotClaimedOfResidualsBeyondTheNoiseThatTheRecordHasWithoutAMode
       const FitResult fit = Fitted(record, options);
       if (fit.rms < 1.6 * 0.0025 * law.slip_force) continue;
       EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << alpha << " " << cycles;
-      EXPECT_LE(fit.adequacy.p_value, options.thresholds.repeat_chance) << alpha << " " << cycles;
+      EXPECT_LE(fit.adequacy.p_value, options.thresholds.rare_chance) << alpha << " " << cycles;
       ++beyond;
     }
   }

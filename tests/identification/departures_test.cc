@@ -511,7 +511,7 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
   ASSERT_NEAR(stages.data.length / kLength, 1, 1e-9);
   const std::vector<double> theta = TrueTheta(stages, contact);
   const DepartureColumns columns =
-      ColumnsOfDepartures(stages.problem, theta, stages.solver.response, 100);
+      ColumnsOfDepartures(stages.problem, theta, {}, stages.solver.response, 100);
   std::vector<Case> cases = Cases();
   // Of a contact that had slipped before an asymmetry is an offset, and Dahl's own has none.
   const bool tells_asymmetry =
@@ -604,7 +604,7 @@ Record Complete() {
 
 DepartureColumns ColumnsOf(Stages& stages) {
   const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
-  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), stages.solver.response,
+  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), {}, stages.solver.response,
                              100);
 }
 

@@ -235,14 +235,14 @@ const std::vector<Row>& Cases() {
        [](const Thresholds& t) {
          return IsDoubted(t, kBelow * 0.005) && !IsDoubted(t, kAbove * 0.005);
        }},
-      {&Thresholds::cause,
+      {&Thresholds::rare_chance,
        [](const Thresholds& t) {
          const auto causes = [&](double p_value) {
            return CausesAmong(t, {FitWith(p_value, -20)});
          };
          return causes(kBelow * 1e-3) == 1 && causes(kAbove * 1e-3) == 0;
        }},
-      {&Thresholds::rival_cause,
+      {&Thresholds::rival,
        [](const Thresholds& t) {
          const auto causes = [&](double share) {
            DepartureFit best = FitWith(1e-9, -90);
@@ -263,11 +263,11 @@ const std::vector<Row>& Cases() {
        [](const Thresholds& t) {
          return !LoopIsSeen(t, kBelow * 0.1) && LoopIsSeen(t, kAbove * 0.1);
        }},
-      {&Thresholds::load_difference,
+      {&Thresholds::load_change,
        [](const Thresholds& t) {
          return !IsLoadSeries(t, kBelow * 0.01) && IsLoadSeries(t, kAbove * 0.01);
        }},
-      {&Thresholds::load_variation,
+      {&Thresholds::load_change,
        [](const Thresholds& t) {
          return !LoadIsFollowed(t, kBelow * 0.01) && LoadIsFollowed(t, kAbove * 0.01);
        }},

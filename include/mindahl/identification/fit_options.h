@@ -52,7 +52,7 @@ struct FitOptions {
   std::vector<std::string> covariates{};
 
   /// Normal load [N] of every record, or one for all; empty: the mean of a record's column. Where
-  /// records differ in it by more than Thresholds::load_difference they are one contact all the
+  /// records differ in it by more than Thresholds::load_change they are one contact all the
   /// same: Tc = μN, σ ∝ N^p with p the parameter load_exponent, α shared; σ and Tc are those at the
   /// mean of the records' loads.
   std::vector<double> normal_loads{};

@@ -3,7 +3,8 @@
 namespace mindahl::identification {
 
 /// Holds every number on which a verdict, a finding or the choice of a method depends: its unit,
-/// what it decides, and why it is there. A test notices when one is changed by a factor of two.
+/// what it decides, and why it is there. A test notices when one that a single result decides is
+/// changed by a factor of two.
 /// Limits on the work of a solver are not here.
 struct Thresholds {
   /// [α] At a smaller difference from Mindlin's exponent no rig is tried. The branches then differ
@@ -24,13 +25,9 @@ struct Thresholds {
   /// [missed over half gap or T*] A model that misses more gives no parameters of the shape. Where
   /// the law carries half of Tc, an error of 0.15 is a third of the force: the knee is elsewhere.
   double failing_misfit = 0.15;
-  /// [p] Chance at which white noise passes for repeatable. In one loop in a thousand standard
-  /// errors are then inflated needlessly.
-  double repeat_chance = 1e-3;
-  /// [p] Records whose residual variances equal noise makes this different less often have each a
-  /// noise level of their own. One set in a hundred of records with equal noise is then weighted
-  /// by chance variances, at no visible cost.
-  double noise_differs = 0.01;
+  /// [p] What white noise makes less often is not noise: residuals that repeat, or an omitted term.
+  /// 22 terms are tried, so one loop in forty has a cause by chance.
+  double rare_chance = 1e-3;
   /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
   /// are nested loops, run-in or run-out; the same as for X and T*.
   double main_stroke = 0.75;
@@ -57,9 +54,10 @@ struct Thresholds {
   /// [fraction of 2 ln Λ] A larger deviation from the parabola, at its 95 % ends of Tc, calls for
   /// a profile. 15 % of 2 ln Λ are 7 % of the interval's width.
   double parabola_departure = 0.15;
-  /// [T* over Tc] A loop that reaches less is always profiled. Below it the parabola may miss the
-  /// curved valley of α and Tc.
-  double parabola_mobilised = 0.9;
+  /// [T* over Tc] A loop that reaches less is always profiled, and if it slides its slip force ran
+  /// away. Below it the parabola may miss the curved valley of α and Tc; a loop that slides has
+  /// carried its slip force, but for the last of an asymptote.
+  double mobilised = 0.9;
   /// [standard errors] Turning points of the motion between samples are tried if they may move a
   /// parameter by more. With a bias of this size a 95 % interval covers 94.5 %.
   double turning_point_shift = 0.2;
@@ -69,8 +67,8 @@ struct Thresholds {
   /// [α] A smaller shape exponent at its bound is that of a Jenkins element. The branches differ
   /// by less than 1 % of Tc.
   double jenkins_shape = 0.01;
-  /// [p] Residuals that noise alone makes less often are not noise alone. One adequate loop in two
-  /// hundred is doubted.
+  /// [p] Residuals that noise alone makes less often are not noise alone, and records whose noise
+  /// is one have variances that differ so less often. One adequate loop in two hundred is doubted.
   double doubt = 0.005;
   /// [rms over noise] Larger residuals are not noise, whatever the tests of omitted terms say.
   /// Noise by pure error or by neighbours is known to a few per cent: half as much again is what
@@ -79,13 +77,34 @@ struct Thresholds {
   /// [samples] Columns of omitted terms are looked for if so many samples pay for each. With fewer
   /// the columns together explain much of any noise.
   double samples_a_column = 8.0;
-  /// [p] An omitted term that noise alone makes less often is a cause. 22 are tried, so one loop
-  /// in forty has one by chance.
-  double cause = 1e-3;
-  /// [of what the best explains] Intervals also include causes that explain at least this much.
-  /// Omitted terms are tried to first order: the better of two imperfect models need not be the
-  /// true one.
-  double rival_cause = 0.5;
+  /// [of what the best explains] Intervals also include causes, and alternatives to a term that is
+  /// added, that explain at least this much; a simpler one is added first. Terms are tried to first
+  /// order: the better of two imperfect models need not be the true one.
+  double rival = 0.5;
+  /// [p] The gain of a term that is added has no greater probability by chance, over all
+  /// candidates of a round. One selection in twenty adds a term too many.
+  double added_by_chance = 0.05;
+  /// [of the error of prediction] A term that is added reduces it by more. Three per cent of a
+  /// misfit change no verdict.
+  double worthwhile_gain = 0.03;
+  /// [of the misfit] A term is advised if it reduces the misfit by more. Another fit is asked for:
+  /// less cannot be seen in the loop.
+  double advised_gain = 0.1;
+  /// [mean square over the white part] Residuals that are less are nearly white: with a term that
+  /// leaves no more, Tc may leave the half gap. A tenth of the rms is what the law still misses.
+  double nearly_white = 1.2;
+  /// [of its norm] A column whose part orthogonal to the law's is less is one of theirs. What is
+  /// left of it is the law's own curvature, and would explain any misfit.
+  double own_part = 0.02;
+  /// [of its deviation] A covariate that is a line of time, displacement, force and load but for
+  /// less is one of these. A force as it was commanded differs from the measured one by as much.
+  double own_covariate = 0.2;
+  /// [correlation] A covariate that correlates by more with the fitted force follows the contact.
+  /// Its coefficient is then confounded with σ and Tc.
+  double follows_contact = 0.3;
+  /// [of the samples] A displacement that repeats its last reading more often may be held. Of
+  /// every fifth reading that is held, noise is no explanation.
+  double held_readings = 0.2;
   /// [strokes] A poor misfit whose residuals stay correlated for longer is not taken for noise.
   /// Within half a stroke the force passes through the whole law: noise of that length cannot be
   /// distinguished from a misfit.
@@ -114,16 +133,13 @@ struct Thresholds {
   /// [of half its range] A record without reversals whose first force is as small began at both
   /// zeros. Noise of the first reading is less: a force that was cut off is more.
   double starts_without_force = 0.1;
-  /// [sums of squares] An initial state that fits the thinned record worse by this factor is given
-  /// up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one parameter by which
-  /// they differ, however few samples the whole record adds.
-  double hopeless_past = 4.0;
+  /// [sums of squares] An initial state, or a start, that fits the thinned record worse by this
+  /// factor is given up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one
+  /// parameter by which states differ, however few samples the whole record adds.
+  double hopeless = 4.0;
   /// [of the last rms] A fit that goes on from the last one and leaves more starts again from a
   /// scan. Similar cycles leave the same noise: half as much again is another minimum.
   double similar_misfit = 1.5;
-  /// [T* over Tc] A slip force of a loop that slides, and reaches less of it, ran away. A loop
-  /// that slides has carried its slip force, but for the last of an asymptote.
-  double mobilised_by_asymptote = 0.9;
   /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
   /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.
   double one_amplitude = 0.01;
@@ -131,16 +147,19 @@ struct Thresholds {
   /// of the force is three times the loop: if a tenth of it is regular, that is a third of the
   /// loop.
   double seen_loop = 0.1;
-  /// [of the smaller] Records whose mean loads differ by more are a load series. Tc then differs
-  /// by as much, which a fit of one Tc sees; σ by a third of it.
-  double load_difference = 0.01;
-  /// [of the mean] The law follows a load that varies by more: the amplitude of a sine with its
-  /// standard deviation, without the white noise of its readings. The force differs by as much
-  /// where the contact slips.
-  double load_variation = 0.01;
-  /// [of Tc] A steady loop that leaves more of the slip force unreached determines no asymmetry.
-  /// The part that never slips may bear any force between its limits, which moves the asymmetry by
-  /// as much.
+  /// [of the load] Records whose mean loads differ by more are a load series, and the law follows
+  /// a load that varies by more: the amplitude of a sine with its standard deviation, without the
+  /// white noise of its readings. Tc differs by as much, which a fit of one Tc sees; σ by a third.
+  double load_change = 0.01;
+  /// [half gap] A slip force of one direction that is further from that direction's plateau is not
+  /// reported. The asymmetry and the offset of the force then stand for each other.
+  double off_plateau = 0.25;
+  /// [half gap over half gap] Files that differ by more may be of different loads or tests.
+  /// Repeated tests of one contact differ by less than a factor of two.
+  double other_test = 2.0;
+  /// [of Tc] A loop that leaves more of the slip force unreached does not slip grossly: of a steady
+  /// one that determines no asymmetry. The part that never slips may bear any force between its
+  /// limits, which moves the asymmetry by as much.
   double never_slips = 0.01;
   /// [standard deviations] A prior further from the estimate without it contradicts the records. A
   /// correct prior lies that far once in 370 fits.

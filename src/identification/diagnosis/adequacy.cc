@@ -65,7 +65,7 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   const RecordFit& widest = result.WidestRecord();
   const double peak_force = widest.facts.peak_force / widest.load_ratio;
   if (!loop::Slides(widest.facts) ||
-      peak_force >= options.thresholds.mobilised_by_asymptote * result.law.slip_force) {
+      peak_force >= options.thresholds.mobilised * result.law.slip_force) {
     return std::nullopt;
   }
   FitOptions within = options;
@@ -83,21 +83,20 @@ double MissedForce(const FitResult& result) {
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
 
-bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force) {
-  constexpr double kFollows = 0.3;  // correlation
-  return std::abs(ColumnCorrelation(column, fitted_force)) > kFollows;
+bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force,
+                    const Thresholds& thresholds) {
+  return std::abs(ColumnCorrelation(column, fitted_force)) > thresholds.follows_contact;
 }
 
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
   std::vector<DepartureFit> causes = test.fits;
   std::erase_if(causes, [&](const DepartureFit& fit) {
-    return !(fit.p_value < thresholds.cause && fit.delta_aicc < 0);
+    return !(fit.p_value < thresholds.rare_chance && fit.delta_aicc < 0);
   });
   std::ranges::stable_sort(causes, {}, &DepartureFit::delta_aicc);
   const double best = causes.empty() ? 0.0 : causes.front().explains;
-  std::erase_if(causes, [&](const DepartureFit& fit) {
-    return fit.explains < thresholds.rival_cause * best;
-  });
+  std::erase_if(causes,
+                [&](const DepartureFit& fit) { return fit.explains < thresholds.rival * best; });
   // Causes that a fit can model come first: the user can try only those.
   std::ranges::stable_partition(
       causes, [](const DepartureFit& fit) { return !fit.departure->group.empty(); });
@@ -139,7 +138,7 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   const bool exceeds_noise =
       result.outliers == 0 && square > thresholds.above_noise * thresholds.above_noise * noise;
   if (exceeds_noise) {
-    adequacy.p_value = std::min(adequacy.p_value, thresholds.repeat_chance);
+    adequacy.p_value = std::min(adequacy.p_value, thresholds.rare_chance);
     if (noise > 0) {
       adequacy.misfit_over_noise =
           std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));

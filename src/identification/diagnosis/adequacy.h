@@ -41,7 +41,8 @@ double WhiteVariance(const FitResult& result);
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
 /// True if a column follows the force of the fitted model: its factor would take a part of Tc.
-bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force);
+bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force,
+                    const Thresholds& thresholds);
 
 /// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
 /// what all omitted terms explain, the search ended at a limit of its own, the residuals remember

@@ -228,8 +228,8 @@ namespace {
 
 /// True if a contact that was unloaded at the bound of the search slides before its record begins:
 /// nothing depends on where beyond the bound it was.
-bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::size_t p) {
-  constexpr double kSlides = 0.99;  // of Tc
+bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::size_t p,
+                        const Thresholds& thresholds) {
   const Parameter& parameter = problem.parameters[p];
   if (problem.data->is_forced() || parameter.term->id != OriginId(problem.data->excitation)) {
     return false;
@@ -237,17 +237,18 @@ bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::s
   const double first = problem.data->records[parameter.record].displacement.front();
   const double travel = std::abs(solution.theta[p] - first) * problem.data->length;
   const models::BranchLaw law = problem.parameters.LawAt(solution.theta);
-  return models::BackboneForce(law, travel) >= kSlides * law.slip_force;
+  return models::BackboneForce(law, travel) >= (1 - thresholds.never_slips) * law.slip_force;
 }
 
 }  // namespace
 
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution,
+                                       const Thresholds& thresholds) {
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_limit_of_law = parameter.term->positive || p == kShape;
     if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
-    if (SlidesBeforeRecord(problem, solution, p)) continue;
+    if (SlidesBeforeRecord(problem, solution, p, thresholds)) continue;
     Finding finding{.code = "search_limit",
                     .parameters = {problem.parameters.NameOf(p)},
                     .numbers = {{"bound", parameter.ToValue(solution.theta[p])}}};

@@ -64,7 +64,8 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
 /// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
 /// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a
 /// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
-std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution);
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution,
+                                       const Thresholds& thresholds);
 
 /// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);

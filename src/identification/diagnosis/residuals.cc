@@ -138,7 +138,7 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   const double mean_square = (squares[0] + squares[1]) / samples;
   if (parts == 0 || !(within > 0) || !(mean_square > 0)) return structure;
   const double ratio = between / parts / (within / degrees_within);
-  if (ratio >= FQuantile(parts, degrees_within, thresholds.repeat_chance)) {
+  if (ratio >= FQuantile(parts, degrees_within, thresholds.rare_chance)) {
     structure.repeatable_share = std::clamp(systematic / parts / mean_square, 0.0, 1.0);
   }
   return structure;

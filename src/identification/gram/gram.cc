@@ -9,8 +9,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Least part of a column orthogonal to the law's, below which it is one of theirs.
-constexpr double kLeastOwnShare = 0.02;
 /// Least square of the norm of an axis that is independent of the others.
 constexpr double kLeastOfAxis = 1e-6;
 
@@ -32,7 +30,7 @@ Eigen::VectorXd Normalize(Eigen::MatrixXd& columns) {
 }  // namespace
 
 Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
-           const Eigen::VectorXd& residual) {
+           const Eigen::VectorXd& residual, double own_part) {
   Eigen::MatrixXd j = law;
   Eigen::MatrixXd c = omitted;
   law_norms_ = Normalize(j);
@@ -48,7 +46,7 @@ Gram::Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted,
   free_residual_ = c.transpose() * residual - shares_.transpose() * law_residual_;
   sum_of_squares_ = residual.squaredNorm() - law_residual_.dot(inverse_of_law_ * law_residual_);
   for (Eigen::Index k = 0; k < c.cols(); ++k) {
-    if (free_(k, k) >= kLeastOwnShare * kLeastOwnShare) continue;
+    if (free_(k, k) >= own_part * own_part) continue;
     free_.row(k).setZero();
     free_.col(k).setZero();
     shares_.col(k).setZero();

@@ -23,13 +23,15 @@ struct GramStep {
 
 /// Products AᵀA of the columns A = [J | C | r] of a fit: its Jacobian, columns that it lacks, and
 /// its residuals. With r = −Jδ − Cγ + ε whatever is asked afterwards is algebra on matrices of some
-/// forty rows, whatever the number of samples. A column that J spans, up to a fiftieth, is left
-/// out.
+/// forty rows, whatever the number of samples. A column that J spans is left out.
 class Gram {
  public:
-  /// @param law      J; a column of zeros is held
-  /// @param omitted  C; all weighted, a row a sample
-  Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted, const Eigen::VectorXd& residual);
+  /// @param law       J; a column of zeros is held
+  /// @param omitted   C; all weighted, a row a sample
+  /// @param own_part  least part of a column's norm that is orthogonal to J's columns, which do not
+  ///                  span it then
+  Gram(const Eigen::MatrixXd& law, const Eigen::MatrixXd& omitted, const Eigen::VectorXd& residual,
+       double own_part);
 
   /// Takes the noise of the products, which is white otherwise.
   /// @param products  [J | C]ᵀΣ[J | C] with ε ~ N(0, s²Σ)

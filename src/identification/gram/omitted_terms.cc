@@ -106,9 +106,10 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
   const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
-  const DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, response, most);
+  const DepartureColumns departures =
+      ColumnsOfDepartures(problem, solution.theta, thresholds, response, most);
   if (departures.terms.empty()) return {};
-  Gram gram(jacobian, departures.columns, residual);
+  Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
   std::vector<Eigen::Index> all(static_cast<std::size_t>(departures.columns.cols()));
   std::iota(all.begin(), all.end(), Eigen::Index{0});
   GramAxes axes = gram.AxesOf(all);
@@ -146,7 +147,7 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   for (const OmittedTerm& term : departures.terms) {
     const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
-    test.fits.push_back(FitOf(gram, term, of_term, level, evidence, thresholds.cause));
+    test.fits.push_back(FitOf(gram, term, of_term, level, evidence, thresholds.rare_chance));
   }
   return test;
 }

@@ -133,10 +133,9 @@ constexpr auto kDepartures = std::to_array<Departure>({
      .columns = {{{[](const Place& at) { return Lag(at) * at.time; }}, {Lag}}}},
 });
 
-/// True if a column is, within a fifth of its deviation, a linear function of time, displacement,
-/// force and load: it adds nothing, or is the force in another unit or as it was commanded.
-bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
-  constexpr double kOwnPart = 0.2;
+/// True if a column is, but for its own part, a linear function of time, displacement, force and
+/// load: it adds nothing, or is the force in another unit or as it was commanded.
+bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate, double own_part) {
   return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
     const auto rows = static_cast<Eigen::Index>(record.size());
     Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows, 5);
@@ -149,21 +148,21 @@ bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
       own[row] = record.covariates[covariate][i];
     }
     const double deviation = LeftOver(others.leftCols(1), own).squaredNorm();
-    return LeftOver(others, own).squaredNorm() <= kOwnPart * kOwnPart * deviation;
+    return LeftOver(others, own).squaredNorm() <= own_part * own_part * deviation;
   });
 }
 
 /// Returns the covariates that are not fitted and repeat no other channel: neither one that is
 /// fitted nor a later one, as an acquisition's readings come before the columns that are computed
 /// from them.
-std::vector<std::size_t> NewCovariates(const Problem& problem) {
+std::vector<std::size_t> NewCovariates(const Problem& problem, double own_part) {
   const ScaledRecords& data = *problem.data;
   std::vector<std::size_t> covariates;
   if (data.is_forced()) return covariates;
   const auto fitted = static_cast<std::size_t>(std::ranges::count_if(
       problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
   for (std::size_t c = fitted; c < data.covariates.size(); ++c) {
-    bool is_new = !RepeatsTheOthers(data, c);
+    bool is_new = !RepeatsTheOthers(data, c, own_part);
     for (std::size_t other = 0; is_new && other < data.covariates.size(); ++other) {
       if (other < fitted || other > c) is_new = !AreOneChannel(data, c, other);
     }
@@ -203,10 +202,12 @@ void Fill(const DepartureColumn& column, const ScaledRecords& data,
 std::span<const Departure> Departures() { return kDepartures; }
 
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
-                                     Response& response, std::size_t most) {
+                                     const Thresholds& thresholds, Response& response,
+                                     std::size_t most) {
   const ScaledRecords& data = *problem.data;
-  const std::vector<RecordPlaces> places = PlacesOf(problem, theta, response);
-  std::vector<std::size_t> covariates = NewCovariates(problem);
+  const std::vector<RecordPlaces> places =
+      PlacesOf(problem, theta, thresholds.held_readings, response);
+  std::vector<std::size_t> covariates = NewCovariates(problem, thresholds.own_covariate);
   std::size_t room = 0;
   for (const Departure& departure : kDepartures) room += departure.columns.size();
   DepartureColumns result;

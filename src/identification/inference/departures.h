@@ -54,6 +54,7 @@ std::span<const Departure> Departures();
 /// Returns the columns that are not zero of terms that are not fitted.
 /// @param most  columns that are wanted; fewer where the next term's do not fit
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
-                                     Response& response, std::size_t most);
+                                     const Thresholds& thresholds, Response& response,
+                                     std::size_t most);
 
 }  // namespace mindahl::identification

@@ -127,10 +127,10 @@ std::vector<double> DeriveSmoothly(const ScaledRecord& record, const Sampling& s
   return speed;
 }
 
-/// True if at least a fifth of the readings of the displacement repeat the one before: it may be
-/// read less often than the force, and what is missing of the motion is no white noise.
-bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Sampling> samplings) {
-  constexpr double kOften = 0.2;  // of the samples: every fifth would be one
+/// True if many readings of the displacement repeat the one before: it may be read less often than
+/// the force, and what is missing of the motion is no white noise.
+bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Sampling> samplings,
+                        double often) {
   std::size_t repeated = 0;
   std::size_t all = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -140,7 +140,7 @@ bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Sampling> sam
       if (displacement[samples[k]] == displacement[samples[k - 1]]) ++repeated;
     }
   }
-  return static_cast<double>(repeated) > kOften * static_cast<double>(all);
+  return static_cast<double>(repeated) > often * static_cast<double>(all);
 }
 
 /// Sets the travel since the displacement was last read anew: what is repeated was read at the
@@ -296,7 +296,7 @@ double Place::Mobilised() const {
 }
 
 std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const double> theta,
-                                   Response& response) {
+                                   double held_readings, Response& response) {
   const ScaledRecords& data = *problem.data;
   const std::vector<Sampling> samplings = SamplingsOf(data);
   if (data.is_forced()) return PlacesUnderForce(problem, theta, response, samplings);
@@ -314,7 +314,7 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
   Predict(problem, theta, response, complete);
   double peak = 0.0;
   for (const double value : force) peak = std::max(peak, std::abs(value));
-  const bool is_held = IsDisplacementHeld(data, samplings);
+  const bool is_held = IsDisplacementHeld(data, samplings, held_readings);
   std::vector<RecordPlaces> places(data.records.size());
   std::size_t begin = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {

@@ -51,8 +51,9 @@ struct RecordPlaces {
 
 /// Returns those of every record at θ. Turning points that were put in have no time of their own.
 /// Valid until the response changes.
+/// @param held_readings  fraction of the readings that repeat the last one, of a held displacement
 std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const double> theta,
-                                   Response& response);
+                                   double held_readings, Response& response);
 
 /// Fills a column of forces that arise along the branches, to first order: what one is at a sample
 /// is what it is where the sample's branch starts, and what was added on the branch since.

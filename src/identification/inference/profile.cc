@@ -192,8 +192,7 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
 std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
-  const bool slips =
-      result.PeakForce() >= options.thresholds.parabola_mobilised * result.law.slip_force;
+  const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force;
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
   if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, solver) ||
       NeedsProfile(fitted, kRig, options, solver)) {

@@ -206,7 +206,7 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
       if (has_sign) measured.mean = measured.magnitude;
       const bool varies =
           measured.mean > 0 &&
-          (is_reversed || measured.amplitude > options.thresholds.load_variation * measured.mean);
+          (is_reversed || measured.amplitude > options.thresholds.load_change * measured.mean);
       const bool is_known = varies && KnowsVaryingLoads(options);
       if (varies) TakeVaryingLoad(data.records[r], record, measured, is_known, has_sign);
       data.load_varies = data.load_varies || is_known;
@@ -224,7 +224,7 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
   for (const double load : data.mean_load) data.reference_load += load;
   data.reference_load /= static_cast<double>(data.mean_load.size());
   const auto [least, greatest] = std::ranges::minmax(data.mean_load);
-  data.is_load_series = greatest > (1 + options.thresholds.load_difference) * least;
+  data.is_load_series = greatest > (1 + options.thresholds.load_change) * least;
   if (!data.is_load_series) return;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     data.records[r].load = data.mean_load[r] / data.reference_load;

@@ -314,8 +314,6 @@ bool HasKinks(const Parameters& parameters) {
 
 std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options, double rival,
                                       Solver& solver) {
-  // A look that is that much worse than the best does not lead to a better minimum.
-  constexpr double kHopeless = 4.0;
   // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
   constexpr double kBeyondRival = 10.0;
   std::vector<StartingPoint> starts;
@@ -330,8 +328,9 @@ std::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& opt
   const bool is_beaten = looks.front().cost > kBeyondRival * rival;
   const std::size_t most = HasKinks(thin.parameters) ? kStartsAmongKinks : 1;
   for (Look look : looks) {
-    const bool is_wanted = bent || starts.size() < most ||
-                           (starts.size() < 2 && look.cost < kHopeless * looks.front().cost);
+    const bool is_wanted =
+        bent || starts.size() < most ||
+        (starts.size() < 2 && look.cost < options.thresholds.hopeless * looks.front().cost);
     if (!is_wanted || !std::isfinite(look.cost)) break;
     plane.At(look);
     const std::span<const double> theta = plane.theta();
