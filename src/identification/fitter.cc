@@ -219,7 +219,7 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
     StartFrom(result, continued);
     const double last_rms = result.rms;
     FitWithin({&record, 1}, depth, continued);
-    const double as_good = options.thresholds.similar_misfit * last_rms;
+    const double as_good = options.thresholds.larger_rms * last_rms;
     if (result.converged && result.rms <= as_good && TellsTheLaw(result)) return;
   }
   FitWithin({&record, 1}, depth, options);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -422,11 +421,6 @@ bool Selection::Add(std::size_t candidate, Model model) {
   considered.added = true;
   result_.added.push_back(considered.name);
   base_ = std::move(model);
-  // An initial state that was found without the term may be another with it.
-  Model anew = FitWith({}, nullptr);
-  const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
-  if (is_fit && anew.fit.rms < (1 - Limits().worthwhile_gain) * base_.fit.rms)
-    base_ = std::move(anew);
   return true;
 }
 
@@ -515,7 +509,7 @@ void Selection::FitLast(const FitResult& law) {
         result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;
     std::erase_if(alternatives_, [&](const Alternative& alternative) {
       return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
-             (is_settled && alternative.rms > std::numbers::sqrt2 * last.rms);
+             (is_settled && alternative.rms > Limits().larger_rms * last.rms);
     });
     IncludeAlternatives(alternatives_, Limits(), last);
     result_.fit = std::move(last);

@@ -70,10 +70,11 @@ struct Thresholds {
   /// [p] Residuals that noise alone makes less often are not noise alone, and records whose noise
   /// is one have variances that differ so less often. One adequate loop in two hundred is doubted.
   double doubt = 0.005;
-  /// [rms over noise] Larger residuals are not noise, whatever the tests of omitted terms say.
-  /// Noise by pure error or by neighbours is known to a few per cent: half as much again is what
-  /// no column explains.
-  double above_noise = 1.5;
+  /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the tests
+  /// of omitted terms say; larger than those of the last fit, or of another term, they are those of
+  /// another minimum or a worse term. Noise by pure error or by neighbours is known to a few per
+  /// cent: half as much again is more.
+  double larger_rms = 1.5;
   /// [samples] Columns of omitted terms are looked for if so many samples pay for each. With fewer
   /// the columns together explain much of any noise.
   double samples_a_column = 8.0;
@@ -137,9 +138,6 @@ struct Thresholds {
   /// factor is given up. A rms twice as large is n_eff·ln 4 of likelihood: more than the one
   /// parameter by which states differ, however few samples the whole record adds.
   double hopeless = 4.0;
-  /// [of the last rms] A fit that goes on from the last one and leaves more starts again from a
-  /// scan. Similar cycles leave the same noise: half as much again is another minimum.
-  double similar_misfit = 1.5;
   /// [of the narrowest] Strokes that are wider by less have the same amplitude. Masing's and
   /// Dahl's loops of the two amplitudes, with one σ and Tc, then differ by less than 0.3 % of Tc.
   double one_amplitude = 0.01;

@@ -136,7 +136,7 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   const double square = result.rms * result.rms;
   // The rms includes the readings that a robust loss weighs down.
   const bool exceeds_noise =
-      result.outliers == 0 && square > thresholds.above_noise * thresholds.above_noise * noise;
+      result.outliers == 0 && square > thresholds.larger_rms * thresholds.larger_rms * noise;
   if (exceeds_noise) {
     adequacy.p_value = std::min(adequacy.p_value, thresholds.rare_chance);
     if (noise > 0) {
