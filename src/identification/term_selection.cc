@@ -77,6 +77,12 @@ struct TermCandidate {
   TermChoice choice;
 };
 
+/// True of a column that follows the force of the contact: its cause, or what it is confounded
+/// with.
+bool FollowsForce(const TermCandidate& candidate) {
+  return !candidate.choice.covariate.empty() && candidate.considered.obstacle == "confounded";
+}
+
 TermCandidate CandidateOf(const TermGroup& group) {
   TermCandidate candidate;
   candidate.considered.name = group.name;
@@ -238,6 +244,7 @@ class Selection {
   Model FitWith(const TermChoice& choice, const std::map<std::string, double>* starts);
   FitResult FitTo(const FitOptions& options, Depth depth);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
+  [[nodiscard]] bool Gains(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
   bool Add(std::size_t candidate, Model model);
   bool Round();
@@ -403,14 +410,17 @@ bool Selection::Leaves(const FitResult& fit) const {
          !IsNearlyWhite(fit, Limits());
 }
 
+bool Selection::Gains(const FitResult& fit) const {
+  return fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
+}
+
 /// Says why a larger model does not replace the present one; empty where it does.
 std::string_view Selection::ObstacleTo(const Model& model) const {
   const FitResult& fit = model.fit;
   if (!IsFitted(fit) || !fit.converged) return "not_converged";
   if (IsUnphysical(fit)) return "unphysical";
-  const bool gains = fit.rms <= (1 - Limits().worthwhile_gain) * base_.fit.rms;
   const bool stops = StopsAtLimit(fit) && !StopsAtLimit(base_.fit);
-  return Leaves(fit) || stops || !gains ? "confounded" : "";
+  return Leaves(fit) || stops || !Gains(fit) ? "confounded" : "";
 }
 
 /// Moves to a model with a candidate, unless there is an obstacle to it, which the candidate keeps.
@@ -558,20 +568,30 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   std::erase_if(tried, [&](const Gain& gain) {
     return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
   });
-  if (HasGap(law)) {
-    const std::size_t gap = *Find("backlash");
-    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == gap; });
-    tried.insert(tried.begin(), {gap, {}});
-  }
+  // What no linear step predicts is tried first: a gap, and a column that makes the force, without
+  // which the law takes its part.
+  const auto try_first = [&](std::size_t c) {
+    std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == c; });
+    tried.insert(tried.begin(), {c, {}});
+  };
+  if (HasGap(law)) try_first(*Find("backlash"));
+  const auto column = std::ranges::find_if(candidates_, FollowsForce);
+  if (column != candidates_.end()) try_first(column - candidates_.begin());
   tried.resize(std::min(tried.size(), most));
-  std::multimap<double, std::string> by_rms;
+  std::multimap<double, std::string, std::greater<>> by_gain;
   for (const auto& [c, score] : tried) {
     const Model model =
         FitWith(candidates_[c].choice, score.values.empty() ? nullptr : &score.values);
-    if (ObstacleTo(model).empty()) by_rms.emplace(model.fit.rms, candidates_[c].considered.name);
+    // A column takes its own part of Tc.
+    const std::string_view obstacle = ObstacleTo(model);
+    const bool is_column = FollowsForce(candidates_[c]);
+    if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit))) continue;
+    // What was measured and gains half as much as a term is the better explanation.
+    const double gain = base_.fit.rms - model.fit.rms;
+    by_gain.emplace(is_column ? gain / Limits().rival : gain, candidates_[c].considered.name);
   }
   std::vector<std::string> names;
-  for (auto& [rms, name] : by_rms) names.push_back(std::move(name));
+  for (auto& [gain, name] : by_gain) names.push_back(std::move(name));
   return names;
 }
 

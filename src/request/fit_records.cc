@@ -327,11 +327,14 @@ bool KnowsSlipForce(const FitResult& fit) {
 }
 
 /// True if a term takes the slip force's place: it is known no more, or no longer the half gap of a
-/// loop that slides.
-bool LosesSlipForce(const FitResult& before, const FitResult& after) {
-  if (!KnowsSlipForce(before)) return false;
+/// loop that slides; of a column that makes a part of that gap, not even most of it.
+bool LosesSlipForce(const FitResult& before, const FitResult& after, bool by_column,
+                    const identification::Thresholds& thresholds) {
+  if (!by_column && !KnowsSlipForce(before)) return false;
   if (!KnowsSlipForce(after)) return true;
-  return loop::RanAway(after.WidestRecord().facts, after.law.slip_force);
+  const loop::LoopFacts& facts = after.WidestRecord().facts;
+  if (!by_column || !facts.half_gap) return loop::RanAway(facts, after.law.slip_force);
+  return after.law.slip_force < thresholds.rival * std::abs(*facts.half_gap);
 }
 
 /// Fits the record again with the term that explains most of what the law misses, where the law
@@ -354,6 +357,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
                           .misfit_before = *before,
                           .misfit_after = *before};
     if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
+    if (!with.fit.covariates.empty()) step.text = "column " + with.fit.covariates.front();
     // With the term another law may be the better one, and miss otherwise.
     if (request.fit.model == nullptr) {
       step.options += fmt::format(" --model {}", options.model->name);
@@ -368,7 +372,11 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       const double most = (1 - options.thresholds.advised_gain) * *before;
-      if (!(step.misfit_after <= most) || LosesSlipForce(fit, found)) continue;
+      const bool by_column = !with.fit.covariates.empty();
+      if (!(step.misfit_after <= most) ||
+          LosesSlipForce(fit, found, by_column, options.thresholds)) {
+        continue;
+      }
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
