@@ -82,13 +82,11 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates = testing::EstimatesOf(stages, best, noise, thresholds);
-  ThinnedRecords thin(stages.data);
   ParameterEstimate shape;
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;
   shape.upper95 = shape.value;
-  return TryRig({stages.problem, best, noise, estimates}, thin, shape, stages.options,
-                stages.solver)
+  return TryRig({stages.problem, best, noise, estimates}, shape, stages.options, stages.solver)
       .has_value();
 }
 

@@ -1,6 +1,6 @@
 #include "identification/inference/rig_alternative.h"
 
-#include <limits>
+#include <cmath>
 #include <utility>
 
 #include "identification/inference/noise.h"
@@ -11,9 +11,8 @@ namespace mindahl::identification {
 
 using contact::kMindlinShapeExponent;
 
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
-                                     const ParameterEstimate& shape, const FitOptions& options,
-                                     Solver& solver) {
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
+                                     const FitOptions& options, Solver& solver) {
   const auto& [problem, best, noise, estimates] = fitted;
   // The law of a load that varies has none, nor has that of an imposed force.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
@@ -22,12 +21,18 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords
       !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
     return std::nullopt;
   }
+  constexpr double kStiffer = 0.1;  // of the compliance is the contact's
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlinShapeExponent;
   with_rig.start.clear();
   Candidate sprung(*problem.data, with_rig, problem.state);
-  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), solver);
+  // A rig as stiff as the fitted contact, before one ten times stiffer, with the terms that it has.
+  std::vector<double> beside = best.theta;
+  beside[kRig] = best.theta[kStiffness] + std::log(1 / (1 - kStiffer));
+  beside[kStiffness] -= std::log(kStiffer);
+  beside[kShape] = kMindlinShapeExponent;
+  sprung.starts.push_back({.theta = std::move(beside)});
   Descend(sprung, with_rig, solver);
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.

@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "identification/inference/estimates.h"
-#include "identification/problem/scaled_records.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
@@ -21,9 +20,8 @@ struct RigAlternative {
 /// interval of α for a rigid rig, a compliant one may restore it.
 /// @param shape  the estimate of α
 /// @returns empty where 1/3 does not, a rig is there already, or none helps
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
-                                     const ParameterEstimate& shape, const FitOptions& options,
-                                     Solver& solver);
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
+                                     const FitOptions& options, Solver& solver);
 
 /// Includes in the intervals of σ, α and Tc those that they have in a compliant rig: the record
 /// does not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the
