@@ -101,8 +101,8 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
         tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/true, made.points);
   };
   if (!request.path.empty()) {
-    const std::vector<double> displacement = io::ImposedColumn(
-        io::ReadCsvTable(request.path), io::Imposed::kDisplacement, request.column);
+    const std::vector<double> displacement =
+        io::ImposedDisplacement(io::ReadCsvTable(request.path), request.column);
     measure("path", request.path, {.displacement = displacement});
     return measured;
   }

@@ -58,7 +58,6 @@ const std::vector<Rule> kRules = {
       "--normal-load", "--friction", "--youngs-modulus-1"},
      kPositive},
     {"simulate", {"--noise-force", "--noise-displacement"}, kNonNegative},
-    {"simulate", {"--asymmetry"}, kNoNumber},
     {"simulate", {"--samples-per-cycle", "--steps"}, kWhole},
     {"simulate", {"--seed"}, kWholeOrZero},
     {"simulate", {"--waveform", "--model", "--method"}, kWord},

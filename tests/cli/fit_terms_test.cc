@@ -5,6 +5,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
@@ -148,7 +149,17 @@ TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
 }
 
 TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
-  const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  testing::History displacement;
+  for (const Sample& sample : loop) displacement.push_back(sample.displacement);
+  testing::History force(loop.size());
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin");
+  models::EvaluateForce(
+      model, {.tangential_stiffness = kSigma, .slip_force = kSlipForce},
+      models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), model.memory,
+                              {.asymmetry = 0.2}),
+      displacement, force);
+  for (std::size_t i = 0; i < loop.size(); ++i) loop[i].force = force[i];
   const json fit = Fit(loop, {"--terms", "asymmetry"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_NEAR(Value(fit, "asymmetry"), 0.2, kNoiseFree);
