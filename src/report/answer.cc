@@ -1,5 +1,3 @@
-#include "report/answer.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,5 +1,3 @@
-#include "report/panels.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,15 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "io/drawing.h"
 #include "mindahl/io/csv_table.h"
-#include "mindahl/report/units.h"
-#include "report/answer.h"
-#include "report/template.h"
+#include "mindahl/report/report.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
-using identification::ParameterEstimate;
 using io::PlotPanel;
 using io::PlotSeries;
 using io::PlotStyle;
@@ -86,19 +81,19 @@ std::size_t FirstDrawn(const identification::RecordFit& fit) {
 
 }  // namespace
 
-LoopPanels DrawLoop(const Report& report) {
+io::Plot ToPlot(const Report& report) {
+  RequireFitted(report, "a figure");
   const PanelUnits units = UnitsOf(report);
   const bool is_torsional = report.is_torsional();
   const std::string along =
       fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", units.displacement.name);
-  LoopPanels panels;
-  panels.loop = {
+  PlotPanel measured = {
       .x_label = "",
       .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", units.force.name),
       .height = 1.2};
-  panels.residual = {.x_label = along,
-                     .y_label = fmt::format("fitted − measured [{}]", units.residual.name),
-                     .height = 0.45};
+  PlotPanel residual = {.x_label = along,
+                        .y_label = fmt::format("fitted − measured [{}]", units.residual.name),
+                        .height = 0.45};
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
   for (std::size_t r = 0; r < records; ++r) {
@@ -119,7 +114,7 @@ LoopPanels DrawLoop(const Report& report) {
     };
     const std::optional<double> shade =
         records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
-    add(panels.loop.series,
+    add(measured.series,
         !is_named       ? ""
         : label.empty() ? "measured"
                         : label,
@@ -132,97 +127,16 @@ LoopPanels DrawLoop(const Report& report) {
         : first > 0 ? "fitted, last cycle"
                     : "fitted",
         PlotStyle::kLine, along_fit, fit.fitted_force, units.force, std::nullopt, first);
-    add(panels.residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual,
-        units.residual, shade);
+    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, units.residual,
+        shade);
     if (report.next && r < report.next->fitted_force.size()) {
       add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
           record.displacement, report.next->fitted_force[r], units.force, std::nullopt, first);
     }
   }
-  panels.loop.series.insert(panels.loop.series.end(), lines.begin(), lines.end());
-  return panels;
-}
-
-namespace {
-
-struct Bar {
-  std::string_view symbol;
-  double value;
-  std::optional<double> lower;
-  std::optional<double> upper;
-  std::string_view unit;
-  Judgement judgement;
-  std::optional<double> mark = {};  ///< a value that theory gives
-};
-
-std::vector<Bar> BarsOf(const Report& report) {
-  std::vector<Bar> bars;
-  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
-    const ParameterEstimate& estimate = *report.fit.Find(name);
-    if (WhatIsShown(estimate) != Shown::kValue) return;
-    bars.push_back({symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
-                    JudgementOf(estimate), mark});
-  };
-  const ContactQuantity* friction = report.Find("friction_coefficient");
-  if (friction != nullptr && friction->value) {
-    bars.push_back({"μ", *friction->value, friction->lower, friction->upper, "-",
-                    JudgementOf(*report.fit.Find("slip_force"))});
-  } else {
-    add("Tc", "slip_force");
-  }
-  add("σ", "sigma");
-  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
-  return bars;
-}
-
-}  // namespace
-
-Json DrawIntervals(const Report& report) {
-  constexpr double kLeft = 40.0;
-  constexpr double kRight = 540.0;
-  constexpr int kRow = 50;  // [px] of one bar
-  std::string svg;
-  int top = 0;
-  for (const Bar& bar : BarsOf(report)) {
-    const double from = bar.lower.value_or(bar.value);
-    const double to = bar.upper.value_or(bar.value);
-    double least = std::min(from, bar.mark.value_or(from));
-    double greatest = std::max(to, bar.mark.value_or(to));
-    const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(bar.value);
-    least -= margin;
-    greatest += margin;
-    const auto x = [&](double value) {
-      return kLeft + (kRight - kLeft) * (value - least) / (greatest - least);
-    };
-    const double left = bar.lower ? x(*bar.lower) : kLeft;
-    const double right = bar.upper ? x(*bar.upper) : kRight;
-    const int middle = top + 31;
-    svg += fmt::format(
-        "<text x=\"8\" y=\"{}\">{}</text><text x=\"{:.0f}\" y=\"{}\">{}</text>"
-        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>",
-        middle + 5, bar.symbol, kLeft, top + 14,
-        io::HtmlText(QuantityWithInterval(bar.value, bar.lower, bar.upper, bar.unit)), kLeft,
-        middle, kRight);
-    svg += fmt::format(
-        "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
-        "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
-        CssClass(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
-        x(bar.value), middle - 9, middle + 9);
-    if (bar.mark) {
-      svg += fmt::format(
-          "<path class=\"mark\" d=\"M{:.1f} {}V{}\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
-          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
-    }
-    top += kRow;
-  }
-  return svg.empty() ? Json() : Json{{"elements", svg}, {"height", top}};
-}
-
-io::Plot ToPlot(const Report& report) {
-  RequireFitted(report, "a figure");
-  LoopPanels panels = DrawLoop(report);
+  measured.series.insert(measured.series.end(), lines.begin(), lines.end());
   return {.title = fmt::format("{}: {}", NameOf(report.files), VerdictWord(report)),
-          .panels = {std::move(panels.loop), std::move(panels.residual)}};
+          .panels = {std::move(measured), std::move(residual)}};
 }
 
 std::string ResidualsCsv(const Report& report) {

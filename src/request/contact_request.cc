@@ -18,6 +18,10 @@ using models::BranchLaw;
 
 namespace {
 
+bool IsAnythingGiven(const KnownBody& body) {
+  return body.youngs_modulus || body.poisson_ratio || body.radius;
+}
+
 void RequireBody(const KnownBody& body, int number) {
   if (body.youngs_modulus) {
     RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), body.youngs_modulus->value);
@@ -40,19 +44,6 @@ void RequireBody(const KnownBody& body, int number) {
   }
 }
 
-void CollectMissing(const contact::KnownBody& body, int number, std::vector<std::string>& missing) {
-  if (!body.youngs_modulus) missing.push_back(fmt::format("--youngs-modulus-{}", number));
-  if (!body.poisson_ratio) missing.push_back(fmt::format("--poisson-{}", number));
-  if (!body.radius) missing.push_back(fmt::format("--radius-{}", number));
-}
-
-[[noreturn]] void ThrowMissing(const std::vector<std::string>& missing) {
-  throw InputError(fmt::format(
-      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
-      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
-      fmt::join(missing, ", ")));
-}
-
 }  // namespace
 
 void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loads) {
@@ -72,11 +63,9 @@ void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loa
 
 bool IsAnythingGiven(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
-  const auto body_given = [](const KnownBody& body) {
-    return body.youngs_modulus || body.poisson_ratio || body.radius;
-  };
   return options.friction_coefficient || known.normal_load || known.contact_radius ||
-         known.tangential_compliance || body_given(known.body_1) || body_given(known.body_2);
+         known.tangential_compliance || IsAnythingGiven(known.body_1) ||
+         IsAnythingGiven(known.body_2);
 }
 
 void Validate(const ContactOptions& options) {
@@ -94,27 +83,31 @@ void Validate(const ContactOptions& options) {
 contact::PredictedContact ResolveContact(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
   std::vector<std::string> missing;
-  if (!options.friction_coefficient) missing.emplace_back("--friction");
-  if (!known.normal_load) missing.emplace_back("--normal-load");
-  const bool by_radius = known.contact_radius || known.tangential_compliance;
-  std::vector<std::string> missing_bodies;
-  CollectMissing(known.body_1, 1, missing_bodies);
-  CollectMissing(known.body_2, 2, missing_bodies);
-  constexpr std::size_t kBodyOptions = 6;
-  if (by_radius && missing_bodies.size() < kBodyOptions) {
-    throw InputError(
-        "a contact is described either by --contact-radius with --compliance or by the materials "
-        "and radii of its bodies: give one of the two");
-  }
-  if (by_radius) {
-    if (!known.contact_radius) missing.emplace_back("--contact-radius");
-    if (!known.tangential_compliance) missing.emplace_back("--compliance");
+  const auto need = [&](bool is_given, std::string option) {
+    if (!is_given) missing.push_back(std::move(option));
+  };
+  need(options.friction_coefficient.has_value(), "--friction");
+  need(known.normal_load.has_value(), "--normal-load");
+  if (known.contact_radius || known.tangential_compliance) {
+    if (IsAnythingGiven(known.body_1) || IsAnythingGiven(known.body_2)) {
+      throw InputError(
+          "a contact is described either by --contact-radius with --compliance or by the materials "
+          "and radii of its bodies: give one of the two");
+    }
+    need(known.contact_radius.has_value(), "--contact-radius");
+    need(known.tangential_compliance.has_value(), "--compliance");
   } else {
-    missing.insert(missing.end(), missing_bodies.begin(), missing_bodies.end());
+    for (const auto& [body, number] : {std::pair(&known.body_1, 1), {&known.body_2, 2}}) {
+      need(body->youngs_modulus.has_value(), fmt::format("--youngs-modulus-{}", number));
+      need(body->poisson_ratio.has_value(), fmt::format("--poisson-{}", number));
+      need(body->radius.has_value(), fmt::format("--radius-{}", number));
+    }
   }
-  if (!options.friction_coefficient || !missing.empty()) ThrowMissing(missing);
-
-  return contact::PredictContact(known, *options.friction_coefficient);
+  if (missing.empty()) return contact::PredictContact(known, options.friction_coefficient.value());
+  throw InputError(fmt::format(
+      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
+      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
+      fmt::join(missing, ", ")));
 }
 
 bool IsAnythingGiven(const LawRequest& request) {

@@ -63,6 +63,19 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
                   what, half_range, unit));
 }
 
+const report::Units& UnitsOf(const RecordFile& input) {
+  return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+}
+
+[[noreturn]] void ThrowConstant(const std::string& file, const RecordFile& input,
+                                const io::ChosenColumn& column, double value, std::string_view what,
+                                std::string_view unit, std::string_view need) {
+  throw InputError(
+      fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
+                  "choose another column with --{}",
+                  PlaceOf(file, input, column, 0), what, value, unit, need, what));
+}
+
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   bool is_loaded = false;
   std::size_t samples = 0;
@@ -70,30 +83,22 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
     const std::string& file = request.files[r];
-    const bool torsional = input.is_torsional;
+    const report::Units& units = UnitsOf(input);
     samples += record.size();
     if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
-                           torsional ? "rad" : "m") > 0)) {
-      throw InputError(fmt::format(
-          "{}: the displacement never changes, it is {} {} in every row: a fit needs a moving "
-          "contact; choose another column with --displacement",
-          PlaceOf(file, input, input.displacement, 0), record.displacement.front(),
-          torsional ? "rad" : "m"));
+                           units.displacement) > 0)) {
+      ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
+                    units.displacement, "moving");
     }
     if (input.time && !record.time.empty()) {
       RequireHalfRange(file, input, *input.time, record.time, "time", "s");
     }
-    is_loaded = RequireHalfRange(file, input, input.force, record.force, "force",
-                                 torsional ? "N m" : "N") > 0 ||
-                is_loaded;
+    is_loaded |= RequireHalfRange(file, input, input.force, record.force, "force", units.force) > 0;
   }
   const RecordFile& first = inputs.front();
   if (!is_loaded) {
-    throw InputError(fmt::format(
-        "{}: the force never changes, it is {} {} in every row: a fit needs a loaded contact; "
-        "choose another column with --force",
-        PlaceOf(request.files.front(), first, first.force, 0), first.record.force.front(),
-        first.is_torsional ? "N m" : "N"));
+    ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
+                  UnitsOf(first).force, "loaded");
   }
   constexpr std::size_t kLeast = 3;  // as many as the law has parameters
   if (samples < kLeast && request.fit.fixed.empty()) {
@@ -118,8 +123,8 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
     widest = std::max(widest, greatest - least);
   }
   if (*gate < widest) return;
-  const bool is_torsional = inputs.front().is_torsional;
-  const char* unit = is_forced ? (is_torsional ? "N m" : "N") : (is_torsional ? "rad" : "m");
+  const report::Units& units = UnitsOf(inputs.front());
+  const std::string_view unit = is_forced ? units.force : units.displacement;
   throw InputError(fmt::format(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
       "give a smaller gate, in {}",
@@ -431,7 +436,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
   columns.covariates = MakeFitOptions(request).covariates;
   std::vector<RecordFile> inputs;
-  io::ReadLimits left{.memory = request.max_memory.value_or(MemoryOfProcess())};
+  io::ReadLimits left{.memory = MemoryOfProcess()};
   for (const std::string& file : request.files) {
     RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
     const std::size_t rows = input.record.size();
@@ -452,7 +457,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     one.push_back(io::Joined(std::move(inputs), request.files));
     return FitRecords(joined, std::move(one));
   }
-  RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
   RequireColumns(request, inputs);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {

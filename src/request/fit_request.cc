@@ -96,41 +96,13 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
     if (name == kAutomatic || name == kNoTerms) {
       throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
     }
-    if ((name == kDriftOfDisplacement) == is_of_force) {
-      throw InputError(fmt::format("--terms {}: {}", name,
-                                   is_of_force ? "it is a term of a fit with --noise-in "
-                                                 "displacement: give force_drift"
-                                               : "with --noise-in displacement displacement_drift "
-                                                 "alone is a term: leave it out"));
-    }
-    if (!is_of_force) {
+    if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {
       AddGroup(*group, fit);
     } else {
       AddColumn(name, fit);
     }
-  }
-}
-
-void RequireOptionsOfDisplacement(const FitRequest& request) {
-  constexpr std::string_view kOfForce = "it needs a fit of the force; leave one of the two out";
-  constexpr const char* kRig = "rig_stiffness";
-  const bool has_rig = request.fit.fixed.contains(kRig) ||
-                       std::ranges::find(request.fit.terms, kRig) != request.fit.terms.end();
-  for (const auto& [is_given, option, why] :
-       {std::tuple(has_rig, "--rig-stiffness", kOfForce),
-        {!request.fit.covariates.empty(), "--covariate", kOfForce},
-        {ChoosesTerms(request), "--terms auto", kOfForce},
-        {request.compare, "--compare", kOfForce},
-        {request.fit.force_noise.has_value(), "--force-noise",
-         "the force is taken as exact; give --displacement-noise"}}) {
-    if (!is_given) continue;
-    throw InputError(
-        fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
-  }
-  if (const auto& noise = request.fit.preparation.displacement_noise) {
-    RequirePositive("--displacement-noise [m]", *noise);
   }
 }
 
@@ -185,7 +157,13 @@ std::vector<std::string> NamedTerms(const FitRequest& request) {
 FitOptions MakeFitOptions(const FitRequest& request) {
   FitOptions fit = request.fit;
   if (fit.model == nullptr) fit.model = FitOptions().model;
-  if (fit.response() == loop::Channel::kDisplacement) RequireOptionsOfDisplacement(request);
+  if (fit.response() == loop::Channel::kDisplacement &&
+      (ChoosesTerms(request) || request.compare)) {
+    throw InputError(
+        fmt::format("{} cannot be combined with --noise-in displacement: it needs a fit of the "
+                    "force; leave one of the two out",
+                    request.compare ? "--compare" : "--terms auto"));
+  }
   for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
@@ -201,13 +179,10 @@ FitOptions MakeFitOptions(const FitRequest& request) {
         {"--reversal-gate [m]", preparation.reversal_gate}}) {
     if (size) RequireNonNegative(option, *size);
   }
-  if (fit.force_noise) RequirePositive("--force-noise [N]", *fit.force_noise);
-  if (!(fit.confidence > 0 && fit.confidence < 1)) {
-    ThrowInvalid("--confidence [-]", fit.confidence, "must be between 0 and 1, as 0.95");
-  }
   ApplyTerms(request, fit);
   AddCompanionsOfFixed(fit);
   RequireDistinctColumns(fit);
+  Validate(fit);
   for (const auto& [name, interval] : fit.bounds) {
     RequireOrdered("--bound", interval.lower, interval.upper);
   }

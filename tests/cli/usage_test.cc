@@ -158,12 +158,6 @@ const std::vector<BadUsage> kBadUsage = {
     {"JsonInNoDirectory",
      {"fit", "@", "--json", "/no/such/x.json", "--residuals", "#"},
      "there is no directory '/no/such'"},
-    {"TableOfAFormatThatIsNotWritten",
-     {"track", "@", "--output", "cycles.Parquet", "--json", "#"},
-     "--output: 'cycles.Parquet' would hold text, not what .parquet says"},
-    {"TableOfAFormatBehindAShortName",
-     {"track", "@", "--output", "cycles.pq", "--json", "#"},
-     "--output: 'cycles.pq' would hold text, not what .pq says"},
     {"JsonOverADirectory", {"fit", "@", "--json", "/tmp", "--residuals", "#"}, "is a directory"},
     {"ResidualsInNoDirectory",
      {"fit", "@", "--json", "#", "--residuals", "/no/such/r.csv"},
@@ -293,14 +287,6 @@ TEST(StandardInput, IsReadUnderADash) {
   EXPECT_THAT(refused.err, HasSubstr("standard input:3:2: 'one' is not a number"));
 }
 
-TEST(Limits, RefuseWhatCannotBeHeldAndSaySo) {
-  const Outcome memory = RunCommand({"fit", SampleRecord(), "--max-memory", "10kB"});
-  EXPECT_EQ(memory.status, cli::kBadInput);
-  ASSERT_THAT(memory.Errors(), SizeIs(1));
-  EXPECT_THAT(memory.err, HasSubstr("more than the 0.01 MB that --max-memory leaves for it"));
-  EXPECT_EQ(RunCommand({"fit", SampleRecord(), "--max-memory", "1GB"}).status, cli::kDone);
-}
-
 // As `ulimit -v` makes of it: more is asked for than the process may have.
 TEST(Limits, MemoryThatRunsOutIsOneOfThem) {
 #ifdef __SANITIZE_ADDRESS__
@@ -410,7 +396,12 @@ TEST_F(Config, RefusesWhatItDoesNotKnow) {
   for (const Case& c :
        {Case{"modle = \"mindlin\"\n", "'fit.modle' is no option of fit"},
         Case{"[fit]\nmodle = 1\n", "options.toml:2: 'fit.modle' is no option of fit"},
-        Case{"[fit.model]\nname = 1\n", "is no option of fit"},
+        Case{"[fit.model]\nname = 1\n", "options.toml:1: the value is no string"},
+        Case{"model = \"dahl\"\nb = 3:5\n", "options.toml:2: "},
+        Case{"model = \"dahl\"\n\nmodel = \"mindlin\"\n", "options.toml:3: "},
+        Case{"model = \"open\n", "options.toml:1: "},
+        Case{"fix = [1, [2]]\n", "options.toml:1: the value is no string"},
+        Case{"model = 2026-01-01\n", "options.toml:1: the value is no string"},
         Case{"[fits]\nmodel = \"mindlin\"\n", "section 'fits' is no command"},
         Case{"model = \"coulomb\"\n", "--model"},
         Case{"normal-load = \"heavy\"\n", "--normal-load"}}) {

@@ -25,7 +25,7 @@ TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
   for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     FitRequest request;
     request.fit.confidence = confidence;
-    EXPECT_THAT(MessageOf([&] { MakeFitOptions(request); }), HasSubstr("--confidence [-]"));
+    EXPECT_THAT(MessageOf([&] { MakeFitOptions(request); }), HasSubstr("confidence [-]"));
   }
 }
 
@@ -164,7 +164,7 @@ TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
   EXPECT_THAT(refusal({"viscous", "viscous"}), HasSubstr("--terms: 'viscous' is given twice"));
   EXPECT_THAT(refusal({"viscous", "auto"}), HasSubstr("'auto' stands alone"));
   EXPECT_THAT(refusal({"viscos"}), HasSubstr("'viscos' is no term: did you mean 'viscous'?"));
-  EXPECT_THAT(refusal({"displacement_drift"}), HasSubstr("give force_drift"));
+  EXPECT_THAT(refusal({"displacement_drift"}), HasSubstr("has no place in a fit of the force"));
 }
 
 TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
@@ -183,13 +183,13 @@ TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
 
 TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
   const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
-      {"--rig-stiffness cannot", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
-      {"--covariate cannot", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
+      {"rig_stiffness has no place", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
+      {"a covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
       {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
-      {"displacement_drift alone is a term", [](FitRequest& r) { r.terms = {"lag"}; }},
+      {"lag has no place", [](FitRequest& r) { r.terms = {"lag"}; }},
       {"--compare cannot", [](FitRequest& r) { r.compare = true; }},
-      {"--force-noise cannot", [](FitRequest& r) { r.fit.force_noise = 0.5; }},
-      {"--displacement-noise [m]",
+      {"noise of the force", [](FitRequest& r) { r.fit.force_noise = 0.5; }},
+      {"displacement noise [m]",
        [](FitRequest& r) { r.fit.preparation.displacement_noise = 0.0; }}};
   for (const auto& [words, change] : refused) {
     FitRequest request;
