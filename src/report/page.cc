@@ -9,41 +9,40 @@
 
 #include "io/drawing.h"
 #include "report/fields.h"
+#include "report/html.h"
 #include "report/statements.h"
-#include "report/template.h"
 
-// Makes the data of templates/fit.html.
 namespace mindahl::report {
 
 using identification::ParameterEstimate;
 
 namespace {
 
-Json LinesData(std::string_view caption, const std::vector<Line>& lines) {
-  Json rows = Json::array();
+std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) {
+  std::vector<TableLine> rows;
   for (const Line& line : lines) {
     if (line.label == "next" || line.label == "misfit") continue;  // they have places of their own
-    rows.push_back(LineData(line.label, {line.text}, CssClass(line.judgement)));
+    rows.push_back({line.label, {line.text}, Name(line.judgement)});
   }
-  return TableData(caption, {}, std::move(rows));
+  return TableHtml(caption, {}, rows);
 }
 
 /// Returns the command that takes the next step.
-Json NextData(const Report& report, const Provenance& provenance) {
-  if (!report.next) return nullptr;
+std::string NextHtml(const Report& report, const Provenance& provenance) {
+  if (!report.next) return "";
   const std::string command = provenance.command.empty() ? "mindahl fit FILE" : provenance.command;
-  return {{"text", NextStatement(report, *report.next) + ':'},
-          {"command", fmt::format("{} {}", command, report.next->options)}};
+  return SectionHtml("Next step",
+                     fmt::format("{}<pre><code>{} {}</code></pre>\n",
+                                 ParagraphHtml(NextStatement(report, *report.next) + ':'),
+                                 Prose(command), Prose(report.next->options)));
 }
 
-Json MeasuredData(const Report& report) {
-  Json rows = Json::array();
+std::string MeasuredHtml(const Report& report) {
+  std::vector<TableLine> rows;
   for (const char* section : {"measured.", "input."}) {
-    for (const auto& [name, value] : ValuesUnder(report, section)) {
-      rows.push_back(LineData(name, {value}));
-    }
+    for (const auto& [name, value] : ValuesUnder(report, section)) rows.push_back({name, {value}});
   }
-  return TableData("of the record, without a model", {}, std::move(rows));
+  return TableHtml("of the record, without a model", {}, rows);
 }
 
 struct Bar {
@@ -76,10 +75,9 @@ std::vector<Bar> BarsOf(const Report& report) {
   return bars;
 }
 
-/// Returns friction (the slip force without a load), σ and α with their intervals as bars:
-/// `elements` of an inline SVG 560 px wide, and its `height`; α's with 1/3 marked. A bar is green
-/// only of what may be quoted. Null where none has a value.
-Json DrawIntervals(const Report& report) {
+/// Returns friction (the slip force without a load), σ and α with their intervals as bars, α's with
+/// 1/3 marked. A bar is green only of what may be quoted. "" where none has a value.
+std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
   constexpr int kRow = 50;  // [px] of one bar
@@ -108,7 +106,7 @@ Json DrawIntervals(const Report& report) {
     svg += fmt::format(
         "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
         "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
-        CssClass(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
+        Name(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
         x(bar.value), middle - 9, middle + 9);
     if (bar.mark) {
       svg += fmt::format(
@@ -117,31 +115,45 @@ Json DrawIntervals(const Report& report) {
     }
     top += kRow;
   }
-  return svg.empty() ? Json() : Json{{"elements", svg}, {"height", top}};
+  if (svg.empty()) return "";
+  return FigureHtml(
+      {.id = "intervals",
+       .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
+       .text = "Green may be quoted; amber only with its interval."},
+      "", top, svg);
 }
 
 }  // namespace
 
 std::string ToPage(const Report& report, const Provenance& provenance) {
   const std::string word(VerdictWord(report));
-  Json data = {{"title", fmt::format("{}: {}", NameOf(report.files), word)},
-               {"fitted", nullptr},
-               {"provenance", ProvenanceData(provenance)}};
+  const std::string title = fmt::format("{}: {}", NameOf(report.files), word);
   if (report.failed()) {
-    data["verdict"] = VerdictData("bad", word, report.fit.solver.message);
-    return RenderPage("fit", data);
+    return PageHtml(
+        title, VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(provenance));
   }
-  data["verdict"] = VerdictData(CssClass(JudgementOf(word)), word, MisfitStatement(report));
   const io::Plot figure = ToPlot(report);
-  data["fitted"] = {{"answer", LinesData("", AnswerLines(report))},
-                    {"intervals", DrawIntervals(report)},
-                    {"confidence", fmt::format("{:.4g} %", 100 * report.fit.confidence)},
-                    {"next", NextData(report, provenance)},
-                    {"loop", FigureData(figure.panels[0], "loop")},
-                    {"residual", FigureData(figure.panels[1], "residual")},
-                    {"details", LinesData("of the fit", DetailLines(report))},
-                    {"measured", MeasuredData(report)}};
-  return RenderPage("fit", data);
+  return PageHtml(
+      title,
+      fmt::format(
+          "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}{}",
+          VerdictHtml(Name(JudgementOf(word)), word, MisfitStatement(report)),
+          FigureHtml({.id = "loop",
+                      .title = "Measured and fitted loop",
+                      .text = "Below it, what the fit leaves over at the same place."},
+                     figure.panels[0]),
+          FigureHtml({.id = "residual",
+                      .title = "Residual",
+                      .text = "Fitted less measured over the same axis. A band without shape is "
+                              "noise.",
+                      .attributes = " class=\"hidden\"",
+                      .element = "p"},
+                     figure.panels[1]),
+          IntervalsHtml(report), NextHtml(report, provenance),
+          SectionHtml("Answer", LinesHtml("", AnswerLines(report))),
+          SectionHtml("Details", SideBySide(LinesHtml("of the fit", DetailLines(report)) +
+                                            MeasuredHtml(report))),
+          ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

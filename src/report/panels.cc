@@ -19,25 +19,6 @@ using io::PlotStyle;
 
 namespace {
 
-struct PanelUnits {
-  ScaledUnit displacement;
-  ScaledUnit force;
-  ScaledUnit residual;
-};
-
-PanelUnits UnitsOf(const Report& report) {
-  double extent = 0.0;
-  double force = 0.0;
-  for (const identification::RecordFit& fit : report.fit.records) {
-    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
-    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
-  }
-  const ScaledUnit displacement = UnitFor(report.units.displacement, extent);
-  return {.displacement = displacement,
-          .force = UnitFor(report.units.force, force),
-          .residual = UnitFor(report.units.response, report.fit.residuals.max_abs)};
-}
-
 /// Names a record by its load where the records differ in it; "" of a record that is alone.
 std::string LabelOf(const Report& report, std::size_t r) {
   if (report.records.size() == 1) return "";
@@ -51,20 +32,6 @@ bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t s
   if (!window || record.normal_load.empty()) return true;
   const double load = record.normal_load[sample];
   return load >= window->lower && load <= window->upper;
-}
-
-/// @param y      of every sample of the record
-/// @param first  sample from which on it is drawn
-PlotSeries Series(const Report& report, std::size_t r, const ScaledUnit& unit_of_x,
-                  const std::vector<double>& x, const ScaledUnit& unit_of_y,
-                  const std::vector<double>& y, std::size_t first) {
-  PlotSeries series;
-  for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
-    if (!IsUnderLoad(report, report.records[r].record, i)) continue;
-    series.x.push_back(x[i] / unit_of_x.factor);
-    series.y.push_back(y[i] / unit_of_y.factor);
-  }
-  return series;
 }
 
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
@@ -83,16 +50,24 @@ std::size_t FirstDrawn(const identification::RecordFit& fit) {
 
 io::Plot ToPlot(const Report& report) {
   RequireFitted(report, "a figure");
-  const PanelUnits units = UnitsOf(report);
+  double extent = 0.0;
+  double force = 0.0;
+  for (const identification::RecordFit& fit : report.fit.records) {
+    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
+    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
+  }
+  const ScaledUnit unit_along = UnitFor(report.units.displacement, extent);
+  const ScaledUnit unit_of_force = UnitFor(report.units.force, force);
+  const ScaledUnit unit_of_residual = UnitFor(report.units.response, report.fit.residuals.max_abs);
   const bool is_torsional = report.is_torsional();
   const std::string along =
-      fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", units.displacement.name);
+      fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", unit_along.name);
   PlotPanel measured = {
       .x_label = "",
-      .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", units.force.name),
+      .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", unit_of_force.name),
       .height = 1.2};
   PlotPanel residual = {.x_label = along,
-                        .y_label = fmt::format("fitted − measured [{}]", units.residual.name),
+                        .y_label = fmt::format("fitted − measured [{}]", unit_of_residual.name),
                         .height = 0.45};
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
@@ -105,12 +80,13 @@ io::Plot ToPlot(const Report& report) {
                          const std::vector<double>& x, const std::vector<double>& y,
                          const ScaledUnit& unit, std::optional<double> shade,
                          std::size_t first = 0) {
-      PlotSeries series = Series(report, r, units.displacement, x, unit, y, first);
-      if (series.x.empty()) return;
-      series.label = std::move(name);
-      series.style = style;
-      series.shade = shade;
-      to.push_back(std::move(series));
+      PlotSeries series{.label = std::move(name), .style = style, .shade = shade};
+      for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
+        if (!IsUnderLoad(report, record, i)) continue;
+        series.x.push_back(x[i] / unit_along.factor);
+        series.y.push_back(y[i] / unit.factor);
+      }
+      if (!series.x.empty()) to.push_back(std::move(series));
     };
     const std::optional<double> shade =
         records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
@@ -118,7 +94,7 @@ io::Plot ToPlot(const Report& report) {
         !is_named       ? ""
         : label.empty() ? "measured"
                         : label,
-        PlotStyle::kPoints, record.displacement, record.force, units.force, shade);
+        PlotStyle::kPoints, record.displacement, record.force, unit_of_force, shade);
     const std::vector<double>& along_fit =
         fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
     const std::size_t first = FirstDrawn(fit);
@@ -126,12 +102,12 @@ io::Plot ToPlot(const Report& report) {
         r > 0       ? ""
         : first > 0 ? "fitted, last cycle"
                     : "fitted",
-        PlotStyle::kLine, along_fit, fit.fitted_force, units.force, std::nullopt, first);
-    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, units.residual,
-        shade);
+        PlotStyle::kLine, along_fit, fit.fitted_force, unit_of_force, std::nullopt, first);
+    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual,
+        unit_of_residual, shade);
     if (report.next && r < report.next->fitted_force.size()) {
       add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r], units.force, std::nullopt, first);
+          record.displacement, report.next->fitted_force[r], unit_of_force, std::nullopt, first);
     }
   }
   measured.series.insert(measured.series.end(), lines.begin(), lines.end());

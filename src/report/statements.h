@@ -49,6 +49,9 @@ std::string_view VerdictWord(const Report& report);
 
 /// How good what is said is, for its colour.
 enum class Judgement { kNone, kGood, kPoor, kBad };
+template <>
+inline constexpr auto kNamesOf<Judgement> =  // classes of the page's style
+    std::to_array<std::string_view>({"plain", "good", "poor", "bad"});
 /// @param verdict  as VerdictWord()
 Judgement JudgementOf(std::string_view verdict);
 /// Returns kGood only of what may be quoted as it stands.
