@@ -78,7 +78,11 @@ void ReadAssignments(const std::vector<std::string>& texts, std::string_view opt
 Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form,
                        std::string_view unit) {
   const auto [lower, upper] = Split(text, ':', option, form);
-  return {ParseNumber(lower, option, form, unit), ParseNumber(upper, option, form, unit)};
+  const Interval interval = {ParseNumber(lower, option, form, unit),
+                             ParseNumber(upper, option, form, unit)};
+  if (interval.lower < interval.upper) return interval;
+  throw InputError(
+      fmt::format("{}: '{}' is empty: the first number must be the smaller", option, text));
 }
 
 loop::CountRange ParseCountRange(std::string_view text, std::string_view option,

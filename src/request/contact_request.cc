@@ -22,28 +22,6 @@ bool IsAnythingGiven(const KnownBody& body) {
   return body.youngs_modulus || body.poisson_ratio || body.radius;
 }
 
-void RequireBody(const KnownBody& body, int number) {
-  if (body.youngs_modulus) {
-    RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), body.youngs_modulus->value);
-  }
-  if (body.poisson_ratio && !(body.poisson_ratio->value > -1 && body.poisson_ratio->value <= 0.5)) {
-    ThrowInvalid(fmt::format("--poisson-{} [-]", number), body.poisson_ratio->value,
-                 "must be > -1 and <= 0.5");
-  }
-  if (!body.radius) return;
-  const auto [radius, uncertainty] = std::pair{body.radius->value, body.radius->standard_error};
-  if (std::isnan(radius) || radius == 0) {
-    ThrowInvalid(fmt::format("--radius-{} [m]", number), radius,
-                 "must be a number other than 0; inf is a plane");
-  }
-  if (std::isinf(radius) && uncertainty > 0) {
-    throw InputError(fmt::format(
-        "--radius-{}: the standard uncertainty {} of a plane is invalid: a plane is exact, write "
-        "{}",
-        number, uncertainty, radius));
-  }
-}
-
 }  // namespace
 
 void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loads) {
@@ -69,15 +47,10 @@ bool IsAnythingGiven(const ContactOptions& options) {
 }
 
 void Validate(const ContactOptions& options) {
-  const auto require_positive = [](const char* option, const std::optional<UncertainValue>& known) {
-    if (known) RequirePositive(option, known->value);
-  };
-  require_positive("--normal-load [N]", options.known.normal_load);
-  require_positive("--contact-radius [m]", options.known.contact_radius);
-  require_positive("--compliance [1/Pa]", options.known.tangential_compliance);
-  require_positive("--friction [-]", options.friction_coefficient);
-  RequireBody(options.known.body_1, 1);
-  RequireBody(options.known.body_2, 2);
+  contact::Validate(options.known);
+  if (options.friction_coefficient) {
+    RequirePositive("friction [-]", options.friction_coefficient->value);
+  }
 }
 
 contact::PredictedContact ResolveContact(const ContactOptions& options) {

@@ -192,31 +192,6 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
   return left_out;
 }
 
-/// Refuses a load window without a load column, or without samples, before the fit refuses it with
-/// a message of its own.
-void RequireLoads(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  const std::optional<Interval>& window = request.fit.preparation.load_window;
-  if (!window) return;
-  for (std::size_t r = 0; r < inputs.size(); ++r) {
-    const std::vector<double>& load = inputs[r].record.normal_load;
-    if (load.empty()) {
-      throw InputError(
-          fmt::format("{}: --select load=LO:HI needs a normal load: name its column with "
-                      "--normal-load-column",
-                      request.files[r]));
-    }
-    const auto lies_outside = [&](double value) {
-      return value < window->lower || value > window->upper;
-    };
-    if (!std::ranges::all_of(load, lies_outside)) continue;
-    const auto [least, greatest] = std::ranges::minmax(load);
-    throw InputError(
-        fmt::format("{}: --select load={}:{} holds no sample: the normal load runs from {:.6g} to "
-                    "{:.6g} N",
-                    request.files[r], window->lower, window->upper, least, greatest));
-  }
-}
-
 void RequireLoadsOfRecords(const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == request.files.size()) return;
@@ -457,6 +432,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     one.push_back(io::Joined(std::move(inputs), request.files));
     return FitRecords(joined, std::move(one));
   }
+  RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
   RequireColumns(request, inputs);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
@@ -466,7 +442,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);
-  RequireLoads(request, inputs);
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());

@@ -28,18 +28,6 @@ constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
   throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
 }
 
-void RequireOrdered(std::string_view option, double lower, double upper) {
-  if (lower < upper) return;
-  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must be the smaller", option,
-                               lower, upper));
-}
-
-void RequireCounts(std::string_view option, const std::optional<loop::CountRange>& range) {
-  if (!range || (range->first >= 1 && range->first <= range->last)) return;
-  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must not be the larger",
-                               option, range->first, range->last));
-}
-
 /// Fits the terms of a group that are not given.
 void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   for (const std::string_view name : group.terms) {
@@ -59,17 +47,6 @@ void AddCompanionsOfFixed(FitOptions& fit) {
       return std::ranges::find(each.terms, name) != each.terms.end();
     });
     AddGroup(*group, fit);
-  }
-}
-
-/// @throws InputError where a column is given twice
-void RequireDistinctColumns(const FitOptions& fit) {
-  std::vector<std::string> names;
-  for (const std::string& column : fit.covariates) {
-    std::string name = identification::NameOfCovariate(column);
-    if (column.empty()) throw InputError("--covariate: '' is no column: give its name or number");
-    if (std::ranges::find(names, name) != names.end()) ThrowTwice("--covariate", column);
-    names.push_back(std::move(name));
   }
 }
 
@@ -167,25 +144,9 @@ FitOptions MakeFitOptions(const FitRequest& request) {
   for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
-  const loop::PreparationOptions& preparation = fit.preparation;
-  for (const auto& [option, window] : {std::pair("--select load", preparation.load_window),
-                                       {"--select time", request.time_window}}) {
-    if (window) RequireOrdered(option, window->lower, window->upper);
-  }
-  RequireCounts("--select cycles", preparation.cycles);
-  RequireCounts("--select samples", preparation.samples);
-  for (const auto& [option, size] :
-       {std::pair("--displacement-noise [m]", preparation.displacement_noise),
-        {"--reversal-gate [m]", preparation.reversal_gate}}) {
-    if (size) RequireNonNegative(option, *size);
-  }
   ApplyTerms(request, fit);
   AddCompanionsOfFixed(fit);
-  RequireDistinctColumns(fit);
   Validate(fit);
-  for (const auto& [name, interval] : fit.bounds) {
-    RequireOrdered("--bound", interval.lower, interval.upper);
-  }
   for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
   for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);

@@ -243,9 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"LoadWindowUpsideDown",
                {"--load-window", "5:4"},
                "'5:4' is empty: the first number must be the smaller"},
-        Misuse{"LoadWindowWithoutSamples",
-               {"--select", "load=5:6"},
-               "--select load=5:6 holds no sample: the normal load runs from 100 to 100 N"},
+        Misuse{
+            "LoadWindowWithoutSamples", {"--select", "load=5:6"}, "lie outside what --select says"},
         Misuse{"LagBeyondTheRecord", {"--fix", "lag=1e6"}, "nothing is left of record 1"},
         Misuse{"AsymmetryOfOneSense",
                {"--fix", "asymmetry=1"},
@@ -265,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(
                "--covariate: 'much' is not a number: write COL[=C|fit], e.g. pressure=50"},
         Misuse{"CovariateTwice",
                {"--covariate", "normal", "--covariate", "normal=3"},
-               "--covariate: 'normal' is given twice: give it once"},
+               "is chosen twice as a covariate: choose it once"},
         Misuse{"CovariateThatIsNoColumn",
                {"--covariate", "pressure"},
                "no column is called 'pressure' (for the covariate): the columns are"},
@@ -278,7 +277,8 @@ INSTANTIATE_TEST_SUITE_P(
                "2:5"},
         Misuse{"SamplesUpsideDown",
                {"--select", "samples=5:4"},
-               "--select samples: '5:4' is empty: the first number must not be the larger"},
+               "samples 5:4 are invalid: they are counted from 1, and the first must not be the "
+               "larger"},
         Misuse{"SamplesBeyondTheRecord",
                {"--samples", "100000:200000"},
                "samples 100000:200000 contain nothing of record 1: it has"},
@@ -297,8 +297,8 @@ TEST(FitCommand, LoadWindowWithoutALoadNamesTheColumnOption) {
   EXPECT_EQ(outcome.status, cli::kBadInput);
   ASSERT_THAT(outcome.Errors(), SizeIs(1));
   EXPECT_THAT(outcome.Errors()[0],
-              HasSubstr("--select load=LO:HI needs a normal load: name its column "
-                        "with --normal-load-column"));
+              HasSubstr("--select load=LO:HI needs a normal load in every record: name its "
+                        "column with --normal-load-column"));
 }
 
 TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {

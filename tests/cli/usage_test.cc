@@ -145,7 +145,7 @@ const std::vector<BadUsage> kBadUsage = {
      "no column is recognised as the normal load"},
     {"RigSofterThanTheLoop",
      {"fit", "@", "--rig-stiffness", "1e3", "--json", "#"},
-     "rig_stiffness [N/m] = 1000 is invalid: must be >"},
+     "--rig-stiffness [N/m] = 1000 is invalid: must be >"},
     {"ForceNoiseBeyondSquares",
      {"fit", "@", "--force-noise", "1e160"},
      "must be below 1e100 times"},

@@ -66,7 +66,7 @@ TEST(FitRequest, BecomesOptionsEachInItsPlace) {
   request.fit.covariates = {"2"};
   request.fit.terms = {"rig_stiffness"};
   request.terms = {"viscous", "pressure"};
-  request.fit.fixed["asymmetry"] = 0.0625;
+  request.fit.fixed["lag"] = 0.0625;
   const identification::FitOptions fit = MakeFitOptions(request);
   EXPECT_EQ(fit.model->name, "dahl");
   EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
@@ -136,12 +136,6 @@ TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
   EXPECT_THAT(start("displacement_drift",
                     [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }),
               EndsWith("add --terms displacement_drift"));
-}
-
-TEST(FitRequest, RefusesAColumnThatIsGivenTwice) {
-  FitRequest request;
-  request.fit.covariates = {"p", "p"};
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--covariate: 'p' is given twice"));
 }
 
 TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
@@ -219,10 +213,7 @@ TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
   }
 }
 
-TEST(FitRequest, TakesABoundWithBothItsEnds) {
-  FitRequest request;
-  request.fit.bounds["slip_force"] = {5.0, 5.0};
-  EXPECT_THAT(RefusalOf(request), HasSubstr("--bound: '5:5' is empty"));
+TEST(FitRequest, TakesARangeWithBothItsEnds) {
   for (const auto& [first, last, is_fine] :
        {std::tuple(1U, 1U, true), {2U, 5U, true}, {0U, 3U, false}, {4U, 3U, false}}) {
     for (std::optional<loop::CountRange> loop::PreparationOptions::*range :
@@ -289,25 +280,6 @@ TEST(ResolveLaw, TakesAContactOrItsParametersAndNamesWhatIsMissing) {
             "--friction, --compliance");
   request.contact.known.body_2.radius = 0.5;
   EXPECT_THAT(refusal(request), HasSubstr("give one of the two"));
-}
-
-TEST(ValidateContact, HasThePropertiesOfItsBodiesWithinTheirBounds) {
-  const auto refusal = [](const contact::KnownBody& body) -> std::string {
-    ContactOptions options;
-    options.known.body_2 = body;
-    return MessageOf<std::exception>([&] { Validate(options); });
-  };
-  using contact::UncertainValue;
-  EXPECT_EQ(refusal({.poisson_ratio = UncertainValue{0.5, 0.0}}), "");
-  EXPECT_THAT(refusal({.poisson_ratio = UncertainValue{0.51, 0.0}}), HasSubstr("--poisson-2"));
-  EXPECT_EQ(refusal({.poisson_ratio = UncertainValue{-0.99, 0.0}}), "");
-  EXPECT_THAT(refusal({.poisson_ratio = UncertainValue{-1.0, 0.0}}), HasSubstr("--poisson-2"));
-  EXPECT_EQ(refusal({.radius = UncertainValue{-2.0, 0.5}}), "");  // a socket
-  EXPECT_EQ(refusal({.radius = UncertainValue{HUGE_VAL, 0.0}}), "");
-  EXPECT_THAT(refusal({.radius = UncertainValue{HUGE_VAL, 0.5}}), HasSubstr("a plane is exact"));
-  EXPECT_THAT(refusal({.radius = UncertainValue{0.0, 0.0}}), HasSubstr("--radius-2 [m]"));
-  EXPECT_THAT(refusal({.youngs_modulus = UncertainValue{0.0, 0.0}}),
-              HasSubstr("--youngs-modulus-2"));
 }
 
 }  // namespace

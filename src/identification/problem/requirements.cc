@@ -92,6 +92,7 @@ void Validate(const FitOptions& options) {
   if (!(options.confidence > 0 && options.confidence < 1)) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
   }
+  loop::Validate(options.preparation);
   RequireTermsOfResponse(options);
   if (options.model->memory == models::Memory::kNone && HasTerm(options, TermId::kAsymmetry) &&
       HasTerm(options, TermId::kRigStiffness)) {
