@@ -30,6 +30,7 @@ using identification::Identifiability;
 using identification::Interval;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
+using identification::TermSelection;
 using io::RecordFile;
 using loop::Record;
 
@@ -211,33 +212,23 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
   }
 }
 
-/// A fit with the options that it has in the end.
-struct AskedFit {
-  FitOptions options;
-  identification::FitResult fit = {};
-  std::optional<identification::TermSelection> terms = {};  // where they are chosen
-};
-
 /// Fits the options' law with the terms that are named or, where asked for, chosen.
-AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
-                std::span<const Record> records, bool chooses_terms, Depth depth = Depth::kFull) {
-  AskedFit asked{.options = options};
+TermSelection FitLaw(const FitRequest& request, const FitOptions& options,
+                     std::span<const Record> records, bool chooses_terms,
+                     Depth depth = Depth::kFull) {
   std::vector<std::string> named = NamedTerms(request);
   std::erase_if(named, [](const std::string& name) {
     return identification::FindTermGroup(name) == nullptr;
   });
-  if (options.response() == loop::Channel::kForce && (chooses_terms || !named.empty())) {
-    const std::vector<loop::RecordView> views(records.begin(), records.end());
-    identification::TermSelection selected =
-        chooses_terms ? identification::SelectTerms(views, options, depth)
-                      : identification::FitNamedTerms(views, options, named, depth);
-    asked.options = selected.options;
-    asked.fit = std::move(selected.fit);
-    if (chooses_terms) asked.terms = std::move(selected);
-    return asked;
+  if (options.response() != loop::Channel::kForce || (!chooses_terms && named.empty())) {
+    TermSelection law_alone;
+    law_alone.options = options;
+    law_alone.fit = identification::Fit(records, options, depth);
+    return law_alone;
   }
-  asked.fit = identification::Fit(records, options, depth);
-  return asked;
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  return chooses_terms ? identification::SelectTerms(views, options, depth)
+                       : identification::FitNamedTerms(views, options, named, depth);
 }
 
 /// Takes back a preference for the law that the program did not choose.
@@ -254,16 +245,16 @@ bool WithdrawPreference(FitResult& fit) {
 
 /// Makes the requested fit; with `--model auto` by Masing's law or, where the record supports it,
 /// by Dahl's own. Terms are chosen for the law that is better without them.
-AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
-                  std::span<const Record> records) {
+TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
+                       std::span<const Record> records) {
   const bool chooses_terms = ChoosesTerms(request);
   if (request.fit.model != nullptr) return FitLaw(request, options, records, chooses_terms);
-  AskedFit asked = FitLaw(request, options, records, /*chooses_terms=*/false);
+  TermSelection asked = FitLaw(request, options, records, /*chooses_terms=*/false);
   const auto& choice = asked.fit.law_choice;
   if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
-    AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
+    TermSelection other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
     if (other.fit.converged) {
       asked = std::move(other);
     } else {
@@ -453,7 +444,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  AskedFit asked{.options = options};
+  TermSelection asked;
   std::vector<identification::ModelScore> compared;
   try {
     if (request.compare) compared = identification::CompareModels(records, options);
@@ -465,16 +456,17 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
   UseMeasuredNormalLoad(known, asked.fit, records.front(), notes);
-  return report::MakeReport({.files = std::move(names),
-                             .records = std::move(inputs),
-                             .fit = std::move(asked.fit),
-                             .options = asked.options,
-                             .known = known,
-                             .left_out = std::move(left_out),
-                             .notes = std::move(notes),
-                             .compared = std::move(compared),
-                             .terms = std::move(asked.terms),
-                             .next = std::move(next)});
+  return report::MakeReport(
+      {.files = std::move(names),
+       .records = std::move(inputs),
+       .fit = std::move(asked.fit),
+       .options = asked.options,
+       .known = known,
+       .left_out = std::move(left_out),
+       .notes = std::move(notes),
+       .compared = std::move(compared),
+       .terms = ChoosesTerms(request) ? std::optional(std::move(asked)) : std::nullopt,
+       .next = std::move(next)});
 }
 
 }  // namespace mindahl::request

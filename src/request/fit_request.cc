@@ -42,11 +42,7 @@ void AddCompanionsOfFixed(FitOptions& fit) {
   for (const auto& [name, value] : fit.fixed) {
     const Term* term = identification::FindTerm(name);
     if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
-    const auto groups = identification::TermGroups();
-    const auto group = std::ranges::find_if(groups, [&](const identification::TermGroup& each) {
-      return std::ranges::find(each.terms, name) != each.terms.end();
-    });
-    AddGroup(*group, fit);
+    AddGroup(*identification::FindTermGroup(term->group), fit);
   }
 }
 

@@ -10,17 +10,6 @@
 namespace mindahl::request::fit_request_test {
 namespace {
 
-TEST(FitRequest, RefusesAWindowThatEndsBeforeItBegins) {
-  FitRequest load;
-  load.fit.preparation.load_window = {1.0, 2.0};
-  EXPECT_NO_THROW(MakeFitOptions(load));
-  load.fit.preparation.load_window = {2.0, 1.0};
-  EXPECT_THAT(MessageOf<InputError>([&] { MakeFitOptions(load); }), HasSubstr("--select load"));
-  FitRequest time;
-  time.time_window = {2.0, 1.0};
-  EXPECT_THAT(MessageOf<InputError>([&] { MakeFitOptions(time); }), HasSubstr("--select time"));
-}
-
 TEST(FitRequest, RefusesACertaintyByTheNameOfItsOption) {
   for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()}) {
     FitRequest request;

@@ -72,6 +72,8 @@ struct Report : ReportInput {
   [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
   /// Returns nullptr where the contact has no such quantity.
   [[nodiscard]] const ContactQuantity* Find(std::string_view quantity) const;
+  /// Returns its value; empty where it has none.
+  [[nodiscard]] std::optional<double> ValueOf(std::string_view quantity) const;
 };
 
 /// Makes a report from a fit. A fit of no more samples than free parameters determines none of
