@@ -201,17 +201,13 @@ std::string ToText(const TrackedTest& test) {
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
-std::vector<io::PlotPanel> PanelsOf(const TrackedTest& test) {
-  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
-  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
-  return panels;
-}
-
 std::string ToPage(const TrackedTest& test, const report::Provenance& provenance) {
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   std::string figures;
   std::size_t count = 0;
-  for (const io::PlotPanel& panel : PanelsOf(test)) {
+  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
+  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
+  for (const io::PlotPanel& panel : panels) {
     figures += report::FigureHtml(
         {.id = fmt::format("evolution-{}", ++count),
          .title = panel.y_label,
@@ -246,9 +242,6 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
 void RequireTrackOptions(const TrackCommandOptions& options) {
   MakeCycleFitOptions(options.fit);
   Validate(options.fit.contact);
-  if (options.resume && options.overwrite) {
-    throw InputError("--resume and --overwrite contradict each other: give one of the two");
-  }
   std::error_code error;
   const auto status = std::filesystem::status(options.output, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -569,9 +562,9 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
-  group.AddFlag("--resume", options->resume,
-                "continue an existing table, with the same files and options");
-  group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
+  CLI::Option* const resume = group.AddFlag(
+      "--resume", options->resume, "continue an existing table, with the same files and options");
+  group.AddFlag("--overwrite", options->overwrite, "replace an existing table")->excludes(resume);
   OnRun(command, [options, &command, &console] { RunTrack(*options, command, console); });
 }
 

@@ -43,16 +43,17 @@ struct TableLine {
 std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
                       const std::vector<TableLine>& lines);
 
-/// What is said of a figure.
+/// Holds what is said of a figure.
 struct FigureText {
-  std::string id;  ///< identifies it in its page: letters, digits, '_' and '-'
+  std::string id;  ///< names it in its page: letters, digits, '_' and '-'
   std::string title;
   std::string text = {};
-  std::string attributes = {};  ///< of both: " class=\"hidden\""
+  std::string attributes = {};  ///< title and text have them: " class=\"hidden\""
   std::string_view element = "h2";
 };
+/// Returns a figure of a panel, with its legend.
 std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel);
-/// @param elements  of an inline SVG 560 px wide
+/// Returns a figure of the elements of an inline SVG, 560 px wide.
 std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
                        std::string_view elements);
 /// Returns figures, or tables, side by side where there is room.

@@ -199,10 +199,6 @@ Report MakeReport(ReportInput input) {
     report.units.response = report.units.displacement;
     report.units.excitation = report.units.force;
   }
-  constexpr double kWorthwhile = 0.9;
-  if (report.next && !(report.next->misfit_after <= kWorthwhile * report.next->misfit_before)) {
-    report.next.reset();
-  }
   if (!report.failed()) {
     RequireMoreSamplesThanParameters(report.fit);
     if (!report.is_torsional()) {

@@ -79,13 +79,11 @@ const report::Units& UnitsOf(const RecordFile& input) {
 
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   bool is_loaded = false;
-  std::size_t samples = 0;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
     const std::string& file = request.files[r];
     const report::Units& units = UnitsOf(input);
-    samples += record.size();
     if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
                            units.displacement) > 0)) {
       ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
@@ -100,14 +98,6 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   if (!is_loaded) {
     ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
                   UnitsOf(first).force, "loaded");
-  }
-  constexpr std::size_t kLeast = 3;  // as many as the law has parameters
-  if (samples < kLeast && request.fit.fixed.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} samples are too few: a fit needs more samples than free parameters; record more",
-        PlaceOf(request.files.back(), inputs.back(), inputs.back().force,
-                inputs.back().record.size() - 1),
-        samples));
   }
 }
 
@@ -339,7 +329,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
           FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
-      if (step.misfit_after > (1 - kLeastGain) * *before || LosesSlipForce(fit, found)) continue;
+      if (!(step.misfit_after <= (1 - kLeastGain) * *before) || LosesSlipForce(fit, found))
+        continue;
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it

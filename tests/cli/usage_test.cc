@@ -316,7 +316,7 @@ TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
       {"mm.csv", "t [s],F [N],x [mm]\n1,2,5\n2,3,5\n",
        "mm.csv:2:3: the displacement never changes, it is 0.005 m in every row"},
       {"slack.csv", "x [m],F [N]\n1,2\n2,2\n1,2\n", "slack.csv:2:2: the force never changes"},
-      {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "two.csv:3:2: 2 samples are too few"},
+      {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "two.csv: 2 samples are too few for"},
       {"few.csv", "x [m],F [N]\n0,0\n1,1\n0,-1\n1,1\n",
        "few.csv: 4 samples are too few for 5 free parameters"},
       {"bar.csv", "x [m],F [bar]\n0,0\n1,1\n0,-1\n",

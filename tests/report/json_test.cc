@@ -87,17 +87,6 @@ TEST(Json, NamesTheColumnsThatWereRead) {
   EXPECT_TRUE(columns["normal_load"].is_null());
 }
 
-TEST(Json, HasTheNextStepOnlyWhereItHelpsByATenth) {
-  ReportInput input = MadeInput();
-  input.next = {
-      .text = "a lag", .options = "--terms lag", .misfit_before = 0.05, .misfit_after = 0.046};
-  EXPECT_TRUE(Document(input)["next"].is_null());
-  input.next->misfit_after = 0.045;
-  EXPECT_EQ(Document(input)["next"]["options"], "--terms lag");
-  input.next->misfit_after = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(Document(input)["next"].is_null());
-}
-
 TEST(Json, OfATorqueHasItsUnitsAndNoContact) {
   ReportInput input = MadeInput();
   input.records[0].is_torsional = true;

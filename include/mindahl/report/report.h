@@ -51,8 +51,7 @@ struct ReportInput {
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared
   std::optional<identification::TermSelection> terms = {};  ///< if terms were chosen
-  /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
-  /// reported.
+  /// The best step that was tried; empty where none helps by a tenth.
   std::optional<NextStep> next = {};
 };
 
