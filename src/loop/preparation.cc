@@ -174,9 +174,9 @@ void Validate(const PreparationOptions& options) {
   for (const auto& [range, what] :
        {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {
     if (!range || (range->first >= 1 && range->first <= range->last)) continue;
-    throw InvalidArgument(fmt::format(
-        "{} {}:{} are invalid: they are counted from 1, and the first must not be the larger", what,
-        range->first, range->last));
+    throw InvalidArgument(
+        fmt::format("--select {}={}:{} is empty: counted from 1, the first must not be the larger",
+                    what, range->first, range->last));
   }
   if (options.displacement_noise) {
     RequireNonNegative("displacement noise [m]", *options.displacement_noise);

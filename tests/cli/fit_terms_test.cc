@@ -277,8 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                "2:5"},
         Misuse{"SamplesUpsideDown",
                {"--select", "samples=5:4"},
-               "samples 5:4 are invalid: they are counted from 1, and the first must not be the "
-               "larger"},
+               "--select samples=5:4 is empty: counted from 1, the first must not be the larger"},
         Misuse{"SamplesBeyondTheRecord",
                {"--samples", "100000:200000"},
                "samples 100000:200000 contain nothing of record 1: it has"},
