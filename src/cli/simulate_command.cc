@@ -196,10 +196,10 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App& command = AddCommand(
       app, "simulate",
-      "Computes the tangential force along an imposed displacement, exactly for\n"
-      "any history. The contact is unloaded at displacement zero; a first row\n"
-      "that is not zero is the first loading step. Writes time [s],\n"
-      "displacement [m], force [N].",
+      "Computes the tangential force along an imposed displacement,\n"
+      "exactly for any history. The contact is unloaded at displacement\n"
+      "zero; a first row that is not zero is the first loading step.\n"
+      "Writes time [s], displacement [m], force [N].",
       {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
        "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
        "    --path path.csv --displacement \"[um]\""});

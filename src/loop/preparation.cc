@@ -175,8 +175,8 @@ void Validate(const PreparationOptions& options) {
        {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {
     if (!range || (range->first >= 1 && range->first <= range->last)) continue;
     throw InvalidArgument(
-        fmt::format("--select {}={}:{} is empty: counted from 1, the first must not be the larger",
-                    what, range->first, range->last));
+        fmt::format("--select {}: '{}:{}' is empty: the first number must not be the larger", what,
+                    range->first, range->last));
   }
   if (options.displacement_noise) {
     RequireNonNegative("displacement noise [m]", *options.displacement_noise);

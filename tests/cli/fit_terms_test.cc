@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                "2:5"},
         Misuse{"SamplesUpsideDown",
                {"--select", "samples=5:4"},
-               "--select samples=5:4 is empty: counted from 1, the first must not be the larger"},
+               "--select samples: '5:4' is empty: the first number must not be the larger"},
         Misuse{"SamplesBeyondTheRecord",
                {"--samples", "100000:200000"},
                "samples 100000:200000 contain nothing of record 1: it has"},
