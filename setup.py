@@ -28,9 +28,9 @@ VERSION = re.search(r"project\(mindahl VERSION ([\d.]+)", (ROOT / "CMakeLists.tx
 # Libraries that every Linux with a Python of this kind has, by the policy of manylinux (PEP 600).
 SYSTEM = re.compile(r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|gcc_s|stdc\+\+))\.so.*")
 BUNDLED = re.compile(r"lib(fmt|z|md)\.so.*")  # MIT, Zlib, BSD
-# Debian packages whose headers are compiled into the extension; Boost's licence is Mustache's.
+# Debian packages whose headers are compiled into the extension.
 COMPILED = ("libceres-dev", "libeigen3-dev", "nlohmann-json3-dev", "libcli11-dev", "libtomlplusplus-dev",
-            "libkainjow-mustache-dev", "pybind11-dev", "libfmt-dev", "zlib1g-dev", "libmd-dev")
+            "pybind11-dev", "libfmt-dev", "zlib1g-dev", "libmd-dev")
 
 
 def bundle(extension, package):

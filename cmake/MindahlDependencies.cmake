@@ -26,7 +26,3 @@ if(MINDAHL_BUILD_PROGRAM)
   target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
 endif()
 
-# Mustache is a header without a package config.
-find_path(MUSTACHE_INCLUDE_DIR kainjow/mustache.hpp REQUIRED)
-add_library(kainjow::mustache INTERFACE IMPORTED)
-target_include_directories(kainjow::mustache INTERFACE ${MUSTACHE_INCLUDE_DIR})

@@ -39,8 +39,7 @@ separate_arguments(cold_options UNIX_COMMAND "${MINDAHL_COLD_COMPILE_OPTIONS}")
 # COLD: no part of the time that it takes to run is spent in it.
 # PRECOMPILE: headers of others that take most of the time to compile its sources.
 # What is all headers is asked of nobody who links the library.
-set(header_only Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json kainjow::mustache
-    CLI11::CLI11)
+set(header_only Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json CLI11::CLI11)
 function(mindahl_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 MODULE "COLD" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE")
   add_library(mindahl_${name} STATIC ${MODULE_SOURCES})

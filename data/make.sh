@@ -48,29 +48,45 @@ loop --lambda 2 --cycles 6 --seed 15 --noise-displacement 1e-9 --frequency 5 | a
     print line
   }' >"$folder/raw_rig_record.csv"
 
-# The force is imposed, to 0.9 of the slip force, and exact; the noise is in the displacement.
-forces=$(mktemp)
-trap 'rm -f "$forces"' EXIT
-awk 'BEGIN {
-  print "force [N]"
-  for (i = 0; i <= 600; ++i) printf "%.9e\n", 13.5 * sin(6.283185307179586 * (i % 200) / 200)
-}' >"$forces"
+motion=$(mktemp)
+trap 'rm -f "$motion"' EXIT
+
+# The force is imposed, to 0.9 of the slip force, and exact; the noise is in the displacement, which is that of
+# Mindlin's curve, d(T) = 3/2 Tc/s (1 - (1 - T/Tc)^(2/3)), and of Masing's rules.
+awk 'function d(t) { return 1.5 * 15 / 48136532.76068716 * (1 - (1 - t / 15) ^ (2 / 3)) }
+BEGIN {
+  print "displacement [m],force [N]"
+  for (i = 0; i <= 600; ++i) {
+    t = sprintf("%.9e", 13.5 * sin(6.283185307179586 * (i % 200) / 200)) + 0
+    if (i <= 50) x = d(t)
+    else x = int((i - 50) / 100) % 2 ? 2 * d((13.5 + t) / 2) - d(13.5) : d(13.5) - 2 * d((13.5 - t) / 2)
+    printf "%.17g,%.17g\n", x, t
+  }
+}' >"$motion"
 # shellcheck disable=SC2086
-"$mindahl" simulate $contact --force-path "$forces" --noise-displacement 2e-9 --seed 16 \
-  >"$folder/imposed_force.csv"
+"$mindahl" simulate $contact --path "$motion" --noise-displacement 2e-9 --seed 16 |
+  paste -d, - "$motion" | cut -d, -f1,2,5 >"$folder/imposed_force.csv"
 
 # A strain-wave drive of a robot: friction in proportion to the torque that it carries, which changes
-# its sign, and different in the two directions; knee 1.2 mrad, 3 N m under the mean of 21.8 N m.
+# its sign, and different in the two directions; knee 1.2 mrad, 3 N m under the mean of 21.8 N m. The state z of
+# Dahl's law, dz = (1 - sgn(dx) z) dx/h, has the torque 3 (|N| z - 0.2 N z^2)/21.7868; a spring that is nearly none
+# gives the noise.
 awk 'BEGIN {
   print "angle [rad],torque [N m]"
   for (i = 0; i <= 600; ++i) {
     phase = 6.283185307179586 * i / 200
     printf "%.9e,%.6f\n", 3.6e-3 * sin(phase), 12 + 28 * cos(0.4 * phase)
   }
-}' >"$forces"
-"$mindahl" simulate --model dahl --alpha 1 --sigma 2500 --slip-force 3 --asymmetry -0.2 \
-  --path "$forces" --normal-load-column torque --normal-load 21.7868 --noise-force 0.015 --seed 17 |
-  awk -F, -v OFS=, '
+}' >"$motion"
+"$mindahl" simulate --model spring --sigma 1e-9 --slip-force 3 --path "$motion" --noise-force 0.015 --seed 17 |
+  paste -d, - "$motion" | awk -F, -v OFS=, '
     NR == 1 { print "time [s]", "angle [rad]", "friction torque [N m]", "torque [N m]"; next }
-    { print 0.01 * $1, sprintf("%.9e", $2), sprintf("%.6f", $3), sprintf("%.6f", $4) }' \
-  >"$folder/joint.csv"
+    {
+      way = $4 - x
+      x = $4
+      to = way < 0 ? -1 : 1
+      z = to + (z - to) * exp(-to * way / 1.2e-3)
+      load = $5 < 0 ? -$5 : $5
+      print 0.01 * $1, sprintf("%.9e", $2), sprintf("%.6f", 3 * (load * z - 0.2 * $5 * z * z) / 21.7868 + $3),
+        sprintf("%.6f", $5)
+    }' >"$folder/joint.csv"

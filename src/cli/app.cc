@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <optional>
@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "cli/output.h"
-#include "cli/toml.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
@@ -63,12 +62,6 @@ std::vector<std::string> OptionNames(const CLI::App& app) {
   return names;
 }
 
-/// The file named with --config, or "".
-std::string ConfigFile(const CLI::App& app) {
-  const CLI::Option* option = app.get_config_ptr();
-  return option == nullptr || option->count() == 0 ? "" : option->as<std::string>();
-}
-
 /// TOML whose keys belong to the command being run, with or without its name as a section; the
 /// sections of other commands are theirs. A key that is no option is an error: it is a misspelling.
 class CommandConfig : public CLI::ConfigTOML {
@@ -77,37 +70,63 @@ class CommandConfig : public CLI::ConfigTOML {
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> selected;
-    const auto running = app_.get_subcommands();
-    if (running.empty()) return selected;
-    const CLI::App& command = *running.front();
-    const std::string text{std::istreambuf_iterator<char>(input), {}};
-    const std::string file = ConfigFile(app_);
-    for (TomlItem& item : ReadToml(text, "--config: " + file)) {
-      const std::string section = item.section.empty() ? command.get_name() : item.section;
-      const std::string where = fmt::format("--config: {}:{}", file, item.line);
-      const std::string first = section.substr(0, section.find('.'));
-      if (!IsCommand(app_, first)) {
-        const std::vector<std::string> commands = CommandNames(app_);
-        throw InputError(
-            fmt::format("{}: section '{}' is no command of mindahl{} must be one of {}", where,
-                        first, DidYouMean(first, commands), fmt::join(commands, ", ")));
-      }
-      if (first != command.get_name()) continue;
-      if (section != first || command.get_option_no_throw("--" + item.key) == nullptr) {
-        throw InputError(fmt::format(
-            "{}: '{}.{}' is no option of {}{} keys are those of {} --help without the dashes",
-            where, section, item.key, first, DidYouMean(item.key, KeyNames(command)), first));
-      }
-      if (item.values.empty()) continue;  // an array of nothing asks for nothing
-      CLI::ConfigItem& option = selected.emplace_back();
-      option.parents = {first};
-      option.name = std::move(item.key);
-      option.inputs = std::move(item.values);
+    if (app_.get_subcommands().empty()) return selected;
+    try {
+      AddItems(toml::parse(input), /*is_section=*/false, selected);
+    } catch (const toml::parse_error& error) {
+      Refuse(error.source(), error.description());
     }
     return selected;
   }
 
  private:
+  [[noreturn]] void Refuse(const toml::source_region& place, std::string_view why) const {
+    throw InputError(fmt::format("--config: {}:{}: {}", app_.get_config_ptr()->as<std::string>(),
+                                 place.begin.line, why));
+  }
+
+  std::string ValueOf(const toml::node& node) const {
+    if (const auto* text = node.as_string()) return text->get();
+    if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+    if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+    Refuse(node.source(), "the value is no string, number or boolean, nor an array of such");
+  }
+
+  void AddItems(const toml::table& table, bool is_section,
+                std::vector<CLI::ConfigItem>& selected) const {
+    const CLI::App& command = *app_.get_subcommands().front();
+    const std::string& running = command.get_name();
+    for (const auto& [key, node] : table) {
+      const std::string name(key.str());
+      if (!is_section && node.is_table()) {
+        const std::vector<std::string> commands = CommandNames(app_);
+        if (!IsCommand(app_, name)) {
+          Refuse(key.source(),
+                 fmt::format("section '{}' is no command of mindahl{} must be one of {}", name,
+                             DidYouMean(name, commands), fmt::join(commands, ", ")));
+        }
+        if (name == running) AddItems(*node.as_table(), /*is_section=*/true, selected);
+        continue;
+      }
+      if (command.get_option_no_throw("--" + name) == nullptr) {
+        Refuse(
+            key.source(),
+            fmt::format("'{0}.{1}' is no option of {0}{2} keys are those of {0} --help without the "
+                        "dashes",
+                        running, name, DidYouMean(name, KeyNames(command))));
+      }
+      std::vector<std::string> values;
+      if (const toml::array* array = node.as_array()) {
+        for (const toml::node& value : *array) values.push_back(ValueOf(value));
+      } else {
+        values.push_back(ValueOf(node));
+      }
+      if (values.empty()) continue;  // an array of nothing asks for nothing
+      selected.push_back({{running}, name, std::move(values)});
+    }
+  }
+
   const CLI::App& app_;
 };
 
@@ -162,6 +181,7 @@ std::string WithOption(const CLI::App& app, const std::string& message) {
   const std::string quantity = message.substr(0, unit);
   std::string name = "--" + quantity;
   std::ranges::replace(name, ' ', '-');
+  std::ranges::replace(name, '_', '-');
   const auto named = std::ranges::find(kNamedQuantities, quantity, &NamedQuantity::quantity);
   if (named != kNamedQuantities.end()) name = named->option;
   const CLI::Option* option = running.front()->get_option_no_throw(name);

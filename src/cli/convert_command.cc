@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -130,13 +129,11 @@ std::string ErrorAtAmplitude(const ConvertedContact& made) {
 
 ConvertedContact MakeConversion(const ConvertOptions& asked) {
   ConvertOptions request = asked;
-  RequireOneOf("--to", request.to, NamesOf(convert::Targets(), &TargetRow::name));
   if (!request.fit.empty()) {
     TakeFit(ReadFit(request.fit), request);
     Require(request.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
-  RequireOneOf("--from", request.from, std::array<std::string_view, 2>{"masing", "dahl"});
   const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
                                  request.alpha.value_or(1.0 / 3),
                                  Require(request.slip_force, "--slip-force", request)};

@@ -78,7 +78,11 @@ void ReadAssignments(const std::vector<std::string>& texts, std::string_view opt
 Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form,
                        std::string_view unit) {
   const auto [lower, upper] = Split(text, ':', option, form);
-  return {ParseNumber(lower, option, form, unit), ParseNumber(upper, option, form, unit)};
+  const Interval interval = {ParseNumber(lower, option, form, unit),
+                             ParseNumber(upper, option, form, unit)};
+  if (interval.lower < interval.upper) return interval;
+  throw InputError(
+      fmt::format("{}: '{}' is empty: the first number must be the smaller", option, text));
 }
 
 loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
@@ -342,13 +346,6 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request.columns);
-  OptionGroup(command, std::string(kColumnGroup))
-      .Add("--max-memory", request.max_memory,
-           "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
-           "memory, or the limit of the process",
-           "SIZE")
-      ->check(WholeNumber(1, 1'000'000'000'000'000'000))
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
   AddSelections(command, request);
   const OptionGroup group(command, std::string(kColumnGroup));
   io::RecordColumns& columns = request.columns;

@@ -22,15 +22,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/loop/reversals.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/joint_friction.h"
-#include "mindahl/models/loading_path.h"
-#include "mindahl/models/response.h"
-#include "mindahl/models/variable_load.h"
 #include "mindahl/tradeoff/approximation.h"
 
 namespace mindahl::cli {
@@ -49,10 +44,6 @@ struct SimulateOptions {
   std::optional<double> amplitude;
   std::string path;                 // a file with the motion, instead
   std::string displacement;         // column of that file; "": the first, or by its name
-  std::string load_column;          // likewise, of the normal load; "": the load is constant
-  std::string force_path;           // a file that imposes the force instead
-  std::string force;                // column of that file, likewise
-  double asymmetry = 0.0;           // A of slip forces Tc(1 ± A) [-]
   double force_noise = 0.0;         // standard deviation [N]
   double displacement_noise = 0.0;  // standard deviation [m]
   std::string method = "exact";
@@ -61,39 +52,22 @@ struct SimulateOptions {
   std::string output;
 };
 
-/// One entry a row of output.
-struct Simulation {
-  std::vector<double> time = {};          // [s]
-  std::vector<double> displacement = {};  // [m]
-  std::vector<double> envelope = {};      // [m]; empty unless the amplitude changes along the way
-  std::vector<double> normal_load = {};   // [N]; empty unless a file gives it
-  std::vector<double> force = {};         // [N]
-};
-
-/// Time counts rows.
-std::vector<double> CountRows(std::size_t rows) {
-  std::vector<double> time(rows);
-  std::iota(time.begin(), time.end(), 0.0);
-  return time;
-}
-
-Simulation MotionFromFile(const SimulateOptions& options) {
-  Simulation motion;
-  const io::CsvTable table = io::ReadCsvTable(options.path);
-  motion.displacement = io::ImposedColumn(table, io::Imposed::kDisplacement, options.displacement);
-  if (!options.load_column.empty()) {
-    motion.normal_load = io::ImposedColumn(table, io::Imposed::kNormalLoad, options.load_column);
+/// Returns the imposed displacement: of a file with time that counts rows; the envelope is empty
+/// unless the amplitude changes along the way.
+models::Excitation MakeMotion(const SimulateOptions& options, const models::BranchLaw& law) {
+  models::Excitation motion;
+  if (!options.path.empty()) {
+    motion.displacement =
+        io::ImposedDisplacement(io::ReadCsvTable(options.path), options.displacement);
+    motion.time.resize(motion.displacement.size());
+    std::iota(motion.time.begin(), motion.time.end(), 0.0);
+    return motion;
   }
-  motion.time = CountRows(motion.displacement.size());
-  return motion;
-}
-
-Simulation MakeMotion(const SimulateOptions& options, const models::BranchLaw& law) {
-  if (!options.path.empty()) return MotionFromFile(options);
   models::ExcitationOptions excitation = options.excitation;
   if (options.lambda.has_value() == options.amplitude.has_value()) {
     throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
   }
+  excitation.amplitude = options.amplitude.value_or(0.0);
   if (options.lambda) {
     RequirePositive("--lambda [-]", *options.lambda);
     const double gross_slip = GrossSlipDisplacement(law);
@@ -104,30 +78,10 @@ Simulation MakeMotion(const SimulateOptions& options, const models::BranchLaw& l
           law.shape_exponent));
     }
     excitation.amplitude = *options.lambda * gross_slip;
-  } else {
-    RequirePositive("--amplitude [m]", *options.amplitude);
-    excitation.amplitude = *options.amplitude;
   }
-  models::Excitation made = models::MakeExcitation(excitation);
-  Simulation motion{.time = std::move(made.time), .displacement = std::move(made.displacement)};
-  if (excitation.waveform == models::Waveform::kGrowingSine) {
-    motion.envelope = std::move(made.envelope);
-  }
+  motion = models::MakeExcitation(excitation);
+  if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();
   return motion;
-}
-
-/// Returns a force within the slip force, which a file imposes.
-std::vector<double> ReadImposedForce(const SimulateOptions& options, const models::BranchLaw& law) {
-  const io::CsvTable table = io::ReadCsvTable(options.force_path);
-  std::vector<double> force = io::ImposedColumn(table, io::Imposed::kForce, options.force);
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (std::abs(force[i]) < law.slip_force) continue;
-    throw InputError(fmt::format(
-        "{}:{}: a force of {} N is not within the slip force, {} N, at which the contact slides "
-        "any distance: keep forces below it, or impose the displacement with --path",
-        options.force_path, table.lines[i], force[i], law.slip_force));
-  }
-  return force;
 }
 
 Approximation ResolveMethod(const SimulateOptions& options) {
@@ -153,79 +107,6 @@ Approximation ResolveMethod(const SimulateOptions& options) {
   return approximation;
 }
 
-/// Returns the model of an option that needs the closed form of a law, by the exact method.
-const FrictionModel& RequireClosedForm(const SimulateOptions& options, std::string_view option) {
-  const FrictionModel* model = models::FindFrictionModel(options.model);
-  if (model != nullptr && !model->scaled_by_peak && options.method == "exact") return *model;
-  throw InputError(
-      fmt::format("{} cannot be used with --model {} --method {}: use --model mindlin, "
-                  "mindlin-dahl, jenkins or dahl and --method exact",
-                  option, options.model, options.method));
-}
-
-/// Returns the law at the reference load, for which σ and the slip force are given.
-models::BranchLaw LawOf(const SimulateOptions& options, bool at_reference) {
-  LawOptions law = options.law;
-  if (at_reference && (law.sigma || law.slip_force)) law.contact.known.normal_load.reset();
-  const FrictionModel* model = models::FindFrictionModel(options.model);
-  return ResolveLaw(law, options.model, model == nullptr ? std::nullopt : model->shape_exponent);
-}
-
-/// Computes the displacement that an imposed force makes.
-Simulation FollowForce(const SimulateOptions& options) {
-  const FrictionModel& model = RequireClosedForm(options, "--force-path");
-  if (options.asymmetry != 0) {
-    throw InputError("--asymmetry cannot be used with --force-path: leave one of the two out");
-  }
-  const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
-  Simulation made{.force = ReadImposedForce(options, law)};
-  made.time = CountRows(made.force.size());
-  made.displacement.resize(made.force.size());
-  models::EvaluateDisplacement(model, law, made.force, made.displacement);
-  return made;
-}
-
-/// Computes the force of a contact whose slip force follows a load, or differs between the
-/// directions: Dahl's own law does both.
-Simulation FollowLoad(const SimulateOptions& options) {
-  const bool is_loaded = !options.load_column.empty();
-  const FrictionModel& model =
-      RequireClosedForm(options, is_loaded ? "--normal-load-column" : "--asymmetry");
-  const std::optional<contact::UncertainValue>& given = options.law.contact.known.normal_load;
-  if (is_loaded && !given) {
-    throw InputError(
-        "--normal-load missing: with --normal-load-column it is the load for which sigma and the "
-        "slip force are given");
-  }
-  const models::BranchLaw law = LawOf(options, is_loaded);
-  const double load = is_loaded ? given->value : 1.0;
-  Simulation made = MakeMotion(options, law);
-  const std::vector<double>& displacement = made.displacement;
-  made.force.resize(displacement.size());
-  if (model.memory == models::Memory::kNone) {
-    const std::vector<double> constant(displacement.size(), load);
-    models::EvaluateJointFriction(
-        {.law = law, .reference_load = load, .asymmetry = options.asymmetry}, displacement,
-        is_loaded ? made.normal_load : constant, made.force);
-  } else if (!is_loaded) {
-    models::EvaluateForce(
-        model, law,
-        models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), model.memory,
-                                {.asymmetry = options.asymmetry}),
-        displacement, made.force);
-  } else if (options.asymmetry != 0) {
-    throw InputError(
-        "--asymmetry cannot be used with --normal-load-column: leave one of the two out");
-  } else {
-    models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / load,
-                                    .reference_load = load,
-                                    .reference_stiffness = law.tangential_stiffness,
-                                    .shape_exponent = law.shape_exponent},
-                                   displacement, made.normal_load, made.force);
-  }
-  return made;
-}
-
 void AddNoise(std::vector<double>& values, double standard_deviation,
               boost::random::mt19937_64& engine) {
   if (standard_deviation == 0) return;
@@ -233,36 +114,23 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
   for (double& value : values) value += normal(engine);
 }
 
-Simulation Simulate(const SimulateOptions& options) {
+/// Returns time, displacement and force as CSV.
+std::string Simulate(const SimulateOptions& options) {
   Validate(options.law.contact);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
-  if (!(std::abs(options.asymmetry) < 1)) {
-    ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
-  }
   const Approximation approximation = ResolveMethod(options);
-  Simulation made;
-  if (!options.force_path.empty()) {
-    made = FollowForce(options);
-  } else if (options.asymmetry != 0 || !options.load_column.empty()) {
-    made = FollowLoad(options);
-  } else {
-    const models::BranchLaw law = LawOf(options, /*at_reference=*/false);
-    made = MakeMotion(options, law);
-    made.force.resize(made.displacement.size());
-    Prepare(approximation, law)({made.displacement, made.envelope}, made.force);
-  }
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  const models::BranchLaw law = ResolveLaw(options.law, options.model,
+                                           model == nullptr ? std::nullopt : model->shape_exponent);
+  models::Excitation motion = MakeMotion(options, law);
+  std::vector<double> force(motion.displacement.size());
+  Prepare(approximation, law)({motion.displacement, motion.envelope}, force);
   boost::random::mt19937_64 engine(options.excitation.seed);
-  AddNoise(made.force, options.force_noise, engine);
-  AddNoise(made.displacement, options.displacement_noise, engine);
-  return made;
-}
-
-std::string ToCsv(const Simulation& made) {
-  std::vector<io::CsvColumn> columns = {
-      {"time [s]", made.time}, {"displacement [m]", made.displacement}, {"force [N]", made.force}};
-  if (!made.normal_load.empty()) columns.push_back({"normal load [N]", made.normal_load});
-  return io::CsvText(columns);
+  AddNoise(force, options.force_noise, engine);
+  AddNoise(motion.displacement, options.displacement_noise, engine);
+  return io::CsvText(
+      {{"time [s]", motion.time}, {"displacement [m]", motion.displacement}, {"force [N]", force}});
 }
 
 std::vector<std::string> SimulatedModels() {
@@ -301,21 +169,9 @@ void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
            "none; default by its name, else the first",
            "COL")
       ->needs(path);
-  group
-      .Add("--normal-load-column", request.load_column,
-           "column of the file with the normal load N [N], which then varies:\nTc = mu N", "COL")
-      ->needs(path);
-  CLI::Option* const force_path =
-      group.Add("--force-path", request.force_path,
-                "CSV file with a force, any sequence within the slip force: the\n"
-                "displacement follows from it",
-                "FILE");
-  group.Add("--force", request.force, "its column, likewise", "COL")->needs(force_path);
-  force_path->excludes(path);
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
     path->excludes(command.get_option(name));
-    force_path->excludes(command.get_option(name));
   }
 }
 
@@ -329,9 +185,9 @@ std::string MethodHelp() {
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  const Simulation simulation = Simulate(options);
+  const std::string csv = Simulate(options);
   Say("simulate: warning", DoubtsAbout(options.law.contact), console);
-  WriteText(ToCsv(simulation), options.output.empty() ? "-" : options.output, console);
+  WriteText(csv, options.output.empty() ? "-" : options.output, console);
 }
 
 }  // namespace
@@ -340,20 +196,16 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App& command = AddCommand(
       app, "simulate",
-      "Computes the tangential force along an imposed displacement, or the\n"
-      "displacement under an imposed force (--force-path), exactly for any\n"
-      "history. The contact is unloaded at displacement zero; a first row\n"
-      "that is not zero is the first loading step. Writes time [s],\n"
-      "displacement [m], force [N].",
+      "Computes the tangential force along an imposed displacement,\n"
+      "exactly for any history. The contact is unloaded at displacement\n"
+      "zero; a first row that is not zero is the first loading step.\n"
+      "Writes time [s], displacement [m], force [N].",
       {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
        "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 \\",
        "    --path path.csv --displacement \"[um]\""});
   const OptionGroup plain(command, kPlainGroup);
   plain.AddShown("--model", options->model, "friction model")->check(OneOf(SimulatedModels()));
   AddLawOptions(command, options->law);
-  plain.AddShown(
-      "--asymmetry", options->asymmetry,
-      "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\nit falls [-]", "A");
   AddDriveOptions(command, *options);
 
   const OptionGroup noise(command, "Noise");

@@ -38,8 +38,8 @@
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/units.h"
 #include "mindahl/request/fit_request.h"
+#include "report/html.h"
 #include "report/table.h"
-#include "report/template.h"
 
 namespace mindahl::cli {
 
@@ -201,36 +201,40 @@ std::string ToText(const TrackedTest& test) {
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }
 
-std::vector<io::PlotPanel> PanelsOf(const TrackedTest& test) {
-  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
-  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
-  return panels;
-}
-
 std::string ToPage(const TrackedTest& test, const report::Provenance& provenance) {
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
-  Json figures = Json::array();
-  for (io::PlotPanel& panel : PanelsOf(test)) {
-    const std::string id = fmt::format("evolution-{}", figures.size() + 1);
-    std::string quantity = panel.y_label;
-    figures.push_back({{"id", id},
-                       {"quantity", std::move(quantity)},
-                       {"figure", report::FigureData(std::move(panel), id)}});
+  std::string figures;
+  std::size_t count = 0;
+  std::vector<io::PlotPanel> panels = campaign::EvolutionPanels(test.evolutions);
+  if (test.log.size() > 1) panels.push_back(campaign::FrettingLog(test.log, test.is_torsional));
+  for (const io::PlotPanel& panel : panels) {
+    figures += report::FigureHtml(
+        {.id = fmt::format("evolution-{}", ++count),
+         .title = panel.y_label,
+         .text = "Dashed lines are steps beyond chance, and where the quantity settled.",
+         .element = "h3"},
+        panel);
   }
   const bool is_failed = !test.established();
-  return report::RenderPage(
-      "track",
-      {{"title", fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles)},
-       {"verdict", is_failed ? report::VerdictData("bad", "failed", "no fit of a cycle converged")
-                             : report::VerdictData(changes.empty() ? "good" : "poor",
-                                                   changes.empty() ? "steady" : "changed",
-                                                   campaign::Headline(test.evolutions))},
-       {"changes", is_failed ? Json() : Json(changes)},
-       {"facts", Facts(test)},
-       {"ends", report::TableData("first and last row of the table of cycles", QuantityRows(test))},
-       {"evolutions", std::move(figures)},
-       {"flags", report::TableData("cycles with a flag", FlagRows(test))},
-       {"provenance", report::ProvenanceData(provenance)}});
+  const std::string flags = report::TableHtml("cycles with a flag", FlagRows(test));
+  return report::PageHtml(
+      fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles),
+      (is_failed ? report::VerdictHtml("bad", "failed", "no fit of a cycle converged")
+                 : report::VerdictHtml(changes.empty() ? "good" : "poor",
+                                       changes.empty() ? "steady" : "changed",
+                                       campaign::Headline(test.evolutions)) +
+                       report::ListHtml(changes)) +
+          report::SectionHtml("Over the test",
+                              report::ListHtml(Facts(test)) +
+                                  report::TableHtml("first and last row of the table of cycles",
+                                                    QuantityRows(test))) +
+          report::SectionHtml("Evolution", figures.empty() ? "" : report::SideBySide(figures)) +
+          report::SectionHtml(
+              "What to mind",
+              (flags.empty() ? report::ParagraphHtml("No cycle has a flag.") : flags) +
+                  report::ParagraphHtml("Errors assume that the model is adequate: check some "
+                                        "cycles with mindahl fit.")) +
+          report::ProvenanceHtml(provenance));
 }
 
 // --- the run
@@ -238,9 +242,6 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
 void RequireTrackOptions(const TrackCommandOptions& options) {
   MakeCycleFitOptions(options.fit);
   Validate(options.fit.contact);
-  if (options.resume && options.overwrite) {
-    throw InputError("--resume and --overwrite contradict each other: give one of the two");
-  }
   std::error_code error;
   const auto status = std::filesystem::status(options.output, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -327,19 +328,172 @@ class TrackRun {
               .energy = campaign::DissipatedEnergy(options.average * options.every)} {}
 
   /// @throws InputError naming the place in a file; rows that are finished are kept
-  TrackedTest Track();
+  TrackedTest Track() {
+    try {
+      Read();
+    } catch (const InputError& error) {
+      // Finished rows are kept, unless they are another run's, or there are none.
+      if (!tracker_ || !continues_table()) throw;
+      try {
+        if (!has_write_failed_) tracker_->Finish();
+        if (output_) output_->Finish();
+      } catch (
+          const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
+      }
+      throw InputError(fmt::format("{}; {} rows are kept in {}: repair the fault and add --resume",
+                                   error.what(), test_.fits, options_.output));
+    }
+    test_.cycles = tracker_->cycles();
+    test_.log = tracker_->log();
+    if (test_.cycles == 0) {
+      throw InputError(fmt::format(
+          "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
+          "another column with --displacement, or a smaller --reversal-gate",
+          fmt::join(test_.files, ", "),
+          options_.average > 1 ? ", or fewer than --average says" : "", test_.gate.count,
+          test_.gate.gate));
+    }
+    test_.evolutions = test_.courses.Describe(test_.is_torsional);
+    return std::move(test_);
+  }
 
  private:
-  void Read();
-  void ReadFile(const std::string& file);
-  void BeginSource(const io::RecordFile& layout, const std::string& name);
-  void BeginFits(const loop::RecordView& head, std::string_view source);
-  void Resume(campaign::TrackOptions& made);
-  void RequireNoSignal() const {
-    if (signals_->noted() != 0) throw InputError("stopped by a signal");
+  void BeginSource(const io::RecordFile& layout, const std::string& name) {
+    test_.files.push_back(name);
+    if (!layout_) {
+      layout_ = layout;
+      layout_->record = {};
+      test_.is_torsional = layout.is_torsional;
+    }
+    test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
+    if (options_.fit.join) io::RequireJoinable(*layout_, test_.files.front(), layout, name);
+    if (layout.is_torsional == test_.is_torsional) return;
+    throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", test_.files.front(),
+                                 test_.is_torsional ? "torque" : "force", name,
+                                 layout.is_torsional ? "torque" : "force"));
   }
-  void Take(std::span<const CycleFit> fits);
-  void OpenTable();
+
+  void BeginFits(const loop::RecordView& head, std::string_view source) {
+    fit_ = MakeCycleFitOptions(options_.fit);
+    const contact::KnownContact& known = options_.fit.contact.known;
+    if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
+    const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
+    test_.gate = campaign::ChooseGate(head, fit_);
+    const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
+    if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
+    const loop::ReversalGate& gate = test_.gate;
+    if (!is_gate_given && gate.gate > 0) {
+      test_.notes.push_back(fmt::format(
+          "excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
+          "says another",
+          gate.gate, head.size()));
+    }
+    campaign::TrackOptions options{
+        .fit = fit_,
+        .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
+        .together = options_.average,
+        .every = options_.every,
+        .threads = options_.threads};
+    Resume(options);
+    if (!gate.certain) {
+      test_.notes.push_back(fmt::format(
+          "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
+          "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
+          source, head.size(), gate.count, gate.gate, gate.other_count, gate.other_gate));
+    }
+    tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
+  }
+
+  void ReadFile(const std::string& file) {
+    io::RecordStream stream(file, options_.fit.columns);
+    BeginSource(stream.layout(), file);
+    io::Samples piece;
+    if (tracker_) {
+      stream.Next(piece);
+    } else {
+      piece = campaign::ReadHead(stream);
+      BeginFits(piece, file);
+    }
+    while (piece.size() > 0) {
+      test_.samples += piece.size();
+      times_.Shift(piece.time);
+      tracker_->Add(piece, piece.lines);
+      AskWhetherToGoOn();
+      if (!stream.Next(piece)) break;
+    }
+    if (options_.fit.join) {
+      times_.NextFile();
+    } else {
+      test_.unused_samples += tracker_->NextFile();
+      times_ = {};
+    }
+    const io::LeftOutRows left_out = stream.left_out();
+    if (left_out.count == 0) return;
+    const bool skips = options_.fit.columns.skip_broken_rows;
+    if (skips) test_.broken_rows += left_out.count;
+    test_.notes.push_back(
+        skips ? fmt::format("{}: {} broken row{} skipped, the first: {}", file, left_out.count,
+                            left_out.count == 1 ? "" : "s", left_out.fault)
+              : fmt::format("{}: {} rows have no number in a column that is used and are left out, "
+                            "the first in line {}",
+                            file, left_out.count, left_out.first_line));
+  }
+
+  /// Takes over what the table has already, where that is asked for.
+  void Resume(campaign::TrackOptions& made) {
+    made.seed = SeedOf(command_);
+    std::error_code error;
+    if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error)
+      return;
+    kept_ = ReadKeptCycles(options_.output, test_.is_torsional, [&](const CycleFit& fit) {
+      test_.energy.Add(fit);
+      test_.Add(fit);
+    });
+    test_.resumed = kept_->fits;
+    if (kept_->fits == 0) kept_.reset();
+    made.skipped = test_.resumed;
+  }
+
+  /// Opens the table behind what is kept of it.
+  void OpenTable() {
+    if (output_) return;
+    if (!continues_table()) {
+      throw InputError(
+          fmt::format("--resume: {} was made from another record or with other options, or what "
+                      "was read before "
+                      "its row {} was another: give those, another --output, or --overwrite",
+                      options_.output, kept_->fits));
+    }
+    has_write_failed_ = true;
+    output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
+    if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+  }
+
+  /// Appends the rows of a batch.
+  void Take(std::span<const CycleFit> fits) {
+    OpenTable();
+    has_write_failed_ = true;
+    std::string rows;
+    for (const CycleFit& fit : fits) {
+      test_.energy.Add(fit);
+      rows += campaign::CycleTableRow(fit, test_.energy.total(), test_.is_torsional);
+    }
+    output_->Append(rows);
+    for (const CycleFit& fit : fits) test_.Add(fit);
+    has_write_failed_ = false;
+  }
+
+  /// Reads and fits all cycles.
+  void Read() {
+    for (const std::string& file : options_.fit.files) ReadFile(file);
+    if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
+    tracker_->Finish();
+    if (kept_) OpenTable();  // also of a record that ends with it, or before
+    has_write_failed_ = true;
+    if (output_) output_->Finish();
+    has_write_failed_ = false;
+  }
+
   /// True if the table on disk, where there is one to go on with, is of this record and options.
   [[nodiscard]] bool continues_table() const {
     return !kept_ || tracker_->skipped_up_to() == kept_->checksum;
@@ -354,177 +508,8 @@ class TrackRun {
   std::optional<campaign::Tracker> tracker_;
   std::optional<KeptCycles> kept_;
   std::optional<io::AppendedFile> output_;
-  bool has_write_failed_ = false;               // or is at work
-  std::optional<io::DeferredSignals> signals_;  // while rows are written
+  bool has_write_failed_ = false;  // or is at work
 };
-
-void TrackRun::BeginSource(const io::RecordFile& layout, const std::string& name) {
-  test_.files.push_back(name);
-  if (!layout_) {
-    layout_ = layout;
-    layout_->record = {};
-    test_.is_torsional = layout.is_torsional;
-  }
-  test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
-  if (options_.fit.join) io::RequireJoinable(*layout_, test_.files.front(), layout, name);
-  if (layout.is_torsional == test_.is_torsional) return;
-  throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", test_.files.front(),
-                               test_.is_torsional ? "torque" : "force", name,
-                               layout.is_torsional ? "torque" : "force"));
-}
-
-void TrackRun::BeginFits(const loop::RecordView& head, std::string_view source) {
-  fit_ = MakeCycleFitOptions(options_.fit);
-  const contact::KnownContact& known = options_.fit.contact.known;
-  if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-  const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
-  test_.gate = campaign::ChooseGate(head, fit_);
-  const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
-  if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-  const loop::ReversalGate& gate = test_.gate;
-  if (!is_gate_given && gate.gate > 0) {
-    test_.notes.push_back(
-        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
-                    "says another",
-                    gate.gate, head.size()));
-  }
-  campaign::TrackOptions options{
-      .fit = fit_,
-      .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
-      .together = options_.average,
-      .every = options_.every,
-      .threads = options_.threads};
-  Resume(options);
-  if (!gate.certain) {
-    test_.notes.push_back(fmt::format(
-        "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
-        "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
-        source, head.size(), gate.count, gate.gate, gate.other_count, gate.other_gate));
-  }
-  tracker_.emplace(std::move(options), [this](std::span<const CycleFit> fits) { Take(fits); });
-}
-
-void TrackRun::ReadFile(const std::string& file) {
-  io::RecordStream stream(file, options_.fit.columns);
-  BeginSource(stream.layout(), file);
-  io::Samples piece;
-  if (tracker_) {
-    stream.Next(piece);
-  } else {
-    piece = campaign::ReadHead(stream);
-    BeginFits(piece, file);
-  }
-  while (piece.size() > 0) {
-    test_.samples += piece.size();
-    times_.Shift(piece.time);
-    tracker_->Add(piece, piece.lines);
-    AskWhetherToGoOn();
-    RequireNoSignal();
-    if (!stream.Next(piece)) break;
-  }
-  if (options_.fit.join) {
-    times_.NextFile();
-  } else {
-    test_.unused_samples += tracker_->NextFile();
-    times_ = {};
-  }
-  const io::LeftOutRows left_out = stream.left_out();
-  if (left_out.count == 0) return;
-  const bool skips = options_.fit.columns.skip_broken_rows;
-  if (skips) test_.broken_rows += left_out.count;
-  test_.notes.push_back(
-      skips ? fmt::format("{}: {} broken row{} skipped, the first: {}", file, left_out.count,
-                          left_out.count == 1 ? "" : "s", left_out.fault)
-            : fmt::format("{}: {} rows have no number in a column that is used and are left out, "
-                          "the first in line {}",
-                          file, left_out.count, left_out.first_line));
-}
-
-/// Takes over what the table has already, where that is asked for.
-void TrackRun::Resume(campaign::TrackOptions& made) {
-  made.seed = SeedOf(command_);
-  std::error_code error;
-  if (!options_.resume || std::filesystem::file_size(options_.output, error) == 0 || error) return;
-  kept_ = ReadKeptCycles(options_.output, test_.is_torsional, [&](const CycleFit& fit) {
-    test_.energy.Add(fit);
-    test_.Add(fit);
-  });
-  test_.resumed = kept_->fits;
-  if (kept_->fits == 0) kept_.reset();
-  made.skipped = test_.resumed;
-}
-
-/// Opens the table behind what is kept of it.
-void TrackRun::OpenTable() {
-  if (output_) return;
-  if (!continues_table()) {
-    throw InputError(fmt::format(
-        "--resume: {} was made from another record or with other options, or what was read before "
-        "its row {} was another: give those, another --output, or --overwrite",
-        options_.output, kept_->fits));
-  }
-  has_write_failed_ = true;
-  output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
-  if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
-}
-
-/// Appends the rows of a batch.
-void TrackRun::Take(std::span<const CycleFit> fits) {
-  OpenTable();
-  has_write_failed_ = true;
-  std::string rows;
-  for (const CycleFit& fit : fits) {
-    test_.energy.Add(fit);
-    rows += campaign::CycleTableRow(fit, test_.energy.total(), test_.is_torsional);
-  }
-  output_->Append(rows);
-  for (const CycleFit& fit : fits) test_.Add(fit);
-  has_write_failed_ = false;
-}
-
-/// Reads and fits all cycles.
-void TrackRun::Read() {
-  for (const std::string& file : options_.fit.files) ReadFile(file);
-  if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
-  tracker_->Finish();
-  if (kept_) OpenTable();  // also of a record that ends with it, or before
-  has_write_failed_ = true;
-  if (output_) output_->Finish();
-  has_write_failed_ = false;
-  RequireNoSignal();
-}
-
-TrackedTest TrackRun::Track() {
-  signals_.emplace();
-  try {
-    Read();
-  } catch (const InputError& error) {
-    // Finished rows are kept, unless they are another run's, or there are none.
-    const bool is_stopped = signals_->noted() != 0;
-    if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
-    if (!tracker_ || (!continues_table() && !is_stopped)) throw;
-    try {
-      if (!has_write_failed_) tracker_->Finish();
-      if (output_) output_->Finish();
-    } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
-    }
-    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
-                                 is_stopped ? "stopped by a signal" : error.what(), test_.fits,
-                                 options_.output, is_stopped ? "" : "repair the fault and "));
-  }
-  signals_.reset();
-  test_.cycles = tracker_->cycles();
-  test_.log = tracker_->log();
-  if (test_.cycles == 0) {
-    throw InputError(fmt::format(
-        "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
-        "another column with --displacement, or a smaller --reversal-gate",
-        fmt::join(test_.files, ", "), options_.average > 1 ? ", or fewer than --average says" : "",
-        test_.gate.count, test_.gate.gate));
-  }
-  test_.evolutions = test_.courses.Describe(test_.is_torsional);
-  return std::move(test_);
-}
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
   RequireDistinctFiles(options.fit.files);
@@ -577,9 +562,9 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   group.Add("--json", options->json_path, "summary as JSON; - for standard output alone", "PATH");
   group.Add("--report", options->report_path,
             "everything with its figures on one self-contained page of HTML", "PATH");
-  group.AddFlag("--resume", options->resume,
-                "continue an existing table, with the same files and options");
-  group.AddFlag("--overwrite", options->overwrite, "replace an existing table");
+  CLI::Option* const resume = group.AddFlag(
+      "--resume", options->resume, "continue an existing table, with the same files and options");
+  group.AddFlag("--overwrite", options->overwrite, "replace an existing table")->excludes(resume);
   OnRun(command, [options, &command, &console] { RunTrack(*options, command, console); });
 }
 

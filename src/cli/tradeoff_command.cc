@@ -78,12 +78,9 @@ constexpr std::array kScenes = {
 
 /// The contact of Peyret et al. (2017) §3.
 BranchLaw PaperContact() {
-  LawOptions law;
-  law.contact.friction_coefficient = 0.3;
-  law.contact.known = {.normal_load = contact::UncertainValue(100),
-                       .contact_radius = contact::UncertainValue(0.0027),
-                       .tangential_compliance = contact::UncertainValue(4.42e-11)};
-  return ResolveLaw(law);
+  return contact::MapMindlinToDahl({.contact_radius = 0.0027,
+                                    .tangential_compliance = 4.42e-11,
+                                    .slip_force = contact::GrossSlipForce(0.3, 100)});
 }
 
 std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
@@ -101,8 +98,8 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
         tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/true, made.points);
   };
   if (!request.path.empty()) {
-    const std::vector<double> displacement = io::ImposedColumn(
-        io::ReadCsvTable(request.path), io::Imposed::kDisplacement, request.column);
+    const std::vector<double> displacement =
+        io::ImposedDisplacement(io::ReadCsvTable(request.path), request.column);
     measure("path", request.path, {.displacement = displacement});
     return measured;
   }

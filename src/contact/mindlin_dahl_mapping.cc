@@ -31,14 +31,14 @@ void RequireKnown(std::string_view quantity, const std::optional<UncertainValue>
 }
 
 void RequireBody(const KnownBody& body, int number) {
-  RequireKnown(fmt::format("Young's modulus of body {} [Pa]", number), body.youngs_modulus);
+  RequireKnown(fmt::format("youngs_modulus_{} [Pa]", number), body.youngs_modulus);
   if (body.poisson_ratio) {
-    const std::string quantity = fmt::format("Poisson ratio of body {}", number);
+    const std::string quantity = fmt::format("poisson_{} [-]", number);
     RequirePoissonRatio(quantity, body.poisson_ratio->value);
     RequireStandardError(quantity, body.poisson_ratio->standard_error);
   }
   if (body.radius) {
-    const std::string quantity = fmt::format("radius of body {} [m]", number);
+    const std::string quantity = fmt::format("radius_{} [m]", number);
     RequireSurfaceRadius(quantity, body.radius->value);
     RequireStandardError(quantity, body.radius->standard_error);
     if (std::isinf(body.radius->value) && body.radius->standard_error > 0.0) {
@@ -80,15 +80,6 @@ double EquivalentRadiusOf(const KnownContact& known) {
 double HertzRadiusOf(const KnownContact& known) {
   return HertzContactRadius(known.normal_load.value(), EquivalentRadiusOf(known),
                             EffectiveModulusOf(known));
-}
-
-void RequireKnown(const KnownContact& known) {
-  RequireKnown("normal load [N]", known.normal_load);
-  RequireKnown("contact radius [m]", known.contact_radius);
-  RequireKnown("tangential compliance [1/Pa]", known.tangential_compliance);
-  RequireBody(known.body_1, 1);
-  RequireBody(known.body_2, 2);
-  if (KnowsRadii(known)) EquivalentRadiusOf(known);  // refuses two planes
 }
 
 /// Returns a quantity with the error that those of the inputs make in it.
@@ -236,6 +227,15 @@ std::string RadiusInputs(const KnownContact& known) {
 
 }  // namespace
 
+void Validate(const KnownContact& known) {
+  RequireKnown("normal load [N]", known.normal_load);
+  RequireKnown("contact radius [m]", known.contact_radius);
+  RequireKnown("compliance [1/Pa]", known.tangential_compliance);
+  RequireBody(known.body_1, 1);
+  RequireBody(known.body_2, 2);
+  if (KnowsRadii(known)) EquivalentRadiusOf(known);  // refuses two planes
+}
+
 std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity) {
   std::vector<std::string> missing;
   const bool needs_load = quantity == ContactQuantity::kFrictionCoefficient ||
@@ -270,8 +270,8 @@ std::optional<double> TangentialCompliance(const KnownContact& known) {
 
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient) {
-  RequireKnown(known);
-  RequireKnown("friction coefficient [-]", friction_coefficient);
+  Validate(known);
+  RequireKnown("friction [-]", friction_coefficient);
   const bool by_radius = known.contact_radius && known.tangential_compliance;
   const bool by_bodies = AreElastic(known) && KnowsRadii(known);
   if (!known.normal_load || by_radius == by_bodies) {
@@ -319,7 +319,7 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
                                               double slip_force, const KnownContact& known) {
   RequirePositive("tangential stiffness [N/m]", stiffness);
   RequirePositive("slip force [N]", slip_force);
-  RequireKnown(known);
+  Validate(known);
   const auto radius_of = [&](const KnownContact& at) {
     return at.contact_radius ? at.contact_radius->value : 0.125 * stiffness * ComplianceOf(at);
   };

@@ -11,8 +11,6 @@ namespace mindahl {
 // anew. Only that file includes headers of POSIX; instruction_sets.h has what compilers differ in.
 // Functions that return an error return errno's value, 0 where there is none.
 
-/// Writes past all buffers; a failure is ignored. A signal handler may call it.
-void WriteMessage(std::string_view text);
 /// Opens nothing in the place of a standard stream that whoever started the program had closed: the
 /// next file would get its number, and what is printed. Writing results fails then.
 void OccupyClosedStreams();
@@ -21,8 +19,6 @@ void OccupyClosedStreams();
 void KeepFreedMemory();
 /// Makes a file that may not grow an error of the write.
 void IgnoreFileSizeSignal();
-/// Ends the process without running anything that is registered for its end.
-[[noreturn]] void EndAtOnce(int status);
 int ProcessNumber();
 
 /// Returns the machine's memory [bytes], or the largest number where that is not known.
@@ -54,15 +50,8 @@ int CopyPermissions(const std::string& from, int file);
 void RemoveName(const char* name);
 
 /// Calls a handler once for each signal that ends the program by a person's or a system's wish,
-/// unless the program was started to ignore it; what waits for input is not resumed.
+/// unless the program was started to ignore it.
 void HandleEndingSignals(void (*handler)(int signal));
-/// Calls it once more for one of them.
-void HandleSignalAgain(int signal, void (*handler)(int signal));
-/// Calls a handler after about a second, and again whenever it asks for it.
-void CallEverySecond(void (*handler)(int));
-void CallInASecond();
-void EndBySignal(int signal);
-
 /// Holds what a program wrote.
 struct ProgramOutput {
   std::string output, messages;

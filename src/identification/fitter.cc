@@ -159,7 +159,7 @@ FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
 }  // namespace
 
 struct Fitter::State {
-  explicit State(FitOptions given) : options(std::move(given)) { RequireOptions(options); }
+  explicit State(FitOptions given) : options(std::move(given)) { Validate(options); }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
   /// Fits, and once more where the slip force runs away from what was measured.

@@ -22,8 +22,8 @@ void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t
   const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
   if (memory <= limits.memory) return;
   Refuse(
-      "{}: {} of it need about {} of memory, more than the {} that --max-memory leaves for it: fit "
-      "a part of the file, every n-th row, or each cycle with mindahl track; or allow more",
+      "{}: {} of it need about {} of memory, more than the {} that the process may have: fit a "
+      "part of the file, every n-th row, or each cycle with mindahl track; or allow more",
       name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory));
 }
 

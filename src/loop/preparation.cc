@@ -15,27 +15,6 @@
 namespace mindahl::loop {
 namespace {
 
-void RequireOptions(std::size_t records, const PreparationOptions& options) {
-  if (records == 0) throw InvalidArgument("there is no record: a fit needs at least one");
-  if (options.force_sense && *options.force_sense != 1 && *options.force_sense != -1) {
-    ThrowInvalid("force sign [-]", *options.force_sense, "must be +1 or -1");
-  }
-  for (const auto& [range, what] :
-       {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {
-    if (!range || (range->first >= 1 && range->first <= range->last)) continue;
-    throw InvalidArgument(fmt::format(
-        "{} {}:{} are invalid: they are counted from 1, and the first must not be the larger", what,
-        range->first, range->last));
-  }
-  if (options.displacement_noise) {
-    RequireNonNegative("displacement noise [m]", *options.displacement_noise);
-  }
-  if (options.reversal_gate) RequireNonNegative("reversal gate [m]", *options.reversal_gate);
-  if (!options.held_out.empty()) {
-    RequireSameSize("held-out masks", options.held_out.size(), "records", records);
-  }
-}
-
 /// Returns how far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n)
 /// standard deviations to either side, and must not make a reversal.
 double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& options) {
@@ -141,7 +120,9 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
   const RecordView& record = prepared.record;
   if (options.load_window) {
     if (record.normal_load.empty()) {
-      throw InvalidArgument("the load window needs a normal load in every record");
+      throw InvalidArgument(
+          "--select load=LO:HI needs a normal load in every record: name its column with "
+          "--normal-load-column");
     }
     for (std::size_t i = 0; i < record.size(); ++i) {
       const double load = record.normal_load[i];
@@ -164,10 +145,11 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
   }
   prepared.left_out = static_cast<std::size_t>(std::ranges::count(prepared.counts, 0));
   if (prepared.left_out == record.size()) {
-    throw InvalidArgument(fmt::format(
-        "nothing is left of record {}: {} samples lie outside the windows, in the cycles that "
-        "are skipped, are glitches, or are held out",
-        number + 1, prepared.left_out));
+    throw InvalidArgument(
+        fmt::format("nothing is left of record {}: {} samples lie outside what --select says, in "
+                    "the cycles that "
+                    "are skipped, are glitches, or are held out",
+                    number + 1, prepared.left_out));
   }
 }
 
@@ -185,8 +167,29 @@ std::size_t PreparedRecords::counted() const {
   return count;
 }
 
+void Validate(const PreparationOptions& options) {
+  if (options.force_sense && *options.force_sense != 1 && *options.force_sense != -1) {
+    ThrowInvalid("force sign [-]", *options.force_sense, "must be +1 or -1");
+  }
+  for (const auto& [range, what] :
+       {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {
+    if (!range || (range->first >= 1 && range->first <= range->last)) continue;
+    throw InvalidArgument(
+        fmt::format("--select {}: '{}:{}' is empty: the first number must not be the larger", what,
+                    range->first, range->last));
+  }
+  if (options.displacement_noise) {
+    RequireNonNegative("displacement noise [m]", *options.displacement_noise);
+  }
+  if (options.reversal_gate) RequireNonNegative("reversal gate [m]", *options.reversal_gate);
+}
+
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options) {
-  RequireOptions(records.size(), options);
+  if (records.empty()) throw InvalidArgument("there is no record: a fit needs at least one");
+  Validate(options);
+  if (!options.held_out.empty()) {
+    RequireSameSize("held-out masks", options.held_out.size(), "records", records.size());
+  }
   for (const RecordView& record : records) {
     Validate(record);
     if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");

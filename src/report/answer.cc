@@ -1,5 +1,3 @@
-#include "report/answer.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -177,11 +175,6 @@ class Writer {
     AddParameter("friction", "Tc", *slip_force, {friction}, std::move(after));
   }
 
-  [[nodiscard]] bool HasValue(std::string_view quantity) const {
-    const ContactQuantity* found = report_.Find(quantity);
-    return found != nullptr && found->value;
-  }
-
   void AddStiffness() {
     const ParameterEstimate* sigma = fit_.Find("sigma");
     std::vector<std::string> after;
@@ -190,8 +183,9 @@ class Writer {
           "maximum_pressure", "effective_modulus", "youngs_modulus"}) {
       // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
       const std::string_view key = name;
-      const bool is_said = (key == "compliance" && HasValue("contact_radius")) ||
-                           (key == "equivalent_radius" && HasValue("sigma_over_hertz_mindlin"));
+      const bool is_said =
+          (key == "compliance" && report_.ValueOf("contact_radius")) ||
+          (key == "equivalent_radius" && report_.ValueOf("sigma_over_hertz_mindlin"));
       if (is_said) continue;
       after.push_back(QuantityText(report_, name));
     }

@@ -402,10 +402,7 @@ const std::vector<Field>& Fields() {
       {"mapping.p_value", "-", "two-sided p-value of α = 1/3",
        Of<&Report::alpha, &AlphaTest::p_value>, kNotTested},
       {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)",
-       [](R report) {
-         const ContactQuantity* ratio = report.Find("sigma_over_hertz_mindlin");
-         return ratio != nullptr ? NumberOrNull(ratio->value) : Json();
-       },
+       [](R report) { return NumberOrNull(report.ValueOf("sigma_over_hertz_mindlin")); },
        "as of contact.sigma_over_hertz_mindlin; not of a torque"},
       {"terms.mode", "", "`none`, `auto` or `named`",
        [](R report) {

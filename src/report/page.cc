@@ -2,67 +2,158 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
-#include "report/answer.h"
+#include "io/drawing.h"
 #include "report/fields.h"
-#include "report/panels.h"
-#include "report/template.h"
+#include "report/html.h"
+#include "report/statements.h"
 
-// Makes the data of templates/fit.html.
 namespace mindahl::report {
+
+using identification::ParameterEstimate;
 
 namespace {
 
-Json LinesData(std::string_view caption, const std::vector<Line>& lines) {
-  Json rows = Json::array();
+std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) {
+  std::vector<TableLine> rows;
   for (const Line& line : lines) {
     if (line.label == "next" || line.label == "misfit") continue;  // they have places of their own
-    rows.push_back(LineData(line.label, {line.text}, CssClass(line.judgement)));
+    rows.push_back({line.label, {line.text}, Name(line.judgement)});
   }
-  return TableData(caption, {}, std::move(rows));
+  return TableHtml(caption, {}, rows);
 }
 
 /// Returns the command that takes the next step.
-Json NextData(const Report& report, const Provenance& provenance) {
-  if (!report.next) return nullptr;
+std::string NextHtml(const Report& report, const Provenance& provenance) {
+  if (!report.next) return "";
   const std::string command = provenance.command.empty() ? "mindahl fit FILE" : provenance.command;
-  return {{"text", NextStatement(report, *report.next) + ':'},
-          {"command", fmt::format("{} {}", command, report.next->options)}};
+  return SectionHtml("Next step",
+                     fmt::format("{}<pre><code>{} {}</code></pre>\n",
+                                 ParagraphHtml(NextStatement(report, *report.next) + ':'),
+                                 Prose(command), Prose(report.next->options)));
 }
 
-Json MeasuredData(const Report& report) {
-  Json rows = Json::array();
+std::string MeasuredHtml(const Report& report) {
+  std::vector<TableLine> rows;
   for (const char* section : {"measured.", "input."}) {
-    for (const auto& [name, value] : ValuesUnder(report, section)) {
-      rows.push_back(LineData(name, {value}));
-    }
+    for (const auto& [name, value] : ValuesUnder(report, section)) rows.push_back({name, {value}});
   }
-  return TableData("of the record, without a model", {}, std::move(rows));
+  return TableHtml("of the record, without a model", {}, rows);
+}
+
+struct Bar {
+  std::string_view symbol;
+  double value;
+  std::optional<double> lower;
+  std::optional<double> upper;
+  std::string_view unit;
+  Judgement judgement;
+  std::optional<double> mark = {};  ///< a value that theory gives
+};
+
+std::vector<Bar> BarsOf(const Report& report) {
+  std::vector<Bar> bars;
+  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
+    const ParameterEstimate& estimate = *report.fit.Find(name);
+    if (WhatIsShown(estimate) != Shown::kValue) return;
+    bars.push_back({symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
+                    JudgementOf(estimate), mark});
+  };
+  const ContactQuantity* friction = report.Find("friction_coefficient");
+  if (friction != nullptr && friction->value) {
+    bars.push_back({"μ", *friction->value, friction->lower, friction->upper, "-",
+                    JudgementOf(*report.fit.Find("slip_force"))});
+  } else {
+    add("Tc", "slip_force");
+  }
+  add("σ", "sigma");
+  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
+  return bars;
+}
+
+/// Returns friction (the slip force without a load), σ and α with their intervals as bars, α's with
+/// 1/3 marked. A bar is green only of what may be quoted. "" where none has a value.
+std::string IntervalsHtml(const Report& report) {
+  constexpr double kLeft = 40.0;
+  constexpr double kRight = 540.0;
+  constexpr int kRow = 50;  // [px] of one bar
+  std::string svg;
+  int top = 0;
+  for (const Bar& bar : BarsOf(report)) {
+    const double from = bar.lower.value_or(bar.value);
+    const double to = bar.upper.value_or(bar.value);
+    double least = std::min(from, bar.mark.value_or(from));
+    double greatest = std::max(to, bar.mark.value_or(to));
+    const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(bar.value);
+    least -= margin;
+    greatest += margin;
+    const auto x = [&](double value) {
+      return kLeft + (kRight - kLeft) * (value - least) / (greatest - least);
+    };
+    const double left = bar.lower ? x(*bar.lower) : kLeft;
+    const double right = bar.upper ? x(*bar.upper) : kRight;
+    const int middle = top + 31;
+    svg += fmt::format(
+        "<text x=\"8\" y=\"{}\">{}</text><text x=\"{:.0f}\" y=\"{}\">{}</text>"
+        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>",
+        middle + 5, bar.symbol, kLeft, top + 14,
+        io::HtmlText(QuantityWithInterval(bar.value, bar.lower, bar.upper, bar.unit)), kLeft,
+        middle, kRight);
+    svg += fmt::format(
+        "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
+        "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
+        Name(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
+        x(bar.value), middle - 9, middle + 9);
+    if (bar.mark) {
+      svg += fmt::format(
+          "<path class=\"mark\" d=\"M{:.1f} {}V{}\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
+          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
+    }
+    top += kRow;
+  }
+  if (svg.empty()) return "";
+  return FigureHtml(
+      {.id = "intervals",
+       .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
+       .text = "Green may be quoted; amber only with its interval."},
+      "", top, svg);
 }
 
 }  // namespace
 
 std::string ToPage(const Report& report, const Provenance& provenance) {
   const std::string word(VerdictWord(report));
-  Json data = {{"title", fmt::format("{}: {}", NameOf(report.files), word)},
-               {"fitted", nullptr},
-               {"provenance", ProvenanceData(provenance)}};
+  const std::string title = fmt::format("{}: {}", NameOf(report.files), word);
   if (report.failed()) {
-    data["verdict"] = VerdictData("bad", word, report.fit.solver.message);
-    return RenderPage("fit", data);
+    return PageHtml(
+        title, VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(provenance));
   }
-  data["verdict"] = VerdictData(CssClass(JudgementOf(word)), word, MisfitStatement(report));
-  const LoopPanels panels = DrawLoop(report);
-  data["fitted"] = {{"answer", LinesData("", AnswerLines(report))},
-                    {"intervals", DrawIntervals(report)},
-                    {"confidence", fmt::format("{:.4g} %", 100 * report.fit.confidence)},
-                    {"next", NextData(report, provenance)},
-                    {"loop", FigureData(panels.loop, "loop")},
-                    {"residual", FigureData(panels.residual, "residual")},
-                    {"details", LinesData("of the fit", DetailLines(report))},
-                    {"measured", MeasuredData(report)}};
-  return RenderPage("fit", data);
+  const io::Plot figure = ToPlot(report);
+  return PageHtml(
+      title,
+      fmt::format(
+          "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}{}",
+          VerdictHtml(Name(JudgementOf(word)), word, MisfitStatement(report)),
+          FigureHtml({.id = "loop",
+                      .title = "Measured and fitted loop",
+                      .text = "Below it, what the fit leaves over at the same place."},
+                     figure.panels[0]),
+          FigureHtml({.id = "residual",
+                      .title = "Residual",
+                      .text = "Fitted less measured over the same axis. A band without shape is "
+                              "noise.",
+                      .attributes = " class=\"hidden\"",
+                      .element = "p"},
+                     figure.panels[1]),
+          IntervalsHtml(report), NextHtml(report, provenance),
+          SectionHtml("Answer", LinesHtml("", AnswerLines(report))),
+          SectionHtml("Details", SideBySide(LinesHtml("of the fit", DetailLines(report)) +
+                                            MeasuredHtml(report))),
+          ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

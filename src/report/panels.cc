@@ -1,5 +1,3 @@
-#include "report/panels.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,39 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "io/drawing.h"
 #include "mindahl/io/csv_table.h"
-#include "mindahl/report/units.h"
-#include "report/answer.h"
-#include "report/template.h"
+#include "mindahl/report/report.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
-using identification::ParameterEstimate;
 using io::PlotPanel;
 using io::PlotSeries;
 using io::PlotStyle;
 
 namespace {
-
-struct PanelUnits {
-  ScaledUnit displacement;
-  ScaledUnit force;
-  ScaledUnit residual;
-};
-
-PanelUnits UnitsOf(const Report& report) {
-  double extent = 0.0;
-  double force = 0.0;
-  for (const identification::RecordFit& fit : report.fit.records) {
-    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
-    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
-  }
-  const ScaledUnit displacement = UnitFor(report.units.displacement, extent);
-  return {.displacement = displacement,
-          .force = UnitFor(report.units.force, force),
-          .residual = UnitFor(report.units.response, report.fit.residuals.max_abs)};
-}
 
 /// Names a record by its load where the records differ in it; "" of a record that is alone.
 std::string LabelOf(const Report& report, std::size_t r) {
@@ -58,20 +34,6 @@ bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t s
   return load >= window->lower && load <= window->upper;
 }
 
-/// @param y      of every sample of the record
-/// @param first  sample from which on it is drawn
-PlotSeries Series(const Report& report, std::size_t r, const ScaledUnit& unit_of_x,
-                  const std::vector<double>& x, const ScaledUnit& unit_of_y,
-                  const std::vector<double>& y, std::size_t first) {
-  PlotSeries series;
-  for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
-    if (!IsUnderLoad(report, report.records[r].record, i)) continue;
-    series.x.push_back(x[i] / unit_of_x.factor);
-    series.y.push_back(y[i] / unit_of_y.factor);
-  }
-  return series;
-}
-
 constexpr double kMeasuredShade = 0.0;  // apart from the two lines that are fitted
 constexpr std::size_t kMostNamed = 8;   // a legend of many files would be longer than the page
 
@@ -86,19 +48,27 @@ std::size_t FirstDrawn(const identification::RecordFit& fit) {
 
 }  // namespace
 
-LoopPanels DrawLoop(const Report& report) {
-  const PanelUnits units = UnitsOf(report);
+io::Plot ToPlot(const Report& report) {
+  RequireFitted(report, "a figure");
+  double extent = 0.0;
+  double force = 0.0;
+  for (const identification::RecordFit& fit : report.fit.records) {
+    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
+    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
+  }
+  const ScaledUnit unit_along = UnitFor(report.units.displacement, extent);
+  const ScaledUnit unit_of_force = UnitFor(report.units.force, force);
+  const ScaledUnit unit_of_residual = UnitFor(report.units.response, report.fit.residuals.max_abs);
   const bool is_torsional = report.is_torsional();
   const std::string along =
-      fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", units.displacement.name);
-  LoopPanels panels;
-  panels.loop = {
+      fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", unit_along.name);
+  PlotPanel measured = {
       .x_label = "",
-      .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", units.force.name),
+      .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", unit_of_force.name),
       .height = 1.2};
-  panels.residual = {.x_label = along,
-                     .y_label = fmt::format("fitted − measured [{}]", units.residual.name),
-                     .height = 0.45};
+  PlotPanel residual = {.x_label = along,
+                        .y_label = fmt::format("fitted − measured [{}]", unit_of_residual.name),
+                        .height = 0.45};
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
   for (std::size_t r = 0; r < records; ++r) {
@@ -110,20 +80,21 @@ LoopPanels DrawLoop(const Report& report) {
                          const std::vector<double>& x, const std::vector<double>& y,
                          const ScaledUnit& unit, std::optional<double> shade,
                          std::size_t first = 0) {
-      PlotSeries series = Series(report, r, units.displacement, x, unit, y, first);
-      if (series.x.empty()) return;
-      series.label = std::move(name);
-      series.style = style;
-      series.shade = shade;
-      to.push_back(std::move(series));
+      PlotSeries series{.label = std::move(name), .style = style, .shade = shade};
+      for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
+        if (!IsUnderLoad(report, record, i)) continue;
+        series.x.push_back(x[i] / unit_along.factor);
+        series.y.push_back(y[i] / unit.factor);
+      }
+      if (!series.x.empty()) to.push_back(std::move(series));
     };
     const std::optional<double> shade =
         records == 1 ? kMeasuredShade : static_cast<double>(r) / static_cast<double>(records - 1);
-    add(panels.loop.series,
+    add(measured.series,
         !is_named       ? ""
         : label.empty() ? "measured"
                         : label,
-        PlotStyle::kPoints, record.displacement, record.force, units.force, shade);
+        PlotStyle::kPoints, record.displacement, record.force, unit_of_force, shade);
     const std::vector<double>& along_fit =
         fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
     const std::size_t first = FirstDrawn(fit);
@@ -131,98 +102,17 @@ LoopPanels DrawLoop(const Report& report) {
         r > 0       ? ""
         : first > 0 ? "fitted, last cycle"
                     : "fitted",
-        PlotStyle::kLine, along_fit, fit.fitted_force, units.force, std::nullopt, first);
-    add(panels.residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual,
-        units.residual, shade);
+        PlotStyle::kLine, along_fit, fit.fitted_force, unit_of_force, std::nullopt, first);
+    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual,
+        unit_of_residual, shade);
     if (report.next && r < report.next->fitted_force.size()) {
       add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r], units.force, std::nullopt, first);
+          record.displacement, report.next->fitted_force[r], unit_of_force, std::nullopt, first);
     }
   }
-  panels.loop.series.insert(panels.loop.series.end(), lines.begin(), lines.end());
-  return panels;
-}
-
-namespace {
-
-struct Bar {
-  std::string_view symbol;
-  double value;
-  std::optional<double> lower;
-  std::optional<double> upper;
-  std::string_view unit;
-  Judgement judgement;
-  std::optional<double> mark = {};  ///< a value that theory gives
-};
-
-std::vector<Bar> BarsOf(const Report& report) {
-  std::vector<Bar> bars;
-  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
-    const ParameterEstimate& estimate = *report.fit.Find(name);
-    if (WhatIsShown(estimate) != Shown::kValue) return;
-    bars.push_back({symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
-                    JudgementOf(estimate), mark});
-  };
-  const ContactQuantity* friction = report.Find("friction_coefficient");
-  if (friction != nullptr && friction->value) {
-    bars.push_back({"μ", *friction->value, friction->lower, friction->upper, "-",
-                    JudgementOf(*report.fit.Find("slip_force"))});
-  } else {
-    add("Tc", "slip_force");
-  }
-  add("σ", "sigma");
-  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
-  return bars;
-}
-
-}  // namespace
-
-Json DrawIntervals(const Report& report) {
-  constexpr double kLeft = 40.0;
-  constexpr double kRight = 540.0;
-  constexpr int kRow = 50;  // [px] of one bar
-  std::string svg;
-  int top = 0;
-  for (const Bar& bar : BarsOf(report)) {
-    const double from = bar.lower.value_or(bar.value);
-    const double to = bar.upper.value_or(bar.value);
-    double least = std::min(from, bar.mark.value_or(from));
-    double greatest = std::max(to, bar.mark.value_or(to));
-    const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(bar.value);
-    least -= margin;
-    greatest += margin;
-    const auto x = [&](double value) {
-      return kLeft + (kRight - kLeft) * (value - least) / (greatest - least);
-    };
-    const double left = bar.lower ? x(*bar.lower) : kLeft;
-    const double right = bar.upper ? x(*bar.upper) : kRight;
-    const int middle = top + 31;
-    svg += fmt::format(
-        "<text x=\"8\" y=\"{}\">{}</text><text x=\"{:.0f}\" y=\"{}\">{}</text>"
-        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>",
-        middle + 5, bar.symbol, kLeft, top + 14,
-        io::HtmlText(QuantityWithInterval(bar.value, bar.lower, bar.upper, bar.unit)), kLeft,
-        middle, kRight);
-    svg += fmt::format(
-        "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
-        "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
-        CssClass(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
-        x(bar.value), middle - 9, middle + 9);
-    if (bar.mark) {
-      svg += fmt::format(
-          "<path class=\"mark\" d=\"M{:.1f} {}V{}\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
-          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
-    }
-    top += kRow;
-  }
-  return svg.empty() ? Json() : Json{{"elements", svg}, {"height", top}};
-}
-
-io::Plot ToPlot(const Report& report) {
-  RequireFitted(report, "a figure");
-  LoopPanels panels = DrawLoop(report);
+  measured.series.insert(measured.series.end(), lines.begin(), lines.end());
   return {.title = fmt::format("{}: {}", NameOf(report.files), VerdictWord(report)),
-          .panels = {std::move(panels.loop), std::move(panels.residual)}};
+          .panels = {std::move(measured), std::move(residual)}};
 }
 
 std::string ResidualsCsv(const Report& report) {

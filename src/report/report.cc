@@ -73,13 +73,10 @@ void CollectWarnings(Report& report) {
     report.warnings.push_back({std::string(finding.code), std::move(message)});
   }
   if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
-  const auto value = [&](std::string_view name) {
-    const ContactQuantity* quantity = report.Find(name);
-    return quantity != nullptr ? quantity->value : std::nullopt;
-  };
   if (report.is_torsional() || report.failed() || !report.check.empty()) return;
   for (const std::string& sentence :
-       contact::DoubtsAbout(report.known, value("friction_coefficient"), value("contact_radius"))) {
+       contact::DoubtsAbout(report.known, report.ValueOf("friction_coefficient"),
+                            report.ValueOf("contact_radius"))) {
     report.warnings.push_back({"contact_implausible", sentence});
   }
 }
@@ -185,6 +182,11 @@ std::string WhatToCheck(const Report& report) {
 const ContactQuantity* Report::Find(std::string_view quantity) const {
   const auto found = std::ranges::find(contact, quantity, &ContactQuantity::name);
   return found == contact.end() ? nullptr : &*found;
+}
+
+std::optional<double> Report::ValueOf(std::string_view quantity) const {
+  const ContactQuantity* found = Find(quantity);
+  return found == nullptr ? std::nullopt : found->value;
 }
 
 Report MakeReport(ReportInput input) {

@@ -1,15 +1,20 @@
 #include "report/statements.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "mindahl/core/error.h"
 
 namespace mindahl::report {
 
+using identification::Finding;
+using identification::FitResult;
 using identification::Identifiability;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
@@ -124,6 +129,131 @@ void RequireFitted(const Report& report, std::string_view what) {
   if (!report.failed()) return;
   throw InvalidArgument(fmt::format("a fit that failed has no curve and no residual for {}: {}",
                                     what, report.fit.solver.message));
+}
+
+namespace {
+
+/// Says a finding. Of a finding that has a kind the row "code.kind" goes before that of its code.
+/// Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
+struct SentenceRow {
+  std::string_view code;
+  std::string_view text;
+  std::string_view if_it_slides = {};  ///< instead, where the record shows a loop that slides
+};
+
+constexpr auto kSentences = std::to_array<SentenceRow>({
+    // about the record
+    {"reversals_uncertain",
+     "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
+     "--reversal-gate"},
+    {"glitches_left_out", "measurement faults are left out"},
+    {"path_too_long",
+     "the path is far longer than the strokes: noise is taken for motion; give --reversal-gate"},
+    {"no_closed_cycle",
+     "no cycle ends where it began: record one and a half or more of one amplitude"},
+    {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},
+    {"load_not_followed",
+     "the normal load varies by ±{variation%}, which this fit takes as constant: choose samples of "
+     "one load"},
+    // about the parameters
+    {"undetermined_parameter", "the record does not depend on it"},
+    {"undetermined_combination",
+     "only a combination of {parameters} is determined; fix one, or record a larger amplitude",
+     "only a combination of {parameters} is determined; fix one, or sample more densely after the "
+     "reversals"},
+    {"sigma_not_identifiable",
+     "{confidence} interval {lower:stiffness} … {upper:stiffness} is too wide{remedy}"},
+    {"alpha_not_identifiable.wide",
+     "{confidence} interval {lower:-} … {upper:-} is too wide{remedy}"},
+    {"alpha_not_identifiable", "only its ratio to the slip force is determined; fix one of them"},
+    {"slip_force_not_identifiable",
+     "{confidence} interval {lower:force} … {upper:force} is too wide{remedy}"},
+    {"asymmetry_not_identifiable", "the loop stays below slip"},
+    {"slip_force_bounded_below",
+     "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
+     "plan says how far)",
+     "the force keeps changing while the contact slides"},
+    {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
+    {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
+    {"few_places",
+     "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
+     "often"},
+    {"unknown_past",
+     "no cycle is closed, and the earlier loading is not known: record a whole cycle, or give "
+     "--initial-state virgin"},
+    {"shape_or_rig",
+     "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
+     "the rig, and give --rig-stiffness"},
+    {"prior_contradicted",
+     "the prior lies {distance} standard deviations from what the record says"},
+    // about the law and what it misses
+    {"law_undecided", "the other law fits as well"},
+    {"other_law_fits_better.dahl", "Dahl's own law fits better: --model dahl"},
+    {"other_law_fits_better", "Masing's law fits better: --model mindlin-dahl"},
+    {"loop_not_seen",
+     "no loop is seen: the fit explains {r_squared%} of the force's variance; are these the right "
+     "columns?"},
+    {"model_inadequate", "the law does not describe the record"},
+    // about the search
+    {"weights_not_settled", "the weights of the samples did not settle; try another --loss"},
+    {"fit_failed", "{message}"},
+});
+
+const SentenceRow* FindRow(std::string_view code) {
+  const auto row = std::ranges::find(kSentences, code, &SentenceRow::code);
+  return row == kSentences.end() ? nullptr : &*row;
+}
+
+/// Returns the unit of a placeholder: one of the report's, or itself.
+std::string_view UnitOf(std::string_view name, const Units& units) {
+  if (name == "force") return units.force;
+  if (name == "stiffness") return units.stiffness;
+  return name == "excitation" ? units.excitation : name;
+}
+
+std::string ValueOf(std::string_view place, const Finding& finding, const FitResult& fit,
+                    const Units& units) {
+  if (place == "parameters") return fmt::format("{}", fmt::join(finding.parameters, ", "));
+  if (place == "parameter") return finding.parameters.empty() ? "NAME" : finding.parameters.front();
+  if (place == "confidence") return fmt::format("{:.0f} %", 100 * fit.confidence);
+  if (place == "message") return fit.solver.message;
+  if (place == "remedy") {  // none of what the model misses
+    const bool is_noise = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
+    return is_noise ? "; more samples or less noise" : "";
+  }
+  const std::size_t colon = place.find(':');
+  const bool is_percent = place.ends_with('%');
+  const std::string_view name = place.substr(0, is_percent ? place.size() - 1 : colon);
+  const double number = finding.Number(name).value_or(std::numeric_limits<double>::quiet_NaN());
+  if (colon != std::string_view::npos) {
+    return Quantity(number, UnitOf(place.substr(colon + 1), units), 3);
+  }
+  if (is_percent) return PercentText(std::max(number, 0.0));
+  return number == std::round(number) ? fmt::format("{:.0f}", number)
+                                      : fmt::format("{:.2g}", number);
+}
+
+}  // namespace
+
+std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
+  const std::string_view code = finding.code;
+  const SentenceRow* row = FindRow(fmt::format("{}.{}", code, finding.kind));
+  if (row == nullptr) row = FindRow(code);
+  const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
+  std::string_view text = row == nullptr                         ? code
+                          : slides && !row->if_it_slides.empty() ? row->if_it_slides
+                                                                 : row->text;
+  std::string sentence;
+  if (const std::optional<double> record = finding.Number("record")) {
+    sentence = fmt::format("record {:.0f}: ", *record);
+  }
+  for (std::size_t open = text.find('{'); open != std::string_view::npos; open = text.find('{')) {
+    const std::size_t close = text.find('}', open);
+    sentence += text.substr(0, open);
+    sentence += ValueOf(text.substr(open + 1, close - open - 1), finding, fit, units);
+    text.remove_prefix(close + 1);
+  }
+  return sentence.append(text);
 }
 
 }  // namespace mindahl::report

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mindahl/report/report.h"
 
@@ -48,6 +49,9 @@ std::string_view VerdictWord(const Report& report);
 
 /// How good what is said is, for its colour.
 enum class Judgement { kNone, kGood, kPoor, kBad };
+template <>
+inline constexpr auto kNamesOf<Judgement> =  // classes of the page's style
+    std::to_array<std::string_view>({"plain", "good", "poor", "bad"});
 /// @param verdict  as VerdictWord()
 Judgement JudgementOf(std::string_view verdict);
 /// Returns kGood only of what may be quoted as it stands.
@@ -87,12 +91,30 @@ std::string NextStatement(const Report& report, const NextStep& next);
 std::string ChanceText(double p_value, int digits = 3);
 
 /// Describes a finding in at most some twenty words, without an end of line, naming no parameter:
-/// what was found and, where something can be done, what to do.
+/// what was found and, where something can be done, what to do; the code alone where it is unknown.
 std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
                      const Units& units = kUnitsOfForce);
 
-/// True if there is a sentence for findings of a code.
-bool HasSentence(std::string_view code);
+/// A line of the answer, which the text prints and the page shows.
+struct Line {
+  std::string label;  ///< "friction"
+  std::string text;
+  Judgement judgement = Judgement::kNone;  ///< kGood of what may be quoted
+};
+
+/// Returns the lines in their order: what to check, columns, assumptions of the reader, friction,
+/// stiffness, shape, load, terms, law, misfit, measured, left out, next, and what else a person
+/// should act on. A number stands in one line only, with its interval and no other uncertainty; a
+/// parameter that is not determined has a reason in place of a number; of an inadequate model only
+/// what is still known has a line.
+/// @param report  of a fit that did not fail
+std::vector<Line> AnswerLines(const Report& report);
+
+/// Returns what the answer leaves out.
+std::vector<Line> DetailLines(const Report& report);
+
+/// Says how far the model is from the record and what that means, as the line "misfit" does.
+std::string MisfitStatement(const Report& report);
 
 /// @throws InvalidArgument for a fit that failed: it has no curve to draw and no residual to list
 void RequireFitted(const Report& report, std::string_view what);

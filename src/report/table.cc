@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "mindahl/io/csv_table.h"
-#include "report/template.h"
+#include "report/html.h"
 
 namespace mindahl::report {
 
@@ -111,9 +111,9 @@ std::string TableCsv(const Json& rows) {
   return text;
 }
 
-Json TableData(std::string_view caption, const Json& rows) {
+std::string TableHtml(std::string_view caption, const Json& rows) {
   std::vector<std::string> names;
-  Json lines = Json::array();
+  std::vector<TableLine> lines;
   for (const Cells& cells : RowsOf(rows)) {
     std::vector<std::string> texts;
     for (const auto& [name, value] : cells) {
@@ -122,9 +122,9 @@ Json TableData(std::string_view caption, const Json& rows) {
     }
     const std::string head = std::exchange(texts.front(), "");
     texts.erase(texts.begin());
-    lines.push_back(LineData(head, texts));
+    lines.push_back({head, std::move(texts)});
   }
-  return TableData(caption, names, std::move(lines));
+  return TableHtml(caption, names, lines);
 }
 
 }  // namespace mindahl::report

@@ -20,7 +20,7 @@ std::string TableText(const Json& rows, int digits = 5);
 /// Returns the rows as CSV with every digit, nothing where a member is null.
 std::string TableCsv(const Json& rows);
 
-/// Returns what table.html shows of the rows, null of none.
-Json TableData(std::string_view caption, const Json& rows);
+/// Returns the rows as a table of a page; "" of none.
+std::string TableHtml(std::string_view caption, const Json& rows);
 
 }  // namespace mindahl::report

@@ -38,13 +38,6 @@ constexpr std::array<Prefix, 4> kStiffnesses = {{
     {1e9, "N/nm"},
 }};
 
-constexpr std::array<Prefix, 4> kCompliances = {{
-    {1e-9, "nm/N"},
-    {1e-6, "µm/N"},
-    {1e-3, "mm/N"},
-    {1.0, "m/N"},
-}};
-
 constexpr std::array<std::string_view, 6> kPrefixed = {"N", "m", "J", "Pa", "s", "rad"};
 
 const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
@@ -63,8 +56,8 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude) {
   const double size = std::abs(magnitude);
   if (unit == "-") return {1.0, ""};
   if (!(size > 0) || !std::isfinite(size)) return {1.0, std::string(unit)};
-  if (unit == "N/m" || unit == "m/N") {
-    const Prefix& suiting = Suiting(unit == "N/m" ? kStiffnesses : kCompliances, size);
+  if (unit == "N/m") {
+    const Prefix& suiting = Suiting(kStiffnesses, size);
     return {suiting.factor, std::string(suiting.name)};
   }
   // A prefix stands before a first letter that is a unit of one.

@@ -20,9 +20,9 @@
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "report/fields.h"
+#include "report/html.h"
 #include "report/statements.h"
 #include "report/table.h"
-#include "report/template.h"
 
 namespace mindahl::request {
 
@@ -294,27 +294,27 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
   const auto done =
       std::ranges::count_if(entries, [](const BatchEntry& entry) { return entry.fault.empty(); });
-  Json files = Json::array();
+  std::vector<report::TableLine> files;
   for (const BatchEntry& entry : entries) {
     std::vector<std::string> cells = {fmt::format("{}", files.size() + 1),
                                       entry.verdict.empty() ? kNone : entry.verdict};
     for (const std::string_view name : kParameters) cells.push_back(ParameterText(entry, name));
     cells.push_back(entry.fault);
-    files.push_back(report::LineData(
-        entry.file, cells,
-        entry.verdict.empty() ? "" : report::CssClass(report::JudgementOf(entry.verdict)),
-        Address(entry.page)));
+    files.push_back({entry.file, std::move(cells),
+                     entry.verdict.empty() ? "" : report::Name(report::JudgementOf(entry.verdict)),
+                     Address(entry.page)});
   }
-  return report::RenderPage(
-      "batch",
-      {{"title", fmt::format("{} of {} files fitted", done, entries.size())},
-       {"files", report::TableData(
-                     "one fit a file; only identified quantities have a number",
-                     {"file", "number", "verdict", "sigma", "alpha", "slip_force", "why not done"},
-                     std::move(files))},
-       {"repeats", report::TableData("over the fitted files in which the quantity is known",
-                                     RepeatRows(entries))},
-       {"provenance", report::ProvenanceData(provenance)}});
+  const std::string repeats = report::TableHtml(
+      "over the fitted files in which the quantity is known", RepeatRows(entries));
+  return report::PageHtml(
+      fmt::format("{} of {} files fitted", done, entries.size()),
+      report::SectionHtml(
+          "Files", report::TableHtml("one fit a file; only identified quantities have a number",
+                                     {"file", "number", "verdict", "sigma", "alpha", "slip_force",
+                                      "why not done"},
+                                     files)) +
+          report::SectionHtml("If these are repeats", repeats) +
+          report::ProvenanceHtml(provenance));
 }
 
 }  // namespace mindahl::request

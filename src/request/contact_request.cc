@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,39 +17,8 @@ using models::BranchLaw;
 
 namespace {
 
-void RequireBody(const KnownBody& body, int number) {
-  if (body.youngs_modulus) {
-    RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), body.youngs_modulus->value);
-  }
-  if (body.poisson_ratio && !(body.poisson_ratio->value > -1 && body.poisson_ratio->value <= 0.5)) {
-    ThrowInvalid(fmt::format("--poisson-{} [-]", number), body.poisson_ratio->value,
-                 "must be > -1 and <= 0.5");
-  }
-  if (!body.radius) return;
-  const auto [radius, uncertainty] = std::pair{body.radius->value, body.radius->standard_error};
-  if (std::isnan(radius) || radius == 0) {
-    ThrowInvalid(fmt::format("--radius-{} [m]", number), radius,
-                 "must be a number other than 0; inf is a plane");
-  }
-  if (std::isinf(radius) && uncertainty > 0) {
-    throw InputError(fmt::format(
-        "--radius-{}: the standard uncertainty {} of a plane is invalid: a plane is exact, write "
-        "{}",
-        number, uncertainty, radius));
-  }
-}
-
-void CollectMissing(const contact::KnownBody& body, int number, std::vector<std::string>& missing) {
-  if (!body.youngs_modulus) missing.push_back(fmt::format("--youngs-modulus-{}", number));
-  if (!body.poisson_ratio) missing.push_back(fmt::format("--poisson-{}", number));
-  if (!body.radius) missing.push_back(fmt::format("--radius-{}", number));
-}
-
-[[noreturn]] void ThrowMissing(const std::vector<std::string>& missing) {
-  throw InputError(fmt::format(
-      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
-      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
-      fmt::join(missing, ", ")));
+bool IsAnythingGiven(const KnownBody& body) {
+  return body.youngs_modulus || body.poisson_ratio || body.radius;
 }
 
 }  // namespace
@@ -72,49 +40,46 @@ void SetNormalLoads(ContactOptions& options, std::span<const UncertainValue> loa
 
 bool IsAnythingGiven(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
-  const auto body_given = [](const KnownBody& body) {
-    return body.youngs_modulus || body.poisson_ratio || body.radius;
-  };
   return options.friction_coefficient || known.normal_load || known.contact_radius ||
-         known.tangential_compliance || body_given(known.body_1) || body_given(known.body_2);
+         known.tangential_compliance || IsAnythingGiven(known.body_1) ||
+         IsAnythingGiven(known.body_2);
 }
 
 void Validate(const ContactOptions& options) {
-  const auto require_positive = [](const char* option, const std::optional<UncertainValue>& known) {
-    if (known) RequirePositive(option, known->value);
-  };
-  require_positive("--normal-load [N]", options.known.normal_load);
-  require_positive("--contact-radius [m]", options.known.contact_radius);
-  require_positive("--compliance [1/Pa]", options.known.tangential_compliance);
-  require_positive("--friction [-]", options.friction_coefficient);
-  RequireBody(options.known.body_1, 1);
-  RequireBody(options.known.body_2, 2);
+  contact::Validate(options.known);
+  if (options.friction_coefficient) {
+    RequirePositive("friction [-]", options.friction_coefficient->value);
+  }
 }
 
 contact::PredictedContact ResolveContact(const ContactOptions& options) {
   const contact::KnownContact& known = options.known;
   std::vector<std::string> missing;
-  if (!options.friction_coefficient) missing.emplace_back("--friction");
-  if (!known.normal_load) missing.emplace_back("--normal-load");
-  const bool by_radius = known.contact_radius || known.tangential_compliance;
-  std::vector<std::string> missing_bodies;
-  CollectMissing(known.body_1, 1, missing_bodies);
-  CollectMissing(known.body_2, 2, missing_bodies);
-  constexpr std::size_t kBodyOptions = 6;
-  if (by_radius && missing_bodies.size() < kBodyOptions) {
-    throw InputError(
-        "a contact is described either by --contact-radius with --compliance or by the materials "
-        "and radii of its bodies: give one of the two");
-  }
-  if (by_radius) {
-    if (!known.contact_radius) missing.emplace_back("--contact-radius");
-    if (!known.tangential_compliance) missing.emplace_back("--compliance");
+  const auto need = [&](bool is_given, std::string option) {
+    if (!is_given) missing.push_back(std::move(option));
+  };
+  need(options.friction_coefficient.has_value(), "--friction");
+  need(known.normal_load.has_value(), "--normal-load");
+  if (known.contact_radius || known.tangential_compliance) {
+    if (IsAnythingGiven(known.body_1) || IsAnythingGiven(known.body_2)) {
+      throw InputError(
+          "a contact is described either by --contact-radius with --compliance or by the materials "
+          "and radii of its bodies: give one of the two");
+    }
+    need(known.contact_radius.has_value(), "--contact-radius");
+    need(known.tangential_compliance.has_value(), "--compliance");
   } else {
-    missing.insert(missing.end(), missing_bodies.begin(), missing_bodies.end());
+    for (const auto& [body, number] : {std::pair(&known.body_1, 1), {&known.body_2, 2}}) {
+      need(body->youngs_modulus.has_value(), fmt::format("--youngs-modulus-{}", number));
+      need(body->poisson_ratio.has_value(), fmt::format("--poisson-{}", number));
+      need(body->radius.has_value(), fmt::format("--radius-{}", number));
+    }
   }
-  if (!options.friction_coefficient || !missing.empty()) ThrowMissing(missing);
-
-  return contact::PredictContact(known, *options.friction_coefficient);
+  if (missing.empty()) return contact::PredictContact(known, options.friction_coefficient.value());
+  throw InputError(fmt::format(
+      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
+      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
+      fmt::join(missing, ", ")));
 }
 
 bool IsAnythingGiven(const LawRequest& request) {

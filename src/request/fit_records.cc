@@ -30,6 +30,7 @@ using identification::Identifiability;
 using identification::Interval;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
+using identification::TermSelection;
 using io::RecordFile;
 using loop::Record;
 
@@ -63,45 +64,40 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
                   what, half_range, unit));
 }
 
+const report::Units& UnitsOf(const RecordFile& input) {
+  return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+}
+
+[[noreturn]] void ThrowConstant(const std::string& file, const RecordFile& input,
+                                const io::ChosenColumn& column, double value, std::string_view what,
+                                std::string_view unit, std::string_view need) {
+  throw InputError(
+      fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
+                  "choose another column with --{}",
+                  PlaceOf(file, input, column, 0), what, value, unit, need, what));
+}
+
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   bool is_loaded = false;
-  std::size_t samples = 0;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
     const std::string& file = request.files[r];
-    const bool torsional = input.is_torsional;
-    samples += record.size();
+    const report::Units& units = UnitsOf(input);
     if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
-                           torsional ? "rad" : "m") > 0)) {
-      throw InputError(fmt::format(
-          "{}: the displacement never changes, it is {} {} in every row: a fit needs a moving "
-          "contact; choose another column with --displacement",
-          PlaceOf(file, input, input.displacement, 0), record.displacement.front(),
-          torsional ? "rad" : "m"));
+                           units.displacement) > 0)) {
+      ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
+                    units.displacement, "moving");
     }
     if (input.time && !record.time.empty()) {
       RequireHalfRange(file, input, *input.time, record.time, "time", "s");
     }
-    is_loaded = RequireHalfRange(file, input, input.force, record.force, "force",
-                                 torsional ? "N m" : "N") > 0 ||
-                is_loaded;
+    is_loaded |= RequireHalfRange(file, input, input.force, record.force, "force", units.force) > 0;
   }
   const RecordFile& first = inputs.front();
   if (!is_loaded) {
-    throw InputError(fmt::format(
-        "{}: the force never changes, it is {} {} in every row: a fit needs a loaded contact; "
-        "choose another column with --force",
-        PlaceOf(request.files.front(), first, first.force, 0), first.record.force.front(),
-        first.is_torsional ? "N m" : "N"));
-  }
-  constexpr std::size_t kLeast = 3;  // as many as the law has parameters
-  if (samples < kLeast && request.fit.fixed.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} samples are too few: a fit needs more samples than free parameters; record more",
-        PlaceOf(request.files.back(), inputs.back(), inputs.back().force,
-                inputs.back().record.size() - 1),
-        samples));
+    ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
+                  UnitsOf(first).force, "loaded");
   }
 }
 
@@ -118,8 +114,8 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
     widest = std::max(widest, greatest - least);
   }
   if (*gate < widest) return;
-  const bool is_torsional = inputs.front().is_torsional;
-  const char* unit = is_forced ? (is_torsional ? "N m" : "N") : (is_torsional ? "rad" : "m");
+  const report::Units& units = UnitsOf(inputs.front());
+  const std::string_view unit = is_forced ? units.force : units.displacement;
   throw InputError(fmt::format(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
       "give a smaller gate, in {}",
@@ -187,31 +183,6 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
   return left_out;
 }
 
-/// Refuses a load window without a load column, or without samples, before the fit refuses it with
-/// a message of its own.
-void RequireLoads(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  const std::optional<Interval>& window = request.fit.preparation.load_window;
-  if (!window) return;
-  for (std::size_t r = 0; r < inputs.size(); ++r) {
-    const std::vector<double>& load = inputs[r].record.normal_load;
-    if (load.empty()) {
-      throw InputError(
-          fmt::format("{}: --select load=LO:HI needs a normal load: name its column with "
-                      "--normal-load-column",
-                      request.files[r]));
-    }
-    const auto lies_outside = [&](double value) {
-      return value < window->lower || value > window->upper;
-    };
-    if (!std::ranges::all_of(load, lies_outside)) continue;
-    const auto [least, greatest] = std::ranges::minmax(load);
-    throw InputError(
-        fmt::format("{}: --select load={}:{} holds no sample: the normal load runs from {:.6g} to "
-                    "{:.6g} N",
-                    request.files[r], window->lower, window->upper, least, greatest));
-  }
-}
-
 void RequireLoadsOfRecords(const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == request.files.size()) return;
@@ -231,33 +202,23 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
   }
 }
 
-/// A fit with the options that it has in the end.
-struct AskedFit {
-  FitOptions options;
-  identification::FitResult fit = {};
-  std::optional<identification::TermSelection> terms = {};  // where they are chosen
-};
-
 /// Fits the options' law with the terms that are named or, where asked for, chosen.
-AskedFit FitLaw(const FitRequest& request, const FitOptions& options,
-                std::span<const Record> records, bool chooses_terms, Depth depth = Depth::kFull) {
-  AskedFit asked{.options = options};
+TermSelection FitLaw(const FitRequest& request, const FitOptions& options,
+                     std::span<const Record> records, bool chooses_terms,
+                     Depth depth = Depth::kFull) {
   std::vector<std::string> named = NamedTerms(request);
   std::erase_if(named, [](const std::string& name) {
     return identification::FindTermGroup(name) == nullptr;
   });
-  if (options.response() == loop::Channel::kForce && (chooses_terms || !named.empty())) {
-    const std::vector<loop::RecordView> views(records.begin(), records.end());
-    identification::TermSelection selected =
-        chooses_terms ? identification::SelectTerms(views, options, depth)
-                      : identification::FitNamedTerms(views, options, named, depth);
-    asked.options = selected.options;
-    asked.fit = std::move(selected.fit);
-    if (chooses_terms) asked.terms = std::move(selected);
-    return asked;
+  if (options.response() != loop::Channel::kForce || (!chooses_terms && named.empty())) {
+    TermSelection law_alone;
+    law_alone.options = options;
+    law_alone.fit = identification::Fit(records, options, depth);
+    return law_alone;
   }
-  asked.fit = identification::Fit(records, options, depth);
-  return asked;
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  return chooses_terms ? identification::SelectTerms(views, options, depth)
+                       : identification::FitNamedTerms(views, options, named, depth);
 }
 
 /// Takes back a preference for the law that the program did not choose.
@@ -274,16 +235,16 @@ bool WithdrawPreference(FitResult& fit) {
 
 /// Makes the requested fit; with `--model auto` by Masing's law or, where the record supports it,
 /// by Dahl's own. Terms are chosen for the law that is better without them.
-AskedFit FitAsked(const FitRequest& request, const FitOptions& options,
-                  std::span<const Record> records) {
+TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
+                       std::span<const Record> records) {
   const bool chooses_terms = ChoosesTerms(request);
   if (request.fit.model != nullptr) return FitLaw(request, options, records, chooses_terms);
-  AskedFit asked = FitLaw(request, options, records, /*chooses_terms=*/false);
+  TermSelection asked = FitLaw(request, options, records, /*chooses_terms=*/false);
   const auto& choice = asked.fit.law_choice;
   if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
-    AskedFit other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
+    TermSelection other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
     if (other.fit.converged) {
       asked = std::move(other);
     } else {
@@ -439,7 +400,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
   columns.covariates = MakeFitOptions(request).covariates;
   std::vector<RecordFile> inputs;
-  io::ReadLimits left{.memory = request.max_memory.value_or(MemoryOfProcess())};
+  io::ReadLimits left{.memory = MemoryOfProcess()};
   for (const std::string& file : request.files) {
     RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
     const std::size_t rows = input.record.size();
@@ -470,7 +431,6 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);
-  RequireLoads(request, inputs);
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
@@ -482,7 +442,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  AskedFit asked{.options = options};
+  TermSelection asked;
   std::vector<identification::ModelScore> compared;
   try {
     if (request.compare) compared = identification::CompareModels(records, options);
@@ -494,16 +454,17 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
   UseMeasuredNormalLoad(known, asked.fit, records.front(), notes);
-  return report::MakeReport({.files = std::move(names),
-                             .records = std::move(inputs),
-                             .fit = std::move(asked.fit),
-                             .options = asked.options,
-                             .known = known,
-                             .left_out = std::move(left_out),
-                             .notes = std::move(notes),
-                             .compared = std::move(compared),
-                             .terms = std::move(asked.terms),
-                             .next = std::move(next)});
+  return report::MakeReport(
+      {.files = std::move(names),
+       .records = std::move(inputs),
+       .fit = std::move(asked.fit),
+       .options = asked.options,
+       .known = known,
+       .left_out = std::move(left_out),
+       .notes = std::move(notes),
+       .compared = std::move(compared),
+       .terms = ChoosesTerms(request) ? std::optional(std::move(asked)) : std::nullopt,
+       .next = std::move(next)});
 }
 
 }  // namespace mindahl::request

@@ -28,18 +28,6 @@ constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
   throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
 }
 
-void RequireOrdered(std::string_view option, double lower, double upper) {
-  if (lower < upper) return;
-  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must be the smaller", option,
-                               lower, upper));
-}
-
-void RequireCounts(std::string_view option, const std::optional<loop::CountRange>& range) {
-  if (!range || (range->first >= 1 && range->first <= range->last)) return;
-  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must not be the larger",
-                               option, range->first, range->last));
-}
-
 /// Fits the terms of a group that are not given.
 void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   for (const std::string_view name : group.terms) {
@@ -54,22 +42,7 @@ void AddCompanionsOfFixed(FitOptions& fit) {
   for (const auto& [name, value] : fit.fixed) {
     const Term* term = identification::FindTerm(name);
     if (term == nullptr || (term->needs.empty() && term->shapes.empty())) continue;
-    const auto groups = identification::TermGroups();
-    const auto group = std::ranges::find_if(groups, [&](const identification::TermGroup& each) {
-      return std::ranges::find(each.terms, name) != each.terms.end();
-    });
-    AddGroup(*group, fit);
-  }
-}
-
-/// @throws InputError where a column is given twice
-void RequireDistinctColumns(const FitOptions& fit) {
-  std::vector<std::string> names;
-  for (const std::string& column : fit.covariates) {
-    std::string name = identification::NameOfCovariate(column);
-    if (column.empty()) throw InputError("--covariate: '' is no column: give its name or number");
-    if (std::ranges::find(names, name) != names.end()) ThrowTwice("--covariate", column);
-    names.push_back(std::move(name));
+    AddGroup(*identification::FindTermGroup(term->group), fit);
   }
 }
 
@@ -96,41 +69,13 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
     if (name == kAutomatic || name == kNoTerms) {
       throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
     }
-    if ((name == kDriftOfDisplacement) == is_of_force) {
-      throw InputError(fmt::format("--terms {}: {}", name,
-                                   is_of_force ? "it is a term of a fit with --noise-in "
-                                                 "displacement: give force_drift"
-                                               : "with --noise-in displacement displacement_drift "
-                                                 "alone is a term: leave it out"));
-    }
-    if (!is_of_force) {
+    if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {
       AddGroup(*group, fit);
     } else {
       AddColumn(name, fit);
     }
-  }
-}
-
-void RequireOptionsOfDisplacement(const FitRequest& request) {
-  constexpr std::string_view kOfForce = "it needs a fit of the force; leave one of the two out";
-  constexpr const char* kRig = "rig_stiffness";
-  const bool has_rig = request.fit.fixed.contains(kRig) ||
-                       std::ranges::find(request.fit.terms, kRig) != request.fit.terms.end();
-  for (const auto& [is_given, option, why] :
-       {std::tuple(has_rig, "--rig-stiffness", kOfForce),
-        {!request.fit.covariates.empty(), "--covariate", kOfForce},
-        {ChoosesTerms(request), "--terms auto", kOfForce},
-        {request.compare, "--compare", kOfForce},
-        {request.fit.force_noise.has_value(), "--force-noise",
-         "the force is taken as exact; give --displacement-noise"}}) {
-    if (!is_given) continue;
-    throw InputError(
-        fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
-  }
-  if (const auto& noise = request.fit.preparation.displacement_noise) {
-    RequirePositive("--displacement-noise [m]", *noise);
   }
 }
 
@@ -185,32 +130,19 @@ std::vector<std::string> NamedTerms(const FitRequest& request) {
 FitOptions MakeFitOptions(const FitRequest& request) {
   FitOptions fit = request.fit;
   if (fit.model == nullptr) fit.model = FitOptions().model;
-  if (fit.response() == loop::Channel::kDisplacement) RequireOptionsOfDisplacement(request);
+  if (fit.response() == loop::Channel::kDisplacement &&
+      (ChoosesTerms(request) || request.compare)) {
+    throw InputError(
+        fmt::format("{} cannot be combined with --noise-in displacement: it needs a fit of the "
+                    "force; leave one of the two out",
+                    request.compare ? "--compare" : "--terms auto"));
+  }
   for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
-  const loop::PreparationOptions& preparation = fit.preparation;
-  for (const auto& [option, window] : {std::pair("--select load", preparation.load_window),
-                                       {"--select time", request.time_window}}) {
-    if (window) RequireOrdered(option, window->lower, window->upper);
-  }
-  RequireCounts("--select cycles", preparation.cycles);
-  RequireCounts("--select samples", preparation.samples);
-  for (const auto& [option, size] :
-       {std::pair("--displacement-noise [m]", preparation.displacement_noise),
-        {"--reversal-gate [m]", preparation.reversal_gate}}) {
-    if (size) RequireNonNegative(option, *size);
-  }
-  if (fit.force_noise) RequirePositive("--force-noise [N]", *fit.force_noise);
-  if (!(fit.confidence > 0 && fit.confidence < 1)) {
-    ThrowInvalid("--confidence [-]", fit.confidence, "must be between 0 and 1, as 0.95");
-  }
   ApplyTerms(request, fit);
   AddCompanionsOfFixed(fit);
-  RequireDistinctColumns(fit);
-  for (const auto& [name, interval] : fit.bounds) {
-    RequireOrdered("--bound", interval.lower, interval.upper);
-  }
+  Validate(fit);
   for (const auto& [name, value] : request.fit.priors) RequireFitted("--prior", name, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, fit);
   for (const auto& [name, interval] : fit.bounds) RequireFitted("--bound", name, fit);

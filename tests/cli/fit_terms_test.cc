@@ -5,6 +5,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
@@ -148,7 +149,17 @@ TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
 }
 
 TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
-  const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  testing::History displacement;
+  for (const Sample& sample : loop) displacement.push_back(sample.displacement);
+  testing::History force(loop.size());
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin");
+  models::EvaluateForce(
+      model, {.tangential_stiffness = kSigma, .slip_force = kSlipForce},
+      models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), model.memory,
+                              {.asymmetry = 0.2}),
+      displacement, force);
+  for (std::size_t i = 0; i < loop.size(); ++i) loop[i].force = force[i];
   const json fit = Fit(loop, {"--terms", "asymmetry"});
   ExpectContact(fit, kNoiseFree);
   EXPECT_NEAR(Value(fit, "asymmetry"), 0.2, kNoiseFree);
@@ -232,9 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"LoadWindowUpsideDown",
                {"--load-window", "5:4"},
                "'5:4' is empty: the first number must be the smaller"},
-        Misuse{"LoadWindowWithoutSamples",
-               {"--select", "load=5:6"},
-               "--select load=5:6 holds no sample: the normal load runs from 100 to 100 N"},
+        Misuse{
+            "LoadWindowWithoutSamples", {"--select", "load=5:6"}, "lie outside what --select says"},
         Misuse{"LagBeyondTheRecord", {"--fix", "lag=1e6"}, "nothing is left of record 1"},
         Misuse{"AsymmetryOfOneSense",
                {"--fix", "asymmetry=1"},
@@ -254,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(
                "--covariate: 'much' is not a number: write COL[=C|fit], e.g. pressure=50"},
         Misuse{"CovariateTwice",
                {"--covariate", "normal", "--covariate", "normal=3"},
-               "--covariate: 'normal' is given twice: give it once"},
+               "is chosen twice as a covariate: choose it once"},
         Misuse{"CovariateThatIsNoColumn",
                {"--covariate", "pressure"},
                "no column is called 'pressure' (for the covariate): the columns are"},
@@ -286,8 +296,8 @@ TEST(FitCommand, LoadWindowWithoutALoadNamesTheColumnOption) {
   EXPECT_EQ(outcome.status, cli::kBadInput);
   ASSERT_THAT(outcome.Errors(), SizeIs(1));
   EXPECT_THAT(outcome.Errors()[0],
-              HasSubstr("--select load=LO:HI needs a normal load: name its column "
-                        "with --normal-load-column"));
+              HasSubstr("--select load=LO:HI needs a normal load in every record: name its "
+                        "column with --normal-load-column"));
 }
 
 TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {

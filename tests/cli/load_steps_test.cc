@@ -2,6 +2,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "mindahl/models/variable_load.h"
 #include "support/prelude.h"
 
 // fit: one file under several constant loads.
@@ -24,18 +25,17 @@ class LoadStepsOfFit : public ::testing::Test {
   /// The exact response of elements in parallel, so that the contact keeps what it has of each
   /// load.
   std::string Simulate(std::size_t cycles, const std::function<double(double)>& load_at) {
-    std::string path = "x [m],load [N]\n";
+    models::LoadedContactState contact(
+        {.friction_coefficient = kFriction, .reference_load = 50, .reference_stiffness = kSigma},
+        {.normal_load = load_at(0)});
+    std::string rows = "displacement [m],force [N],normal load [N]\n";
     for (std::size_t i = 0; i <= cycles * kCycle; ++i) {
       const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
-      path += fmt::format("{},{}\n", kAmplitude * std::sin(2 * std::numbers::pi * cycle),
+      const double displacement = kAmplitude * std::sin(2 * std::numbers::pi * cycle);
+      rows += fmt::format("{},{},{}\n", displacement, contact.Move(displacement, load_at(cycle)),
                           load_at(cycle));
     }
-    const std::string name = (directory_.path() / "series.csv").string();
-    const Outcome outcome = RunCommand(
-        {"simulate", "--path", directory_.Write("path.csv", path).string(), "--normal-load-column",
-         "load", "--normal-load", "50", "--sigma", "4e7", "--slip-force", "20", "-o", name});
-    EXPECT_EQ(outcome.status, kDone) << outcome.err;
-    return name;
+    return directory_.Write("series.csv", rows).string();
   }
 
   static json Fit(Words files, const Words& more = {}) {

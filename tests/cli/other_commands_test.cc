@@ -96,35 +96,6 @@ TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
       ElementsAre(0.004, -0.001));
 }
 
-TEST(Simulate, OfAJointIsItsStateTimesTheTorqueOfEitherSign) {
-  const TemporaryDirectory directory;
-  const std::string path =
-      directory.Write("joint.csv", "angle [mrad],torque [N m]\n1000,-2\n1000,4\n3000,0\n").string();
-  const Columns columns = Simulate({"--model", "dahl", "--alpha", "1", "--sigma", "3",
-                                    "--slip-force", "3", "--path", path, "--normal-load-column",
-                                    "torque", "--normal-load", "2", "--asymmetry", "0.5"});
-  // T = Tc·(|N|z + A·N·z²)/N̄ with z = 1 − e^(−δ), whatever the torque was in between.
-  const double z = 1 - std::exp(-1.0);
-  EXPECT_NEAR(columns.force[0], 3 * (z - 0.5 * z * z), kRounding);
-  EXPECT_NEAR(columns.force[1], 3 * (2 * z + z * z), kRounding);
-  EXPECT_EQ(columns.force[2], 0.0);
-}
-
-TEST(Simulate, ForcePathGivesTheDisplacementThatMakesTheForce) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("forces.csv", "F [mN]\n700\n-400\n0\n700\n").string();
-  const Columns columns = Simulate({"--sigma", "2", "--slip-force", "1", "--force-path", path});
-  EXPECT_THAT(columns.time, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(columns.force, ElementsAre(0.7, -0.4, 0, 0.7));
-  // Eqs 6, 8 and 9 with δc = 3Tc/(2σ).
-  const auto virgin = [](double t) { return 0.75 * (1 - std::pow(1 - t, 2.0 / 3)); };
-  const double lowest = virgin(0.7) - 2 * virgin(0.55);
-  EXPECT_NEAR(columns.displacement[0], virgin(0.7), kRounding);
-  EXPECT_NEAR(columns.displacement[1], lowest, kRounding);
-  EXPECT_NEAR(columns.displacement[2], lowest + 2 * virgin(0.2), kRounding);
-  EXPECT_NEAR(columns.displacement[3], virgin(0.7), kRounding) << "return-point memory";
-}
-
 TEST(Simulate, RandomWaveformIsThatOfItsSeed) {
   const auto with_seed = [](const char* seed) {
     return Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "2", "--waveform",

@@ -1,6 +1,5 @@
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
-#include "mindahl/models/friction_model.h"
 #include "support/prelude.h"
 
 // These tests read a path from a file and simulate its loop with noise, rows and headers.
@@ -12,9 +11,8 @@ using Words = std::vector<std::string>;
 class SimulateFile : public ::testing::Test {
  protected:
   Outcome Simulated(const std::string& rows, Words words) {
-    const bool is_force = rows.starts_with("F");
-    words.insert(words.begin(), {"simulate", is_force ? "--force-path" : "--path",
-                                 directory_.Write("path.csv", rows).string()});
+    words.insert(words.begin(),
+                 {"simulate", "--path", directory_.Write("path.csv", rows).string()});
     return RunCommand(words);
   }
   /// Returns a column of what is written.
@@ -34,72 +32,6 @@ class SimulateFile : public ::testing::Test {
 
   TemporaryDirectory directory_;
 };
-
-const std::string kPath = "x [um],N [N]\n0,50\n1,60\n3,70\n2,50\n-1,40\n0.5,50\n";
-
-TEST_F(SimulateFile, UnderALoadNeedsBothParametersOrAContact) {
-  const Words load = {"--normal-load-column", "N", "--normal-load", "50"};
-  const auto with = [&](Words more) {
-    more.insert(more.end(), load.begin(), load.end());
-    return more;
-  };
-  const std::vector<double> by_parameters =
-      Force(kPath, with({"--sigma", "4e7", "--slip-force", "40"}));
-  // The law's load is that of the reference: one of its parameters alone is no contact.
-  EXPECT_THAT(Simulated(kPath, with({"--sigma", "4e7"})).err, HasSubstr("--slip-force missing"));
-  EXPECT_THAT(Simulated(kPath, with({"--slip-force", "40"})).err, HasSubstr("--sigma missing"));
-  // The same contact by its radius: σ = 8a/G* = 4e7 N/m, Tc = μN = 40 N at 50 N.
-  const std::vector<double> by_contact = Force(
-      kPath, with({"--friction", "0.8", "--contact-radius", "2e-4", "--compliance", "4e-11"}));
-  EXPECT_THAT(by_contact, ::testing::Pointwise(::testing::DoubleNear(1e-9), by_parameters));
-}
-
-TEST_F(SimulateFile, UnderAConstantLoadIsThatOfTheLawAtThisLoad) {
-  const std::string even = "x [um],N [N]\n0,100\n1,100\n3,100\n-1,100\n";
-  const std::vector<double> loaded = Force(
-      even,
-      {"--sigma", "4e7", "--slip-force", "40", "--normal-load-column", "N", "--normal-load", "50"});
-  // Twice the load: twice the slip force, σ as the cube root.
-  const std::vector<double> constant =
-      Force(even, {"--sigma", fmt::format("{}", 4e7 * std::cbrt(2.0)), "--slip-force", "80"});
-  EXPECT_THAT(loaded, ::testing::Pointwise(::testing::DoubleNear(1e-9), constant));
-}
-
-TEST_F(SimulateFile, OfAnImposedForceMovesAJenkinsElementByItsSpring) {
-  const Words jenkins = {"--model", "jenkins", "--sigma", "4e7", "--slip-force", "40"};
-  const std::vector<double> moved = Column(1, "F [N]\n0\n5\n-5\n30\n", jenkins);
-  ASSERT_THAT(moved, SizeIs(4));
-  const std::array force = {0.0, 5.0, -5.0, 30.0};
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(moved[i], force[i] / 4e7, 1e-20) << i;
-  EXPECT_THAT(Simulated("F [N]\n0\n39\n40\n", jenkins).err,
-              HasSubstr("path.csv:4: a force of 40 N"));
-  EXPECT_THAT(Simulated("F [N]\n0\n-41\n39\n", jenkins).err,
-              HasSubstr("path.csv:3: a force of -41 N"));
-  for (const auto& [option, value] :
-       {std::pair("--model", "simplified-dahl"), {"--method", "dopri5"}}) {
-    EXPECT_THAT(
-        Simulated("F [N]\n0\n5\n", {"--sigma", "4e7", "--slip-force", "40", option, value}).err,
-        HasSubstr("--force-path cannot be used with"));
-  }
-}
-
-TEST_F(SimulateFile, OfAnAsymmetrySlidesAtAnotherForceEachWay) {
-  const auto with = [](Words more) {
-    more.insert(more.begin(), {"--model", "jenkins", "--sigma", "4e7", "--slip-force", "40"});
-    return more;
-  };
-  // 1 µm of slip: 40·(1 ± 0.25) N at 3 µm upwards and at −1 µm downwards.
-  const std::vector<double> force = Force(kPath, with({"--asymmetry", "0.25"}));
-  EXPECT_NEAR(force[2], 50.0, 1e-9);
-  EXPECT_NEAR(force[4], -30.0, 1e-9);
-  EXPECT_THAT(Simulated(kPath, with({"--asymmetry", "1"})).err, HasSubstr("--asymmetry [-]"));
-  EXPECT_THAT(Simulated(kPath, with({"--asymmetry", "0.25", "--normal-load-column", "N",
-                                     "--normal-load", "50"}))
-                  .err,
-              HasSubstr("--asymmetry cannot be used with --normal-load-column"));
-  EXPECT_THAT(Simulated("F [N]\n0\n5\n", with({"--asymmetry", "0.25"})).err,
-              HasSubstr("--asymmetry cannot be used with --force-path"));
-}
 
 TEST_F(SimulateFile, AddsNoiseOfTheDeviationsThatAreAsked) {
   std::string rows = "x [um]\n";

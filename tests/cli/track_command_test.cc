@@ -406,7 +406,7 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
         Case{{record_, "--covariate", "1"}, "--covariate"},
         Case{{record_, "--terms", "asymmetry"}, "--terms asymmetry is not available in track"},
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
-        Case{{record_, "--resume", "--overwrite"}, "contradict"},
+        Case{{record_, "--resume", "--overwrite"}, "--resume excludes --overwrite"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
         Case{{Path("nowhere.csv")}, "nowhere.csv"}}) {
     std::vector<std::string> words = {"track"};

@@ -51,8 +51,6 @@ struct Refusal {
 };
 
 TEST(SimulateMethod, RefusesOptionsWithoutEffectNamingTheRemedy) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("path.csv", "x [m],load [N]\n1,10\n").string();
   for (const Refusal& refusal : {
            Refusal{{"--steps", "3", "--amplitude", "1"}, "choose another method"},
            Refusal{{"--method", "table", "--tolerance", "1e-3", "--amplitude", "1"},
@@ -63,10 +61,6 @@ TEST(SimulateMethod, RefusesOptionsWithoutEffectNamingTheRemedy) {
            Refusal{{"--method", "table", "--model", "spring", "--amplitude", "1"},
                    "cannot compute --model spring"},
            Refusal{{"--method", "leapfrog", "--amplitude", "1"}, "leapfrog"},
-           Refusal{{"--path", path, "--normal-load-column", "load"}, "--normal-load missing"},
-           Refusal{{"--path", path, "--normal-load-column", "load", "--normal-load", "1", "--model",
-                    "simplified-dahl"},
-                   "cannot be used with --model simplified-dahl"},
        }) {
     Words words = {"simulate", "--sigma", "1", "--slip-force", "1"};
     words.insert(words.end(), refusal.words.begin(), refusal.words.end());

@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::array kTargets = {Target{"csv", &ReadRecords, 4096},
                                  Target{"units", &LookUpUnits, 64},
-                                 Target{"toml", &ReadConfigurations, 4096},
                                  Target{"reversals", &FindTurns, 1024},
                                  Target{"models", &EvaluateModels, 1024},
                                  Target{"contact_state", &MoveContacts, 1024},

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/toml.h"
 #include "fuzz/bytes.h"
 #include "fuzz/memory_file.h"
 #include "mindahl/core/error.h"
@@ -124,19 +123,6 @@ void LookUpUnits(Input input) {
     Require(again && again->ToSi(1) == unit->ToSi(1), "a unit is found by its own symbol");
   }
   IsPressureUnit(symbol);
-}
-
-void ReadConfigurations(Input input) {
-  const std::string text = Bytes(input).Text();
-  try {
-    std::size_t line = 0;
-    for (const cli::TomlItem& item : cli::ReadToml(text, "fuzz")) {
-      Require(item.line > line || item.line == line, "items are in order");
-      line = item.line;
-    }
-  } catch (const InputError& error) {
-    Require(std::string_view(error.what()).starts_with("fuzz:"), "a message names file and line");
-  }
 }
 
 }  // namespace mindahl::fuzz

@@ -10,7 +10,5 @@ void ReadRecords(Input input);
 void ReadEncodedRecords(Input input);
 /// Looks up units by any symbol.
 void LookUpUnits(Input input);
-/// Reads the TOML of --config.
-void ReadConfigurations(Input input);
 
 }  // namespace mindahl::fuzz

@@ -71,7 +71,7 @@ TEST(EdgeRecords, AForceNoiseWhoseSquareIsNoNumberIsRefused) {
   FitOptions options;
   options.force_noise = 1e160;
   EXPECT_THAT(RefusalOf(loop, options),
-              HasSubstr("force noise [N] = 1e+160 is invalid: must be below 1e100 times"));
+              HasSubstr("force_noise [N] = 1e+160 is invalid: must be below 1e100 times"));
   for (const double noise : {1e-300, 1e99}) {
     options.force_noise = noise;
     ExpectNumbersOrNone(Fit(loop, options));

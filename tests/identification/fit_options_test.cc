@@ -26,7 +26,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
       {[](FitOptions& o) { o.preparation.force_sense = 2; },
        "force sign [-] = 2 is invalid: must be +1 or -1"},
       {[](FitOptions& o) { o.force_noise = 0; },
-       "force noise [N] = 0 is invalid: must be finite and > 0"},
+       "force_noise [N] = 0 is invalid: must be finite and > 0"},
       {[](FitOptions& o) { o.preparation.reversal_gate = -1; },
        "reversal gate [m] = -1 is invalid: must be finite and >= 0"},
       {[](FitOptions& o) { o.max_iterations = 0; },

@@ -168,7 +168,9 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
             "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0");
   options = {};
   options.preparation.load_window = {90.0, 110.0};
-  EXPECT_EQ(RefusalOf({Loop()}, options), "the load window needs a normal load in every record");
+  EXPECT_EQ(RefusalOf({Loop()}, options),
+            "--select load=LO:HI needs a normal load in every record: name its column with "
+            "--normal-load-column");
   Record loaded = Loop();
   loaded.normal_load.assign(loaded.size(), 200.0);
   EXPECT_THAT(RefusalOf({loaded}, options), HasSubstr("nothing is left of record 1"));

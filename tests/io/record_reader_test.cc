@@ -261,23 +261,19 @@ TEST(Covariates, ThatCannotBeAreRefusedByName) {
             "covariate");
 }
 
-TEST(ImposedColumn, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
-  const auto column = [](const std::string& text, Imposed quantity = Imposed::kDisplacement,
-                         const std::string& choice = {}) {
+TEST(ImposedDisplacement, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
+  const auto column = [](const std::string& text, const std::string& choice = {}) {
     const TemporaryDirectory directory;
-    return ImposedColumn(ReadCsvTable(directory.Write("path.csv", text)), quantity, choice);
+    return ImposedDisplacement(ReadCsvTable(directory.Write("path.csv", text)), choice);
   };
   EXPECT_EQ(column("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
             (Numbers{0.1, 0.1, -0.30000000000000004, 0}));
   EXPECT_EQ(column("1e-6\n-1e-6"), (Numbers{1e-6, -1e-6})) << "without a header";
   EXPECT_EQ(column("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{0.5, 0.25}));
   EXPECT_EQ(column("x [um]\n3\n-7\n"), (Numbers{3e-6, -7e-6}));
-  EXPECT_EQ(column("a,b\n1,3\n2,-7\n", Imposed::kDisplacement, "b [mm]"), (Numbers{3e-3, -7e-3}));
-  EXPECT_EQ(column("F [kN],x\n1,2\n\n3,4\n", Imposed::kForce), (Numbers{1000, 3000}));
+  EXPECT_EQ(column("a,b\n1,3\n2,-7\n", "b [mm]"), (Numbers{3e-3, -7e-3}));
   const std::string timed = "t [s],x [mm],F [N],normal [kN]\n0,2,7,1\n1,4,8,2\n";
   EXPECT_EQ(column(timed), (Numbers{2e-3, 4e-3})) << "past a time";
-  EXPECT_EQ(column(timed, Imposed::kForce, "[mN]"), (Numbers{0.007, 0.008}));
-  EXPECT_EQ(column(timed, Imposed::kNormalLoad, "normal"), (Numbers{1e3, 2e3}));
   EXPECT_EQ(column("force [N],x [m]\n1,2\n"), (Numbers{2})) << "past a force";
   EXPECT_THROW(column("force [N],remark\n1,2\n"), InputError);
 }

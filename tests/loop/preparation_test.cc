@@ -99,15 +99,13 @@ TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
             "cycles 5:6 contain nothing of record 1: it has 4 cycles that are begun, 3 complete");
   cycles.cycles = {0, 2};
   EXPECT_EQ(RefusalOf(cycles),
-            "cycles 0:2 are invalid: they are counted from 1, and the first must not be the "
-            "larger");
+            "--select cycles: '0:2' is empty: the first number must not be the larger");
   PreparationOptions samples;
   samples.samples = {302, 400};
   EXPECT_EQ(RefusalOf(samples), "samples 302:400 contain nothing of record 1: it has 301 samples");
   samples.samples = {7, 6};
   EXPECT_EQ(RefusalOf(samples),
-            "samples 7:6 are invalid: they are counted from 1, and the first must not be the "
-            "larger");
+            "--select samples: '7:6' is empty: the first number must not be the larger");
 }
 
 TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {

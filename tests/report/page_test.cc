@@ -1,7 +1,6 @@
 #include "mindahl/report/page.h"
 
 #include "report/made_report.h"
-#include "report/panels.h"
 #include "support/prelude.h"
 
 namespace mindahl::report::page_test {
@@ -60,33 +59,33 @@ TEST(Page, HasTheCommandOfTheNextStep) {
               HasSubstr("mindahl fit a.csv <span class=\"option\">--terms</span> lag"));
 }
 
-TEST(DrawLoop, PutsTheResidualOverTheSameAxis) {
-  const LoopPanels panels = DrawLoop(MakeReport(MadeInput()));
-  ASSERT_EQ(panels.loop.series.size(), 2U);
-  EXPECT_EQ(panels.loop.series[0].x, panels.residual.series[0].x);
-  EXPECT_NEAR(panels.loop.series[0].x[0], 2.0, 1e-12);  // µm
-  EXPECT_NEAR(panels.residual.series[0].y[8], 1.0, 1e-12);
+TEST(ToPlot, PutsTheResidualOverTheSameAxis) {
+  const io::Plot plot = ToPlot(MakeReport(MadeInput()));
+  ASSERT_EQ(plot.panels[0].series.size(), 2U);
+  EXPECT_EQ(plot.panels[0].series[0].x, plot.panels[1].series[0].x);
+  EXPECT_NEAR(plot.panels[0].series[0].x[0], 2.0, 1e-12);  // µm
+  EXPECT_NEAR(plot.panels[1].series[0].y[8], 1.0, 1e-12);
 }
 
-TEST(DrawLoop, CallsRecordsOfASeriesByTheirLoads) {
+TEST(ToPlot, CallsRecordsOfASeriesByTheirLoads) {
   ReportInput input = testing::MadeInput({MadeRecord(2e-6), MadeRecord(2e-6)}, 2e-6);
-  EXPECT_EQ(DrawLoop(MakeReport(input)).loop.series[1].label, "loop_2.csv");
+  EXPECT_EQ(ToPlot(MakeReport(input)).panels[0].series[1].label, "loop_2.csv");
   input.fit.parameters.push_back(testing::MadeParameter("load_exponent", "-", 0.33, 0.01));
   input.fit.correlation.assign(16, 0.0);
   input.fit.normal_load = 30.0;
   input.fit.records[0].normal_load = 20.0;
   input.fit.records[1].normal_load = 40.0;
-  const LoopPanels panels = DrawLoop(MakeReport(input));
-  EXPECT_EQ(panels.loop.series[0].label, "20 N");
-  EXPECT_EQ(panels.loop.series[1].label, "40 N");
+  const io::Plot plot = ToPlot(MakeReport(input));
+  EXPECT_EQ(plot.panels[0].series[0].label, "20 N");
+  EXPECT_EQ(plot.panels[0].series[1].label, "40 N");
 }
 
-TEST(DrawLoop, ShowsTheFitOfTheNextStep) {
+TEST(ToPlot, ShowsTheFitOfTheNextStep) {
   ReportInput input = MadeInput();
   input.next = {.text = "", .options = "--terms lag", .misfit_before = 0.2, .misfit_after = 0.1};
   input.next->fitted_force = {input.fit.records[0].fitted_force};
-  const LoopPanels panels = DrawLoop(MakeReport(std::move(input)));
-  EXPECT_EQ(panels.loop.series.back().label, "fitted with --terms lag");
+  const io::Plot plot = ToPlot(MakeReport(std::move(input)));
+  EXPECT_EQ(plot.panels[0].series.back().label, "fitted with --terms lag");
 }
 
 }  // namespace

@@ -92,23 +92,6 @@ TEST(FitRecords, RefusesAForceBesideATorque) {
             "a.csv holds a force and b.csv a torque: fit them apart");
 }
 
-TEST(FitRecords, RefusesALoadWindowThatHoldsNoSample) {
-  io::RecordFile file = LoopFile();
-  for (std::size_t i = 0; i <= 100; ++i) file.record.normal_load.push_back(i < 50 ? 80 : 120);
-  FitRequest request;
-  request.fit.preparation.load_window = {90, 110};
-  EXPECT_EQ(RefusalOf({file}, request),
-            "a.csv: --select load=90:110 holds no sample: the normal load runs from 80 to 120 N");
-  request.fit.preparation.load_window = {121, 130};
-  EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
-  request.fit.preparation.load_window = {60, 79};
-  EXPECT_THAT(RefusalOf({file}, request), HasSubstr("holds no sample"));
-  request.fit.preparation.load_window = {60, 80};
-  EXPECT_THAT(RefusalOf({file}, request), Not(HasSubstr("holds no sample")));
-  EXPECT_THAT(RefusalOf({LoopFile()}, request),
-              HasSubstr("--select load=LO:HI needs a normal load"));
-}
-
 TEST(FitRecords, RefusesLoadsThatAreNeitherOneNorOneAFile) {
   FitRequest request;
   request.contact.normal_loads = {{50.0, 0.0}, {60.0, 0.0}};

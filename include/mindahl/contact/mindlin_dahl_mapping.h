@@ -55,6 +55,11 @@ struct KnownContact {
   std::optional<UncertainValue> tangential_compliance = std::nullopt;  ///< G* [1/Pa], finite, > 0
 };
 
+/// Refuses values that no contact has, and two planes; what is missing is no fault. Messages call
+/// E, ν and R of the bodies youngs_modulus_1, poisson_1, radius_1 and so on.
+/// @throws InvalidArgument naming the quantity, its value and the rule
+void Validate(const KnownContact& known);
+
 /// Holds what materials and radii, or contact radius and compliance, predict under a load.
 struct PredictedContact {
   std::optional<UncertainValue> effective_modulus;  ///< E* [Pa]; of materials

@@ -92,4 +92,8 @@ struct FitOptions {
   }
 };
 
+/// Refuses options that break a rule whatever the records are.
+/// @throws InvalidArgument naming the option, its value and the rule
+void Validate(const FitOptions& options);
+
 }  // namespace mindahl::identification

@@ -19,29 +19,9 @@ namespace mindahl::io {
 /// it returns, which takes some milliseconds.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
-/// Removes the files that this module has begun and not yet finished; allocates nothing. For a
-/// program that is about to end.
-void RemoveTemporaryFiles();
-
 /// For a program: from now on SIGINT, SIGTERM and SIGHUP, unless they are ignored, remove the files
 /// that this module has begun and not yet finished, and then end the program as they would have.
 void RemoveTemporaryFilesOnSignals();
-
-/// While one exists, the first of these signals does not end the program but is noted, for a run to
-/// end in order; a second one ends it. Without RemoveTemporaryFilesOnSignals() it has no effect.
-class DeferredSignals {
- public:
-  DeferredSignals();
-  ~DeferredSignals();
-  DeferredSignals(const DeferredSignals&) = delete;
-  DeferredSignals& operator=(const DeferredSignals&) = delete;
-
-  /// Returns the signal that was noted, or 0.
-  [[nodiscard]] int noted() const;
-};
-
-/// Ends the program as a signal that was noted would have; does nothing where there was none.
-void RaiseNotedSignal();
 
 class OutputFile;
 

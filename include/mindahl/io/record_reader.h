@@ -127,16 +127,12 @@ void RequireJoinable(const RecordFile& first, const std::string& first_name, con
 /// @throws InputError where one has a time, a load or a torque and another has not
 RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names);
 
-/// Names what a path to impose has a column of.
-enum class Imposed { kDisplacement, kForce, kNormalLoad };
-
-/// Returns what is to be imposed, one value a row, in order: displacements [m] or [rad], forces [N]
-/// or normal loads [N]; in SI units the very doubles of the file.
+/// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very
+/// doubles of the file.
 /// @param column  by default the first, or, where that is another channel by its name, the one of a
 ///   recognised name; unit as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()
-std::vector<double> ImposedColumn(const CsvTable& table, Imposed quantity,
-                                  const std::string& column = {});
+std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column = {});
 
 /// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
 /// note of how many.

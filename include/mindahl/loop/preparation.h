@@ -108,11 +108,16 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
+/// Refuses options that break a rule whatever the records are.
+/// @throws InvalidArgument naming the option, its value and the rule
+void Validate(const PreparationOptions& options);
+
 /// Finds glitches - spikes, dropouts and held values, which do not count and make no history -,
 /// reversals, sign of force, smoothing and the mask of samples that count: what
 /// depends on no model.
 /// @param records  not empty; their memory must outlive the result
-/// @throws InvalidArgument for records or options that break a rule, where a record has no normal
+/// @throws InvalidArgument as Validate(), for records that break a rule, where a record has no
+/// normal
 ///   load for a window, has no cycle or sample of those asked for, or nothing is left of one
 /// Nothing else is allocated unless a displacement is smoothed.
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options);

@@ -51,8 +51,7 @@ struct ReportInput {
   std::vector<std::string> notes = {};  ///< what was assumed of the records, one sentence each
   std::vector<identification::ModelScore> compared = {};    ///< if models were compared
   std::optional<identification::TermSelection> terms = {};  ///< if terms were chosen
-  /// The best step that was tried; empty where none was. One that helps by less than a tenth is not
-  /// reported.
+  /// The best step that was tried; empty where none helps by a tenth.
   std::optional<NextStep> next = {};
 };
 
@@ -72,6 +71,8 @@ struct Report : ReportInput {
   [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
   /// Returns nullptr where the contact has no such quantity.
   [[nodiscard]] const ContactQuantity* Find(std::string_view quantity) const;
+  /// Returns its value; empty where it has none.
+  [[nodiscard]] std::optional<double> ValueOf(std::string_view quantity) const;
 };
 
 /// Makes a report from a fit. A fit of no more samples than free parameters determines none of

@@ -27,8 +27,7 @@ void SetNormalLoads(ContactOptions& options, std::span<const contact::UncertainV
 /// True if any of it was given.
 bool IsAnythingGiven(const ContactOptions& options);
 
-/// @throws InvalidArgument naming the option, its value and the rule; InputError for a plane with
-/// an uncertain radius
+/// @throws InvalidArgument naming the option, its value and the rule
 void Validate(const ContactOptions& options);
 
 /// Predicts a contact that is described by friction and normal load with either contact radius and

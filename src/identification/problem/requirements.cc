@@ -84,14 +84,15 @@ double StiffnessOfLoop(const loop::PreparedRecord& record, double sense, double 
 
 }  // namespace
 
-void RequireOptions(const FitOptions& options) {
+void Validate(const FitOptions& options) {
   if (options.model == nullptr || options.model->scaled_by_peak) {
     throw InvalidArgument("the model cannot be fitted: its amplitude must be given");
   }
-  if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
+  if (options.force_noise) RequirePositive("force_noise [N]", *options.force_noise);
   if (!(options.confidence > 0 && options.confidence < 1)) {
-    ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1");
+    ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
   }
+  loop::Validate(options.preparation);
   RequireTermsOfResponse(options);
   if (options.model->memory == models::Memory::kNone && HasTerm(options, TermId::kAsymmetry) &&
       HasTerm(options, TermId::kRigStiffness)) {
@@ -123,7 +124,7 @@ void RequireRecords(const FitOptions& options, const ScaledRecords& data) {
   constexpr double kLargest = 1e100;  // in half ranges of the force
   const std::optional<double> noise = options.response_noise();
   if (!noise || *noise / data.response_unit() < kLargest) return;
-  ThrowInvalid(is_forced ? "displacement noise [m]" : "force noise [N]", *noise,
+  ThrowInvalid(is_forced ? "displacement noise [m]" : "force_noise [N]", *noise,
                fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
                            is_forced ? "displacement" : "force", data.response_unit(),
                            is_forced ? "m" : "N"));

@@ -8,9 +8,6 @@
 /// TooFewSamples, naming the parameter, its value and the rule.
 namespace mindahl::identification {
 
-/// Refuses options that break a rule whatever the records are.
-void RequireOptions(const FitOptions& options);
-
 /// Refuses initial states that are neither none nor one a record, loads that differ or vary in a
 /// fit of the displacement, which is that of one load, and noise of which squares overflow.
 void RequireRecords(const FitOptions& options, const ScaledRecords& data);

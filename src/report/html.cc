@@ -1,0 +1,171 @@
+#include "report/html.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+
+#include "io/drawing.h"
+#include "mindahl/core/version.h"
+#include "report/style.h"
+
+namespace mindahl::report {
+
+namespace {
+
+bool IsLetter(char character) { return std::isalnum(static_cast<unsigned char>(character)) != 0; }
+
+bool StartsWithDigit(std::string_view text) {
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
+}
+
+constexpr int kWidth = 560;  // [px] of a figure
+
+}  // namespace
+
+std::string Prose(std::string_view text) {
+  std::string html;
+  std::size_t said = 0;
+  const auto say_until = [&](std::size_t end) {
+    html += io::HtmlText(text.substr(said, end - said));
+    said = end;
+  };
+  const bool is_name = text.find(' ') == std::string_view::npos;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text.substr(at, 2) == "--") {
+      std::size_t end = at + 2;
+      while (end < text.size() && (IsLetter(text[end]) || text[end] == '-')) ++end;
+      if (end > at + 2 && IsLetter(text[at + 2]) && (at == 0 || !IsLetter(text[at - 1]))) {
+        say_until(at);
+        html += "<span class=\"option\">";
+        say_until(end);
+        html += "</span>";
+      }
+      at = end - 1;
+    } else if (is_name && (text[at] == '_' || text[at] == '.') && at + 1 < text.size() &&
+               !StartsWithDigit(text.substr(at + 1))) {
+      say_until(at + 1);
+      html += "<wbr>";
+    }
+  }
+  say_until(text.size());
+  return html;
+}
+
+std::string PageHtml(std::string_view title, std::string_view body) {
+  return fmt::format(R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="mindahl">
+<link rel="icon" href="data:,">
+<title>{}</title>
+<style>
+{}</style>
+</head>
+<body>
+<header><h1>{}</h1></header>
+<main>
+{}</main>
+</body>
+</html>
+)",
+                     io::HtmlText(title), kStyle, Prose(title), body);
+}
+
+std::string SectionHtml(std::string_view heading, const std::string& body) {
+  return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", Prose(heading), body);
+}
+
+std::string ParagraphHtml(std::string_view text) { return fmt::format("<p>{}</p>\n", Prose(text)); }
+
+std::string ListHtml(const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return "";
+  std::string html = "<ul>\n";
+  for (const std::string& each : sentences) html += fmt::format("<li>{}</li>\n", Prose(each));
+  return html + "</ul>\n";
+}
+
+std::string VerdictHtml(std::string_view css_class, std::string_view word,
+                        std::string_view sentence) {
+  return fmt::format("<p class=\"verdict {}\"><strong>{}</strong>{}{}</p>\n", css_class,
+                     Prose(word), sentence.empty() ? "" : ": ", Prose(sentence));
+}
+
+std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
+                      const std::vector<TableLine>& lines) {
+  if (lines.empty()) return "";
+  std::string html = "<div class=\"table\"><table>";
+  if (!caption.empty()) html += fmt::format("<caption>{}</caption>", Prose(caption));
+  if (!names.empty()) html += "\n<thead><tr>";
+  for (const std::string& name : names)
+    html += fmt::format("<th scope=\"col\">{}</th>", Prose(name));
+  html += names.empty() ? "\n<tbody>\n" : "</tr></thead>\n<tbody>\n";
+  for (const TableLine& line : lines) {
+    html += "<tr><th scope=\"row\"";
+    if (!line.css_class.empty()) html += fmt::format(" class=\"{}\"", line.css_class);
+    html += line.address.empty()
+                ? fmt::format(">{}</th>", Prose(line.head))
+                : fmt::format("><a href=\"{}\">{}</a></th>", line.address, Prose(line.head));
+    for (const std::string& cell : line.cells) {
+      // Letters break anywhere, numbers nowhere.
+      html += fmt::format("<td class=\"{}\">{}</td>", StartsWithDigit(cell) ? "number" : "words",
+                          Prose(cell));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel) {
+  constexpr std::size_t kMostPoints = 6000;
+  const double axes = std::round(kWidth / 2.0 * panel.height);
+  std::string legend;
+  for (const auto& [symbol, label] : io::LegendOf(panel)) {
+    legend += fmt::format("<li><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">{}</svg>{}</li>",
+                          symbol, Prose(label));
+  }
+  return FigureHtml(
+      said, legend, static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes),
+      io::DrawPanel(panel, fmt::format("figure '{}'", said.id), kWidth, axes, kMostPoints));
+}
+
+std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
+                       std::string_view elements) {
+  return fmt::format(R"(<figure id="{0}">
+<{1} id="{0}-title"{2}>{3}</{1}>
+<p id="{0}-text"{2}>{4}</p>
+{5}<svg class="plot" viewBox="0 0 {6} {7}" role="img" aria-labelledby="{0}-title {0}-text">{8}</svg>
+</figure>
+)",
+                     said.id, said.element, said.attributes, Prose(said.title), Prose(said.text),
+                     legend.empty() ? "" : fmt::format("<ul class=\"legend\">{}</ul>\n", legend),
+                     kWidth, height, elements);
+}
+
+std::string SideBySide(std::string_view parts) {
+  return fmt::format("<div class=\"figures\">\n{}</div>\n", parts);
+}
+
+std::string ProvenanceHtml(const Provenance& provenance) {
+  std::vector<TableLine> inputs;
+  for (const InputFile& input : provenance.inputs) {
+    inputs.push_back({input.name, {input.sha256.value_or("not a regular file, read once")}});
+  }
+  std::vector<TableLine> options;
+  for (const auto& [name, value] : provenance.options) options.push_back({name, {value}});
+  return SectionHtml("How to reproduce this page",
+                     (provenance.command.empty() ? ""
+                                                 : fmt::format("<pre><code>{}</code></pre>\n",
+                                                               Prose(provenance.command))) +
+                         ParagraphHtml(fmt::format("mindahl {}", Version())) +
+                         TableHtml("files read", {"file", "SHA-256 of its bytes"}, inputs) +
+                         TableHtml("options, including those of a configuration file",
+                                   {"option", "value"}, options));
+}
+
+}  // namespace mindahl::report

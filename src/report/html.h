@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/io/plot.h"
+#include "mindahl/report/page.h"
+#include "report/fields.h"
+#include "report/statements.h"
+
+// Parts of the pages, as HTML 5. Whatever is called a text, caption or sentence is escaped; with
+// page.cc, these are the only files that write markup.
+namespace mindahl::report {
+
+/// Returns a text as HTML in which no option of the command line is broken at its hyphens; a name,
+/// which has no blanks, is broken at its underscores and before its extension.
+std::string Prose(std::string_view text);
+
+/// Returns a page, self-contained: it may load nothing, by a policy for the browser, and has no
+/// script.
+/// @param body  the parts below, in their order
+std::string PageHtml(std::string_view title, std::string_view body);
+
+/// Returns parts under a heading; "" without any.
+std::string SectionHtml(std::string_view heading, const std::string& body);
+
+std::string ParagraphHtml(std::string_view text);
+std::string ListHtml(const std::vector<std::string>& sentences);
+std::string VerdictHtml(std::string_view css_class, std::string_view word,
+                        std::string_view sentence);
+
+/// A row of a table.
+struct TableLine {
+  std::string head;
+  std::vector<std::string> cells;
+  std::string_view css_class = {};  ///< of its head
+  std::string address = {};         ///< to which its head leads; "" none
+};
+/// Returns a table; "" without lines.
+/// @param names  of the columns, none for a table without
+std::string TableHtml(std::string_view caption, const std::vector<std::string>& names,
+                      const std::vector<TableLine>& lines);
+
+/// Holds what is said of a figure.
+struct FigureText {
+  std::string id;  ///< names it in its page: letters, digits, '_' and '-'
+  std::string title;
+  std::string text = {};
+  std::string attributes = {};  ///< title and text have them: " class=\"hidden\""
+  std::string_view element = "h2";
+};
+/// Returns a figure of a panel, with its legend.
+std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel);
+/// Returns a figure of the elements of an inline SVG, 560 px wide.
+std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
+                       std::string_view elements);
+/// Returns figures, or tables, side by side where there is room.
+std::string SideBySide(std::string_view parts);
+
+/// Returns what it takes to make the result again.
+std::string ProvenanceHtml(const Provenance& provenance);
+
+}  // namespace mindahl::report
