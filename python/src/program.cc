@@ -31,9 +31,7 @@ int Run(const std::vector<std::string>& words, std::ostream& out, std::ostream& 
 int RunProgram(const std::vector<std::string>& words) {
   const py::gil_scoped_release others_may_run;
   io::RemoveTemporaryFilesOnSignals();
-  const int status = Run(words, std::cout, std::cerr);
-  io::RaiseNotedSignal();
-  return status;
+  return Run(words, std::cout, std::cerr);
 }
 
 /// Returns the exit status, and what the program writes to its two streams.

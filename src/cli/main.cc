@@ -34,7 +34,5 @@ int main(int argc, char** argv) {
   std::set_terminate(&EndForWantOfMemory);
   mindahl::io::RemoveTemporaryFilesOnSignals();
   mindahl::IgnoreFileSizeSignal();
-  const int status = mindahl::cli::Run(argc, argv, std::cout, std::cerr);
-  mindahl::io::RaiseNotedSignal();
-  return status;
+  return mindahl::cli::Run(argc, argv, std::cout, std::cerr);
 }

@@ -335,9 +335,6 @@ class TrackRun {
   void BeginSource(const io::RecordFile& layout, const std::string& name);
   void BeginFits(const loop::RecordView& head, std::string_view source);
   void Resume(campaign::TrackOptions& made);
-  void RequireNoSignal() const {
-    if (signals_->noted() != 0) throw InputError("stopped by a signal");
-  }
   void Take(std::span<const CycleFit> fits);
   void OpenTable();
   /// True if the table on disk, where there is one to go on with, is of this record and options.
@@ -354,8 +351,7 @@ class TrackRun {
   std::optional<campaign::Tracker> tracker_;
   std::optional<KeptCycles> kept_;
   std::optional<io::AppendedFile> output_;
-  bool has_write_failed_ = false;               // or is at work
-  std::optional<io::DeferredSignals> signals_;  // while rows are written
+  bool has_write_failed_ = false;  // or is at work
 };
 
 void TrackRun::BeginSource(const io::RecordFile& layout, const std::string& name) {
@@ -419,7 +415,6 @@ void TrackRun::ReadFile(const std::string& file) {
     times_.Shift(piece.time);
     tracker_->Add(piece, piece.lines);
     AskWhetherToGoOn();
-    RequireNoSignal();
     if (!stream.Next(piece)) break;
   }
   if (options_.fit.join) {
@@ -491,28 +486,22 @@ void TrackRun::Read() {
   has_write_failed_ = true;
   if (output_) output_->Finish();
   has_write_failed_ = false;
-  RequireNoSignal();
 }
 
 TrackedTest TrackRun::Track() {
-  signals_.emplace();
   try {
     Read();
   } catch (const InputError& error) {
     // Finished rows are kept, unless they are another run's, or there are none.
-    const bool is_stopped = signals_->noted() != 0;
-    if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
-    if (!tracker_ || (!continues_table() && !is_stopped)) throw;
+    if (!tracker_ || !continues_table()) throw;
     try {
       if (!has_write_failed_) tracker_->Finish();
       if (output_) output_->Finish();
     } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
-    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
-                                 is_stopped ? "stopped by a signal" : error.what(), test_.fits,
-                                 options_.output, is_stopped ? "" : "repair the fault and "));
+    throw InputError(fmt::format("{}; {} rows are kept in {}: repair the fault and add --resume",
+                                 error.what(), test_.fits, options_.output));
   }
-  signals_.reset();
   test_.cycles = tracker_->cycles();
   test_.log = tracker_->log();
   if (test_.cycles == 0) {

@@ -132,34 +132,16 @@ void RemoveName(const char* name) {
   if (::unlink(name) != 0) ::rmdir(name);
 }
 
-void HandleSignalAgain(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  ::sigaction(signal, &action, nullptr);
-}
-
 void HandleEndingSignals(void (*handler)(int)) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     // The program may have been started to ignore the signal, as by nohup.
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
-    HandleSignalAgain(signal, handler);
+    action = {};
+    action.sa_handler = handler;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(signal, &action, nullptr);
   }
-}
-
-void CallEverySecond(void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  ::sigaction(SIGALRM, &action, nullptr);
-  ::alarm(1);
-}
-
-void CallInASecond() { ::alarm(1); }
-
-void EndBySignal(int signal) {
-  std::signal(signal, SIG_DFL);
-  ::raise(signal);
 }
 
 int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written) {

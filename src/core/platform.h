@@ -56,12 +56,6 @@ void RemoveName(const char* name);
 /// Calls a handler once for each signal that ends the program by a person's or a system's wish,
 /// unless the program was started to ignore it; what waits for input is not resumed.
 void HandleEndingSignals(void (*handler)(int signal));
-/// Calls it once more for one of them.
-void HandleSignalAgain(int signal, void (*handler)(int signal));
-/// Calls a handler after about a second, and again whenever it asks for it.
-void CallEverySecond(void (*handler)(int));
-void CallInASecond();
-void EndBySignal(int signal);
 
 /// Holds what a program wrote.
 struct ProgramOutput {

@@ -30,25 +30,9 @@ void ReplaceName(const char* old_name, const char* new_name) {
   }
 }
 
-// At most one object of DeferredSignals is of use at a time.
-std::atomic<bool> is_deferred = false;
-std::atomic<int> noted_signal = 0;
-static_assert(std::atomic<int>::is_always_lock_free);
-
-/// Interrupts every second what waits for input, and began to just after a signal was noted.
-void Interrupt(int /*signal*/) {
-  if (noted_signal != 0) CallInASecond();
-}
-
 /// Only what POSIX allows in a handler. The signal is at its default again and ends
 /// the program as soon as it is no longer blocked, on return.
 void RemoveAndRaise(int signal) {
-  if (is_deferred.exchange(false)) {
-    noted_signal = signal;
-    HandleSignalAgain(signal, &RemoveAndRaise);
-    CallEverySecond(&Interrupt);
-    return;
-  }
   RemoveTemporaryFiles();
   std::raise(signal);
 }
@@ -89,17 +73,6 @@ void RemoveTemporaryFiles() {
 }
 
 void RemoveTemporaryFilesOnSignals() { HandleEndingSignals(&RemoveAndRaise); }
-
-DeferredSignals::DeferredSignals() { is_deferred = true; }
-DeferredSignals::~DeferredSignals() { is_deferred = false; }
-
-int DeferredSignals::noted() const { return noted_signal; }
-
-void RaiseNotedSignal() {
-  const int signal = noted_signal.exchange(0);
-  if (signal == 0) return;
-  EndBySignal(signal);
-}
 
 /// An open file, closed with it. `path` is the name the user knows it by, for messages.
 class OutputFile {

@@ -1,7 +1,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 
 #include "mindahl/io/output_file.h"
@@ -54,39 +53,6 @@ int StatusOf(Part part) {
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
   return status;
-}
-
-TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
-  const int status = StatusOf([] {
-    RestoreDefaultSignals();
-    RemoveTemporaryFilesOnSignals();
-    RaiseNotedSignal();  // of none
-    {
-      const DeferredSignals deferred;
-      if (deferred.noted() != 0) ::_exit(1);
-      ::raise(SIGTERM);
-      if (deferred.noted() != SIGTERM) ::_exit(2);
-    }
-    RaiseNotedSignal();
-    ::_exit(3);
-  });
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
-}
-
-TEST(DeferredSignals, InterruptWhatWaitsForInput) {
-  std::array<int, 2> pipe{};
-  ASSERT_EQ(::pipe(pipe.data()), 0);
-  const int status = StatusOf([&] {
-    RestoreDefaultSignals();
-    RemoveTemporaryFilesOnSignals();
-    const DeferredSignals deferred;
-    ::raise(SIGINT);  // before the wait begins
-    char byte = 0;
-    ::_exit(::read(pipe[0], &byte, 1) == -1 && errno == EINTR ? 7 : 1);
-  });
-  ::close(pipe[0]);
-  ::close(pipe[1]);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
 TEST(TemporaryFiles, LeaveASignalThatIsIgnoredAlone) {

@@ -27,22 +27,6 @@ void RemoveTemporaryFiles();
 /// that this module has begun and not yet finished, and then end the program as they would have.
 void RemoveTemporaryFilesOnSignals();
 
-/// While one exists, the first of these signals does not end the program but is noted, for a run to
-/// end in order; a second one ends it. Without RemoveTemporaryFilesOnSignals() it has no effect.
-class DeferredSignals {
- public:
-  DeferredSignals();
-  ~DeferredSignals();
-  DeferredSignals(const DeferredSignals&) = delete;
-  DeferredSignals& operator=(const DeferredSignals&) = delete;
-
-  /// Returns the signal that was noted, or 0.
-  [[nodiscard]] int noted() const;
-};
-
-/// Ends the program as a signal that was noted would have; does nothing where there was none.
-void RaiseNotedSignal();
-
 class OutputFile;
 
 /// A file that grows by whole blocks while a run goes on. What was appended stays, whatever ends
