@@ -412,13 +412,13 @@ void TrackRun::ReadFile(const std::string& file) {
   }
   while (piece.size() > 0) {
     test_.samples += piece.size();
-    times_.Shift(piece.time);
+    for (double& time : piece.time) time = times_.Next(time);
     tracker_->Add(piece, piece.lines);
     AskWhetherToGoOn();
     if (!stream.Next(piece)) break;
   }
   if (options_.fit.join) {
-    times_.NextFile();
+    times_.NextPiece();
   } else {
     test_.unused_samples += tracker_->NextFile();
     times_ = {};
