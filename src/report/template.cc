@@ -159,8 +159,7 @@ Json FigureData(const std::optional<io::PlotPanel>& panel, const std::string& id
           {"width", kWidth},
           {"height", static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes)},
           {"legend", std::move(legend)},
-          {"elements",
-           io::DrawPanel(*panel, fmt::format("figure '{}'", id), kWidth, axes, kMostPoints)}};
+          {"elements", io::DrawPanel(*panel, kWidth, axes, kMostPoints)}};
 }
 
 Json VerdictData(std::string_view css_class, std::string_view word, std::string_view sentence) {
