@@ -41,7 +41,6 @@ def fit(
     radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
     poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
     contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
-    max_memory: Optional[int] = None,
 ) -> FitResult:
     """Fits sigma [N/m], alpha [-] and Tc [N] of a contact to its hysteresis loop.
 
@@ -85,8 +84,6 @@ def fit(
     What counts
         cycles, samples: (first, last), counted from 1.
         trim: leaves out what at the ends is not of the test, with a note.
-        max_memory: files whose fit needs more memory [bytes] are refused; default: the limit of the
-            process. Arrays in memory are not counted.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.

@@ -21,7 +21,7 @@ ROLES = ("displacement", "force", "time", "normal_load_column")
 # Units in which a quantity is read.
 SI = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",), "normal_load_column": ("N",)}
 UNITS = ("displacement_unit", "force_unit", "time_unit", "normal_load_unit")
-OF_FILES = ("encoding", "sample_rate", "with_file", "broken_rows", "max_memory")
+OF_FILES = ("encoding", "sample_rate", "with_file", "broken_rows")
 
 
 def name_of(source: Any, default: str) -> str:

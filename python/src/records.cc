@@ -10,7 +10,6 @@
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/request/fit_request.h"
@@ -40,12 +39,11 @@ io::RecordColumns ColumnsOf(const request::FitRequest& request) {
 NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request,
                     const std::string& name) {
   const py::gil_scoped_release others_may_run;
-  const std::uintmax_t memory = request.max_memory.value_or(MemoryOfProcess());
   const auto named = [&](const std::string& text) {
     return boost::replace_all_copy(text, path, name);
   };
   try {
-    NamedRecord record{name, io::ReadRecord(path, ColumnsOf(request), {.memory = memory})};
+    NamedRecord record{name, io::ReadRecord(path, ColumnsOf(request))};
     for (std::string& note : record.file.notes) note = named(note);
     return record;
   } catch (const InputError& error) {

@@ -342,13 +342,6 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request.columns);
-  OptionGroup(command, std::string(kColumnGroup))
-      .Add("--max-memory", request.max_memory,
-           "refuse files whose fit needs more memory [B], as 4GB or 500MB;\ndefault: the machine's "
-           "memory, or the limit of the process",
-           "SIZE")
-      ->check(WholeNumber(1, 1'000'000'000'000'000'000))
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
   AddSelections(command, request);
   const OptionGroup group(command, std::string(kColumnGroup));
   io::RecordColumns& columns = request.columns;

@@ -401,11 +401,10 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   return std::move(file);
 }
 
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns,
-                      const ReadLimits& limits) {
-  CsvTable table = ReadCsvTable(path, limits, columns.encoding, columns.skip_broken_rows);
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
+  CsvTable table = ReadCsvTable(path, columns.encoding, columns.skip_broken_rows);
   if (!columns.with.empty()) {
-    AddColumnsOf(table, ReadCsvTable(columns.with, limits, columns.encoding), columns.time);
+    AddColumnsOf(table, ReadCsvTable(columns.with, columns.encoding), columns.time);
   }
   return RecordOf(table, columns);
 }

@@ -41,7 +41,6 @@ const std::vector<Rule> kRules = {
       "--youngs-modulus-2", "--rig-stiffness"},
      kPositive},
     {"fit", {"--displacement-noise", "--reversal-gate"}, kNonNegative},
-    {"fit", {"--max-memory"}, kPositive},
     {"fit", {"--poisson-1", "--poisson-2"}, kPoisson},
     {"fit", {"--radius-1", "--radius-2"}, kRadius},
     {"fit",

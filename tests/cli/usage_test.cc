@@ -296,14 +296,6 @@ TEST(StandardInput, IsReadUnderADash) {
   EXPECT_THAT(refused.err, HasSubstr("standard input:3:2: 'one' is not a number"));
 }
 
-TEST(Limits, RefuseWhatCannotBeHeldAndSaySo) {
-  const Outcome memory = RunCommand({"fit", SampleRecord(), "--max-memory", "10kB"});
-  EXPECT_EQ(memory.status, cli::kBadInput);
-  ASSERT_THAT(memory.Errors(), SizeIs(1));
-  EXPECT_THAT(memory.err, HasSubstr("more than the 0.01 MB that --max-memory leaves for it"));
-  EXPECT_EQ(RunCommand({"fit", SampleRecord(), "--max-memory", "1GB"}).status, cli::kDone);
-}
-
 // As `ulimit -v` makes of it: more is asked for than the process may have.
 TEST(Limits, MemoryThatRunsOutIsOneOfThem) {
 #ifdef __SANITIZE_ADDRESS__

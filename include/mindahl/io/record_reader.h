@@ -96,8 +96,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
 ///   number, a time before that of the row above; a file beyond the limits
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {},
-                      const ReadLimits& limits = {});
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
 
 /// Reads a table in memory as ReadRecord() reads a file.
 /// @throws InputError as ReadRecord()

@@ -34,7 +34,6 @@ struct FitRequest {
   std::vector<std::string> files{};
   io::RecordColumns columns{};
   bool join = false;                                      // the files are pieces of one record
-  std::optional<std::uint64_t> max_memory{};              // [bytes]; else what the process may have
   std::optional<identification::Interval> time_window{};  // [s]
   /// Holds the options as given, without what the members below add; no model: --model auto.
   identification::FitOptions fit{.model = nullptr};
