@@ -44,17 +44,6 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
-  /// Takes the next cell unread.
-  /// @returns true if it is not empty
-  bool Skip() {
-    const char* const begin = SkipBlanks(at_);
-    if (begin != end_ && *begin == '"') return !Take().empty();
-    const char* end = begin;
-    while (end != end_ && !IsDelimiter(*end)) ++end;
-    GoBehind(end);
-    return end != begin;
-  }
-
   /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
   /// @returns its text; empty where it is none, and is not taken
   std::string_view TakeNumber(double& value) {
@@ -106,8 +95,6 @@ struct Cell {
   double value =
       std::numeric_limits<double>::quiet_NaN();  ///< NaN unless it is a number or a clock
   char decimal_mark = '\0';                      ///< '.', ',' or none seen
-
-  [[nodiscard]] bool is_number() const { return kind == Kind::kNumber || kind == Kind::kClock; }
 };
 
 /// Reads a whole cell as a plain decimal number: sign, digits, one decimal mark, exponent; or as a

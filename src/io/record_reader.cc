@@ -76,7 +76,7 @@ class RecordBuilder {
     Roles roles = AssignRoles(names, asked, file_.notes);
     file_.is_torsional = roles.is_torsional;
     const auto choose = [&](Role role) {
-      return Choose(names, role, std::move(roles[role]), AskedOf(asked, role));
+      return Choose(names, role, std::move(roles[role]), asked.*RulesOf(role).given);
     };
     file_.displacement = choose(Role::kDisplacement);
     file_.force = choose(Role::kForce);
