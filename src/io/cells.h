@@ -44,6 +44,17 @@ class CellCursor {
   /// Takes the next cell; valid until another is taken.
   std::string_view Take();
 
+  /// Takes the next cell unread.
+  /// @returns true if it is not empty
+  bool Skip() {
+    const char* const begin = SkipBlanks(at_);
+    if (begin != end_ && *begin == '"') return !Take().empty();
+    const char* end = begin;
+    while (end != end_ && !IsDelimiter(*end)) ++end;
+    GoBehind(end);
+    return end != begin;
+  }
+
   /// Takes the next cell where it is a number with a decimal point and has no sign of plus.
   /// @returns its text; empty where it is none, and is not taken
   std::string_view TakeNumber(double& value) {

@@ -100,7 +100,7 @@ bool TableReader::ReadCells(std::string_view row) {
   std::size_t column = 0;
   for (; column < places_.size() && cells.has_next(); ++column) {
     if (places_[column] < 0) {
-      has_content = !cells.Take().empty() || has_content;
+      has_content = cells.Skip() || has_content;
       continue;
     }
     const auto place = static_cast<std::size_t>(places_[column]);
@@ -201,7 +201,7 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
   std::size_t column = 0;
   for (; column < layout_.columns && !layout_.mostly_numbers[column]; ++column) {
-    if (cells.has_next()) cells.Take();
+    if (cells.has_next()) cells.Skip();
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
   if (column == layout_.columns ||
