@@ -10,7 +10,6 @@
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/request/fit_request.h"
@@ -44,8 +43,7 @@ NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request,
     return boost::replace_all_copy(text, path, name);
   };
   try {
-    NamedRecord record{name,
-                       io::ReadRecord(path, ColumnsOf(request), {.memory = MemoryOfProcess()})};
+    NamedRecord record{name, io::ReadRecord(path, ColumnsOf(request))};
     for (std::string& note : record.file.notes) note = named(note);
     return record;
   } catch (const InputError& error) {

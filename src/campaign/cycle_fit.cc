@@ -71,10 +71,10 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
   fit.half_gap = facts.half_gap;
   fit.energy = facts.energy_per_cycle;
   fit.energy_ratio = facts.energy_ratio;
-  fit.slope_after_reversal = facts.slope_after_reversal;
-  if (fit.normal_load) {
-    fit.energy_friction_coefficient = loop::EnergyFrictionCoefficient(facts, *fit.normal_load);
-  }
+  // µ_W = W/(4·N·sliding amplitude)
+  const double rectangle =
+      4 * fit.normal_load.value_or(0.0) * facts.sliding_amplitude.value_or(0.0);
+  if (rectangle > 0) fit.energy_friction_coefficient = facts.energy_per_cycle / rectangle;
 }
 
 FittedValue FittedValueOf(const FitResult& result, std::string_view name, const char* open_flag,
@@ -178,7 +178,6 @@ constexpr std::array kNumbers = {
     CycleNumber{"energy", "J", Of<&CycleFit::energy>},
     CycleNumber{"energy_ratio", "", Of<&CycleFit::energy_ratio>},
     CycleNumber{"energy_friction_coefficient", "", Of<&CycleFit::energy_friction_coefficient>},
-    CycleNumber{"slope_after_reversal", "N/m", Of<&CycleFit::slope_after_reversal>},
     CycleNumber{"normal_load", "N", Of<&CycleFit::normal_load>},
     CycleNumber{"sigma", "N/m", Of<&CycleFit::sigma, &FittedValue::value>},
     CycleNumber{"sigma_error", "N/m", Of<&CycleFit::sigma, &FittedValue::standard_error>},

@@ -416,13 +416,13 @@ class TrackRun {
     }
     while (piece.size() > 0) {
       test_.samples += piece.size();
-      times_.Shift(piece.time);
+      for (double& time : piece.time) time = times_.Next(time);
       tracker_->Add(piece, piece.lines);
       AskWhetherToGoOn();
       if (!stream.Next(piece)) break;
     }
     if (options_.fit.join) {
-      times_.NextFile();
+      times_.NextPiece();
     } else {
       test_.unused_samples += tracker_->NextFile();
       times_ = {};

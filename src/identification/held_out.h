@@ -55,8 +55,8 @@ double SumOfSquares(double rms, const ScoredSamples& samples);
 /// Parts from one reversal to another, of so many strokes each: cycles of two. A single cycle of a
 /// record is none: without it nothing of the kind would be left to fit.
 /// @param least  parts of a record, which has none where there are fewer
-std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles,
-                          std::size_t strokes, std::size_t least);
+std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t strokes,
+                          std::size_t least);
 
 /// Gives the options the initial states that a fit found.
 void HoldInitialStates(const FitResult& fit, FitOptions& options);

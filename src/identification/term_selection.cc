@@ -313,8 +313,8 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
   const ScoredSamples samples = CountedSamples(base_.fit, records_);
   std::size_t cycles = 0;
   for (const RecordFit& record : base_.fit.records) cycles += record.reversals.size() / 2;
-  parts_ = PartsOf(base_.fit, samples.mask, 0, 2 * (cycles / kMostParts + 1), 2);
-  if (parts_.size() < kEnoughCycles) parts_ = PartsOf(base_.fit, samples.mask, 0, 1, 4);
+  parts_ = PartsOf(base_.fit, samples.mask, 2 * (cycles / kMostParts + 1), 2);
+  if (parts_.size() < kEnoughCycles) parts_ = PartsOf(base_.fit, samples.mask, 1, 4);
   return true;
 }
 

@@ -106,8 +106,6 @@ struct Cell {
   double value =
       std::numeric_limits<double>::quiet_NaN();  ///< NaN unless it is a number or a clock
   char decimal_mark = '\0';                      ///< '.', ',' or none seen
-
-  [[nodiscard]] bool is_number() const { return kind == Kind::kNumber || kind == Kind::kClock; }
 };
 
 /// Reads a whole cell as a plain decimal number: sign, digits, one decimal mark, exponent; or as a

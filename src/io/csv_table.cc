@@ -16,32 +16,15 @@
 namespace mindahl::io {
 namespace {
 
-/// Refuses a file that is larger than can be held, by as much of it as has been read.
-void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
-                   const std::string& name) {
-  const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
-  if (memory <= limits.memory) return;
+/// Refuses a file whose fit would need more memory than the process may have, by as much of it as
+/// has been read. Measured for records of three columns: 1.14 kB a row of 59 bytes.
+void RequireMemory(std::uintmax_t rows, std::uintmax_t bytes, const std::string& name) {
+  const std::uintmax_t memory = 1000 * rows + 3 * bytes;
+  if (memory <= MemoryOfProcess()) return;
   Refuse(
       "{}: {} of it need about {} of memory, more than the {} that the process may have: fit a "
-      "part of the file, every n-th row, or each cycle with mindahl track; or allow more",
-      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory));
-}
-
-/// Returns what a reader has read, at the end of its file.
-CsvTable Finished(TableReader& reader) {
-  if (reader.fault().empty()) reader.Finish();
-  if (!reader.fault().empty()) throw InputError(reader.fault());
-  CsvTable table = std::move(reader.table());
-  if (!table.blocks.empty()) {
-    table.notes.push_back(
-        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", table.file,
-                    table.header_line, table.blocks.size()));
-  }
-  if (const LeftOutRows& skipped = reader.skipped(); skipped.count > 0) {
-    table.notes.push_back(fmt::format("{} broken row{} left out, the first: {}", skipped.count,
-                                      skipped.count == 1 ? " is" : "s are", skipped.fault));
-  }
-  return table;
+      "part of the file, every n-th row, or each cycle with mindahl track",
+      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(MemoryOfProcess()));
 }
 
 }  // namespace
@@ -57,22 +40,33 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
   return of.values;
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits,
-                      const std::string& encoding, bool skip_broken) {
+CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding,
+                      bool skip_broken) {
   const std::string name = NameOfInput(path);
   LinePieces pieces(path, encoding);
   std::string_view text = pieces.Next();
   std::error_code is_no_file;
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
-  if (!is_no_file) RequireWithin(limits, 0, size, name);
+  if (!is_no_file) RequireMemory(0, size, name);
   const Layout layout = FindLayout(text, name);
   TableReader reader(layout, name, skip_broken);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
     if (!reader.fault().empty()) break;
-    RequireWithin(limits, reader.table().rows(), pieces.bytes(), name);
+    RequireMemory(reader.table().rows(), pieces.bytes(), name);
   }
-  CsvTable table = Finished(reader);
+  if (reader.fault().empty()) reader.Finish();
+  if (!reader.fault().empty()) throw InputError(reader.fault());
+  CsvTable table = std::move(reader.table());
+  if (!table.blocks.empty()) {
+    table.notes.push_back(
+        fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
+                    table.header_line, table.blocks.size()));
+  }
+  if (const LeftOutRows& skipped = reader.skipped(); skipped.count > 0) {
+    table.notes.push_back(fmt::format("{} broken row{} left out, the first: {}", skipped.count,
+                                      skipped.count == 1 ? " is" : "s are", skipped.fault));
+  }
   if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
   return table;
 }

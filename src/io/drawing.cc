@@ -22,10 +22,15 @@ constexpr double kTicCharacter = 9.6;     // [px] on a narrow screen, where lett
 
 using Values = std::vector<double>;
 
-void RequireDrawable(const PlotPanel& panel, std::string_view where) {
-  RequirePositive(fmt::format("height of {}", where), panel.height);
-  if (panel.series.empty())
-    throw InvalidArgument(fmt::format("{} has no series: must have one", where));
+/// Returns the coordinates on the vertical axis, with the ends of a band.
+std::vector<const Values*> HeightsOf(const PlotSeries& series) {
+  if (series.style != PlotStyle::kBand) return {&series.y};
+  return {&series.y, &series.lower, &series.upper};
+}
+
+void RequireDrawable(const PlotPanel& panel) {
+  RequirePositive("height of a panel", panel.height);
+  if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
   const auto require = [](const std::string& name, const Values& values, bool logarithmic) {
     for (const double value : values) {
       RequireFinite(name, value);
@@ -33,21 +38,16 @@ void RequireDrawable(const PlotPanel& panel, std::string_view where) {
     }
   };
   for (const PlotSeries& series : panel.series) {
-    const std::string name = fmt::format("'{}' of {}", series.label, where);
+    const std::string name = fmt::format("'{}'", series.label);
     if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
     require("x of " + name, series.x, panel.log_x);
-    std::vector<std::pair<std::string, const Values*>> heights = {{"y of ", &series.y}};
-    if (series.style == PlotStyle::kBand) {
-      heights.insert(heights.end(),
-                     {{"lower ends of ", &series.lower}, {"upper ends of ", &series.upper}});
-    }
-    for (const auto& [what, values] : heights) {
-      RequireSameSize("x of " + name, series.x.size(), what + name, values->size());
-      require(what + name, *values, panel.log_y);
+    for (const Values* heights : HeightsOf(series)) {
+      RequireSameSize("x of " + name, series.x.size(), "y of " + name, heights->size());
+      require("y of " + name, *heights, panel.log_y);
     }
   }
   for (const PlotMark& mark : panel.marks) {
-    require(fmt::format("mark '{}' of {}", mark.label, where), {mark.x}, panel.log_x);
+    require(fmt::format("mark '{}'", mark.label), {mark.x}, panel.log_x);
   }
 }
 
@@ -140,14 +140,10 @@ std::string Axis::Label(double tic) const {
 
 std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
   Values values;
-  const auto add = [&](const Values& more) {
-    values.insert(values.end(), more.begin(), more.end());
-  };
   for (const PlotSeries& series : panel.series) {
-    add(horizontal ? series.x : series.y);
-    if (horizontal || series.style != PlotStyle::kBand) continue;
-    add(series.lower);
-    add(series.upper);
+    for (const Values* more : horizontal ? std::vector{&series.x} : HeightsOf(series)) {
+      values.insert(values.end(), more->begin(), more->end());
+    }
   }
   for (const PlotMark& mark : panel.marks) {
     if (horizontal) values.push_back(mark.x);
@@ -160,9 +156,8 @@ std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
 /// greatest coordinates; all, where there are at most `most`.
 std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   const std::size_t size = series.x.size();
-  std::vector<const Values*> coordinates = {&series.x, &series.y};
-  if (series.style == PlotStyle::kBand)
-    coordinates.insert(coordinates.end(), {&series.lower, &series.upper});
+  std::vector<const Values*> coordinates = HeightsOf(series);
+  coordinates.push_back(&series.x);
   const std::size_t runs = size <= most ? size : most / (2 * coordinates.size());
   std::vector<std::size_t> kept;
   kept.reserve(most);
@@ -182,31 +177,25 @@ std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
   return kept;
 }
 
-/// How a series differs from others: in colour, in the shape of its markers, and beyond the first
-/// six in dashes or filled markers.
-struct Look {
-  std::string classes;
-  std::size_t shape = 0;
-};
-
-std::vector<Look> LooksOf(const PlotPanel& panel) {
+/// Returns the classes of each series: in these it differs from others, in colour, and beyond the
+/// first six in dashes or filled markers.
+std::vector<std::string> LooksOf(const PlotPanel& panel) {
   constexpr std::size_t kColours = 6;  // classes s0 … s5
   constexpr double kLastShade = 7;     // classes h0 … h7
-  std::vector<Look> looks;
+  std::vector<std::string> looks;
   looks.reserve(panel.series.size());
   std::size_t count = 0;
   for (const PlotSeries& series : panel.series) {
     if (series.shade) {
       const double shade = std::clamp(*series.shade, 0.0, 1.0);
-      looks.push_back({.classes = fmt::format("h{}", std::lround(shade * kLastShade))});
+      looks.push_back(fmt::format("h{}", std::lround(shade * kLastShade)));
       continue;
     }
     const bool continues = series.label.empty() && series.style == PlotStyle::kLine;
     if (!continues || count == 0) ++count;
     const std::size_t place = count - 1;
-    looks.push_back({.classes = fmt::format("s{}{}", place % kColours,
-                                            place / kColours % 2 == 1 ? " more" : ""),
-                     .shape = place % kColours});
+    looks.push_back(
+        fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : ""));
   }
   return looks;
 }
@@ -234,20 +223,12 @@ std::string Points(const Values& x, const Values& y, std::string_view shape, cha
 }
 
 /// Draws points whose coordinates are in pixels.
-std::string DrawPoints(const PlotSeries& series, const Look& look) {
-  // A circle, square, diamond, triangle up or down, and pentagon of about the same area.
-  constexpr std::array<std::string_view, 6> kShapes = {
-      "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z",
-      "m-3.3-3.3h6.6v6.6h-6.6z",
-      "m0-4.6l4.6 4.6l-4.6 4.6l-4.6-4.6z",
-      "m0-4.8l4.6 7.8h-9.2z",
-      "m0 4.8l4.6-7.8h-9.2z",
-      "m0-4.2l4 2.9l-1.5 4.7h-5l-1.5-4.7z",
-  };
+std::string DrawPoints(const PlotSeries& series, const std::string& look) {
+  constexpr std::string_view kCircle = "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z";
   const PlotStyle style = series.style;
   std::string drawn;
   const auto draw = [&](std::string_view kind, const std::string& path) {
-    drawn += fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, look.classes, path);
+    drawn += fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, look, path);
   };
   if (style == PlotStyle::kBand) {
     const Values back(series.x.rbegin(), series.x.rend());
@@ -261,12 +242,12 @@ std::string DrawPoints(const PlotSeries& series, const Look& look) {
     draw("line", line.find('L') == std::string::npos ? line + "h0" : line);
   }
   if (style == PlotStyle::kMarkers || style == PlotStyle::kLineAndPoints) {
-    draw("marker", Points(series.x, series.y, kShapes[look.shape]));
+    draw("marker", Points(series.x, series.y, kCircle));
   }
   return drawn;
 }
 
-std::string LegendSymbol(PlotStyle style, const Look& look) {
+std::string LegendSymbol(PlotStyle style, const std::string& look) {
   PlotSeries symbol{.label = "", .x = {1, 25}, .y = {6, 6}, .style = style};
   if (style == PlotStyle::kPoints) symbol.x = {5, 13, 21};
   if (style == PlotStyle::kMarkers) symbol.x = {13};
@@ -289,7 +270,7 @@ std::string Text(double x, double y, std::string_view anchor, std::string_view t
 
 std::vector<LegendEntry> LegendOf(const PlotPanel& panel) {
   std::vector<LegendEntry> legend;
-  const std::vector<Look> looks = LooksOf(panel);
+  const std::vector<std::string> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const PlotSeries& series = panel.series[k];
     if (!series.label.empty()) {
@@ -299,9 +280,9 @@ std::vector<LegendEntry> LegendOf(const PlotPanel& panel) {
   return legend;
 }
 
-std::string DrawPanel(const PlotPanel& panel, std::string_view where, double width,
-                      double axes_height, std::size_t most_points) {
-  RequireDrawable(panel, where);
+std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
+                      std::size_t most_points) {
+  RequireDrawable(panel);
   constexpr double kMarginX = 0.02;
   constexpr double kMarginY = 0.05;
   const Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
@@ -338,7 +319,7 @@ std::string DrawPanel(const PlotPanel& panel, std::string_view where, double wid
   elements += Text(right, bottom + 44, "end", panel.x_label);
 
   const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
-  const std::vector<Look> looks = LooksOf(panel);
+  const std::vector<std::string> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const PlotSeries& series = panel.series[k];
     PlotSeries pixels{.label = "", .style = series.style};

@@ -26,10 +26,9 @@ inline constexpr double kBelowAxes = 52;
 
 /// Draws a panel without its title and legend as elements of SVG, in `width` and kAboveAxes +
 /// axes_height + kBelowAxes [px]. Colours are classes of a style.
-/// @param where        the panel, for messages
 /// @param most_points  of all series, over which they are spread evenly
 /// @throws InvalidArgument as WritePlot()
-std::string DrawPanel(const PlotPanel& panel, std::string_view where, double width,
-                      double axes_height, std::size_t most_points);
+std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
+                      std::size_t most_points);
 
 }  // namespace mindahl::io

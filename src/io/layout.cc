@@ -147,9 +147,7 @@ Reading::Reading(std::span<const Row> sampled, char delimiter) {
   std::vector<std::size_t> numbers;
   for (const Row& row : rows_) {
     if (!row.HasData()) continue;
-    if (row.CanHave(columns_) || row.columns > columns_) {
-      most_cells_ = std::max(most_cells_, row.columns);
-    }
+    most_cells_ = std::max(most_cells_, row.columns);
     numbers.resize(std::max(numbers.size(), row.kinds.size()));
     layout_.holds_numbers.resize(numbers.size());
     long broken = 0;

@@ -119,7 +119,7 @@ std::string SvgOf(const Plot& plot) {
     }
     for (const std::string& elements :
          {legends[k].elements,
-          DrawPanel(panel, fmt::format("panel {}", k + 1), width, axes,
+          DrawPanel(panel, width, axes,
                     kMostPoints * std::max<std::size_t>(panel.series.size(), 1))}) {
       svg += fmt::format("<g transform=\"translate(4,{:.1f})\">{}</g>\n", top, elements);
       top += legends[k].height;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "io/source.h"
@@ -77,13 +78,13 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
   return records;
 }
 
-void JoinedTimes::Shift(std::vector<double>& times) {
-  if (times.empty()) return;
-  if (begins_ && times.front() + shift_ < last_) shift_ = last_ + step_ - times.front();
+double JoinedTimes::Next(double time) {
+  if (begins_ && time + shift_ < last_) shift_ = last_ + step_ - time;
   begins_ = false;
-  for (double& time : times) time += shift_;
-  if (times.size() > 1) step_ = times.back() - times[times.size() - 2];
-  last_ = times.back();
+  time += shift_;
+  if (std::isfinite(last_) && time >= last_) step_ = time - last_;
+  last_ = time;
+  return time;
 }
 
 void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
@@ -104,12 +105,13 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
   RecordFile joined = std::move(records.front());
   joined.lines.clear();
   JoinedTimes times;
-  times.Shift(joined.record.time);
+  const auto shift = [&](double time) { return times.Next(time); };
+  std::ranges::transform(joined.record.time, joined.record.time.begin(), shift);
   for (std::size_t k = 1; k < records.size(); ++k) {
     RecordFile& next = records[k];
     RequireJoinable(joined, names.front(), next, names[k]);
-    times.NextFile();
-    times.Shift(next.record.time);
+    times.NextPiece();
+    std::ranges::transform(next.record.time, next.record.time.begin(), shift);
     const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
       to.insert(to.end(), from.begin(), from.end());
     };

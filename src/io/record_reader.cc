@@ -76,7 +76,7 @@ class RecordBuilder {
     Roles roles = AssignRoles(names, asked, file_.notes);
     file_.is_torsional = roles.is_torsional;
     const auto choose = [&](Role role) {
-      return Choose(names, role, std::move(roles[role]), AskedOf(asked, role));
+      return Choose(names, role, std::move(roles[role]), asked.*RulesOf(role).given);
     };
     file_.displacement = choose(Role::kDisplacement);
     file_.force = choose(Role::kForce);
@@ -123,11 +123,9 @@ class RecordBuilder {
   std::size_t rows_ = 0;      // seen so far
   double interval_ = 0.0;     // [s] between rows, in place of a column of times
   double time_origin_ = 0.0;  // in the unit of the time
-  double shift_ = 0.0;        // of the times of a block, in their unit
-  bool begins_block_ = false;
+  JoinedTimes times_;         // of the blocks, in their unit
   double last_time_ = -std::numeric_limits<double>::infinity();
   double time_above_ = 0.0;  // the one before the last
-  double last_step_ = 0.0;
 };
 
 ChosenColumn RecordBuilder::Choose(const ColumnNames& names, Role role, Expression sum,
@@ -199,7 +197,7 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
   std::size_t kept = 0;
   for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
     if (block != table.blocks.end() && row == *block) {
-      begins_block_ = true;
+      times_.NextPiece();
       ++block;
     }
     const bool is_whole =
@@ -214,7 +212,6 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
       left_out_.Add(table.lines[row], fault);
       continue;
     }
-    begins_block_ = false;
     if (kept < row) {
       for (std::vector<double>& of : values) of[kept] = of[row];
     }
@@ -245,12 +242,9 @@ std::string RecordBuilder::TooManyLeftOut() const {
 /// Converts a time.
 /// @returns false where it is before the last
 bool RecordBuilder::Follows(double& time, const Unit& unit) {
-  time -= time_origin_;
-  if (begins_block_ && time + shift_ < last_time_) shift_ = last_time_ + last_step_ - time;
-  time += shift_;
+  time = times_.Next(time - time_origin_);
   time_above_ = std::exchange(last_time_, time);
   if (time < time_above_) return false;
-  if (std::isfinite(time_above_)) last_step_ = time - time_above_;
   time = unit.ToSi(time);
   return std::isfinite(time);
 }
@@ -407,11 +401,10 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   return std::move(file);
 }
 
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns,
-                      const ReadLimits& limits) {
-  CsvTable table = ReadCsvTable(path, limits, columns.encoding, columns.skip_broken_rows);
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
+  CsvTable table = ReadCsvTable(path, columns.encoding, columns.skip_broken_rows);
   if (!columns.with.empty()) {
-    AddColumnsOf(table, ReadCsvTable(columns.with, limits, columns.encoding), columns.time);
+    AddColumnsOf(table, ReadCsvTable(columns.with, columns.encoding), columns.time);
   }
   return RecordOf(table, columns);
 }

@@ -17,11 +17,13 @@ namespace {
 
 // The rows are in the order of Role.
 constexpr std::array kRules = {
-    RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle},
-    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque},
-    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime},
-    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kForceOrTorque},
-    RoleRules{"covariate", "--covariate", Dimension::kOther, Dimension::kOther},
+    RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle,
+              &RecordColumns::displacement},
+    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque, &RecordColumns::force},
+    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime, &RecordColumns::time},
+    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kForceOrTorque,
+              &RecordColumns::normal_load},
+    RoleRules{"covariate", "--covariate", Dimension::kOther, Dimension::kOther, nullptr},
 };
 constexpr std::array kRolesOfRecord = {Role::kDisplacement, Role::kForce, Role::kTime,
                                        Role::kNormalLoad};
@@ -97,7 +99,7 @@ class RoleAssigner {
       : names_(names), file_(names.table().file), notes_(notes), taken_(names.size()) {}
 
   Roles Assign(const RecordColumns& asked) {
-    for (const Role role : kRolesOfRecord) TakeGiven(AskedOf(asked, role), role);
+    for (const Role role : kRolesOfRecord) TakeGiven(asked.*RulesOf(role).given, role);
     const bool finds_displacement = IsMissing(Role::kDisplacement);
     const bool finds_force = IsMissing(Role::kForce);
     FindPair();
@@ -348,13 +350,6 @@ class RoleAssigner {
 
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
 
-const std::string& AskedOf(const RecordColumns& columns, Role role) {
-  return role == Role::kDisplacement ? columns.displacement
-         : role == Role::kForce      ? columns.force
-         : role == Role::kTime       ? columns.time
-                                     : columns.normal_load;
-}
-
 std::vector<double> Quantity::Values(const CsvTable& table) const {
   std::vector<double> values = table.columns[first_column()].values;
   if (sum.is_plain()) return values;
@@ -377,9 +372,7 @@ std::vector<double> Quantity::Numbers(const CsvTable& table) const {
 }
 
 std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
-  double value = sum.offset;
-  for (const auto& [column, weight] : sum.terms)
-    value += weight * table.columns[column].values[row];
+  const double value = Values(table)[row];
   if (std::isfinite(unit.ToSi(value))) return "";
   return fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units",
                      table.file, table.lines[row], first_column() + 1, RulesOf(role).name, value,
@@ -503,7 +496,7 @@ std::string ColumnNames::Header() const {
 
 Quantity ColumnNames::InUnit(Role role, Expression sum, bool is_torsional,
                              std::vector<std::string>& notes) const {
-  const auto& [name, option, linear, angular] = RulesOf(role);
+  const auto& [name, option, linear, angular, given] = RulesOf(role);
   const UnitsOfDimension& units = UnitsOf(is_torsional ? angular : linear);
   const std::size_t first = sum.terms.front().column;
   std::string where = table_.file;

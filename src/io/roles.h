@@ -20,6 +20,7 @@ struct RoleRules {
   std::string_view name;  ///< "normal load"
   std::string_view option;
   Dimension linear, angular;  // of its units; a joint carries a torque
+  std::string RecordColumns::*given;
 };
 const RoleRules& RulesOf(Role role);
 
@@ -126,9 +127,6 @@ struct Roles {
 
   Expression& operator[](Role role) { return columns.at(static_cast<std::size_t>(role)); }
 };
-
-/// Returns what is asked of the columns of a role.
-const std::string& AskedOf(const RecordColumns& columns, Role role);
 
 /// Assigns the columns of a record, as they are given, else by the evidence of unit, name and
 /// numbers.

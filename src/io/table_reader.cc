@@ -179,7 +179,7 @@ double TableReader::ValueOf(std::size_t place, std::string_view text) {
     }
     last = cell.value;
     table_.columns[column].is_clock = true;
-  } else if (!cell.is_number()) {
+  } else if (cell.kind != Cell::Kind::kNumber) {
     const bool is_missing = cell.kind == Cell::Kind::kMissing;
     const TableColumn& of = table_.columns[column];
     const bool is_first = (is_missing ? of.missing : of.fault).empty();

@@ -61,27 +61,21 @@ inline constexpr std::array kWords = {
     WordRow{Role::kNormalLoad, 2, false, "fn|f n|N"},
     WordRow{
         Role::kOther, 0, false,
-        "cycle|cycles|count|counts|counter|index|idx|sample|samples|step|steps|row|no|nr|seq|id|"
-        "block|segment|point|*zyklus|*zyklen|*zähler|compteur|ciclo|ciclos|cicli|cycle count|"
-        "step time|recuento|n|#|序号|循环|周期|サイクル|番号"},
-    WordRow{Role::kOther, 0, false,
-            "velocity|speed|vel|v|dq|qd|qvel|rate|acceleration|accel|acc|*geschwindigkeit|vitesse|"
-            "velocidad|velocità|velocidade|速度|加速度|*beschleunigung"},
-    WordRow{Role::kOther, 0, false,
-            "temperature|temp|*temperatur|température|temperatura|voltage|pressure|*druck|strain|"
-            "stress|*dehnung|*spannung|energy|work|power|frequency|humidity|温度|压力"},
-    WordRow{Role::kOther, 0, false, "current|strom"},
-    WordRow{Role::kOther, 0, false,
-            "stiffness|tangential stiffness|contact stiffness|secant stiffness|tangent stiffness|"
-            "compliance|contact compliance"},
+        "cycle|cycles|count|counts|counter|index|idx|sample|samples|step|steps|row|no|nr|seq|"
+        "id|block|segment|point|*zyklus|*zyklen|*zähler|compteur|ciclo|ciclos|cicli|"
+        "cycle count|step "
+        "time|recuento|n|#|序号|循环|周期|サイクル|番号|velocity|speed|vel|v|dq|qd|qvel|"
+        "rate|acceleration|accel|acc|*geschwindigkeit|vitesse|velocidad|velocità|velocidade|"
+        "速度|加速度|*beschleunigung|temperature|temp|*temperatur|température|temperatura|voltage|"
+        "pressure|*druck|strain|stress|*dehnung|*spannung|energy|work|power|frequency|"
+        "humidity|温度|压力|current|strom|stiffness|tangential stiffness|contact stiffness|"
+        "secant stiffness|tangent stiffness|compliance|contact compliance"},
     WordRow{Role::kOther, 1, false, "kt|k|K"},
 };
 
 // Commanded, raw and statistical quantities are weaker evidence than measured ones.
 inline constexpr std::string_view kLesserWords =
     "setpoint|set|goal|demand|command|cmd|commanded|target|desired|reference|ref|control|soll|"
-    "sollwert|"
-    "consigne|"
-    "consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
+    "sollwert|consigne|consigna|raw|adc|min|max|peak|error|err|volt|volts|zero|offset|normalized";
 
 }  // namespace mindahl::io

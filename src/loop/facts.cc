@@ -21,9 +21,6 @@ struct Stroke {
   Column displacement;  // [m]
   Column force;         // [N]
 
-  [[nodiscard]] double width() const {
-    return std::abs(displacement.back() - displacement.front());
-  }
   [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
 };
 
@@ -154,49 +151,6 @@ CycleFacts MeasureCycle(const RecordView& record, Points points) {
   return facts;
 }
 
-/// Returns the slope [N/m] of the least-squares line through the samples of the first tenth of a
-/// stroke; of the chord there where there are fewer than three.
-std::optional<double> SlopeAfterReversal(const Stroke& stroke) {
-  constexpr double kFewest = 3;
-  constexpr double kPart = 0.1;  // of the width
-  const double width = stroke.width();
-  const auto for_each = [&](auto visit) {
-    for (std::size_t i = 0; i < stroke.force.size(); ++i) {
-      const double way = std::abs(stroke.displacement[i] - stroke.displacement.front());
-      if (way <= kPart * width) visit(stroke.displacement[i], stroke.force[i]);
-    }
-  };
-  double count = 0.0;
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  for_each([&](double x, double y) {
-    ++count;
-    mean_x += x;
-    mean_y += y;
-  });
-  mean_x /= count;
-  mean_y /= count;
-  double xx = 0.0;
-  double xy = 0.0;
-  for_each([&](double x, double y) {
-    xx += (x - mean_x) * (x - mean_x);
-    xy += (x - mean_x) * (y - mean_y);
-  });
-  if (count >= kFewest && xx > 0) return xy / xx;
-  const double sense = stroke.rises() ? 1.0 : -1.0;
-  const double start = stroke.displacement.front();
-  const double mean_width = 0.02 * width;  // [m] that the forces at the ends are means over
-  const double begin = mean_width / 2;
-  const auto force_at = [&](double way) {
-    const double at = start + sense * way;
-    return MeanOver(stroke.displacement, stroke.force, at - mean_width / 2, at + mean_width / 2);
-  };
-  const auto first = force_at(begin);
-  const auto last = force_at(kPart * width);
-  if (!first || !last) return std::nullopt;
-  return sense * (*last - *first) / (kPart * width - begin);
-}
-
 /// Returns the turning points of the cycles of the widest amplitude, three each.
 std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
   std::vector<Points> steady;
@@ -213,16 +167,6 @@ std::vector<Stroke> StrokesOf(const RecordView& record, std::span<const Points> 
     strokes.push_back(StrokeOf(record, cycle[1], cycle[2]));
   }
   return strokes;
-}
-
-std::optional<double> MedianSlopeAfterReversal(std::span<const Stroke> strokes) {
-  std::vector<double> slopes;
-  slopes.reserve(strokes.size());
-  for (const Stroke& stroke : strokes) {
-    if (const auto slope = SlopeAfterReversal(stroke)) slopes.push_back(*slope);
-  }
-  if (slopes.empty()) return std::nullopt;
-  return Median(slopes);
 }
 
 /// Forces [N] from the centre of the loop, in half gaps, that strokes are looked at.
@@ -401,7 +345,6 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   const std::vector<Points> steady = SteadyCycles(facts, points);
   facts.steady_cycles = steady.size();
   const std::vector<Stroke> strokes = StrokesOf(record, steady);
-  facts.slope_after_reversal = MedianSlopeAfterReversal(strokes);
   facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
   if (facts.half_gap && *facts.half_gap > 0) {
     const double centre = Mean(SteadyValues(facts, [](const CycleFacts& cycle) {
@@ -415,20 +358,13 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 
 }  // namespace
 
-std::optional<double> EnergyOverEvenGap(const LoopFacts& facts) {
-  if (!facts.half_gap) return std::nullopt;
-  const double even = 4 * facts.amplitude * std::abs(*facts.half_gap);
-  if (!(even > 0)) return std::nullopt;
-  return facts.energy_per_cycle / even;
-}
-
 bool Slides(const LoopFacts& facts) {
   const SlidingRules rules;
   const bool has_gap = facts.half_gap && *facts.half_gap > rules.gap * facts.peak_force;
   if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
-  const std::optional<double> even = EnergyOverEvenGap(facts);
-  return facts.energy_ratio >= rules.energy_ratio || (even && std::abs(*even - 1) < rules.uneven);
+  const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
+  return facts.energy_ratio >= rules.energy_ratio || std::abs(even - 1) < rules.uneven;
 }
 
 bool RanAway(const LoopFacts& facts, double slip_force) {
@@ -442,13 +378,6 @@ bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
   return facts.energy_per_cycle >= SlidingRules().full * rectangle;
-}
-
-std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {
-  if (!facts.sliding_amplitude || !(*facts.sliding_amplitude > 0) || !(normal_load > 0)) {
-    return std::nullopt;
-  }
-  return facts.energy_per_cycle / (4 * normal_load * *facts.sliding_amplitude);
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,

@@ -131,10 +131,6 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
       }
     }
   }
-  if (options.skip_cycles > 0) {
-    const std::size_t skipped = std::min(options.skip_cycles, record.size());
-    KeepOnly(StartOfCycle(prepared, skipped + 1), record.size(), prepared);
-  }
   LeaveOutBeyondRanges(prepared, number, options);
   if (!options.held_out.empty() && !options.held_out[number].empty()) {
     const std::vector<bool>& held_out = options.held_out[number];
@@ -145,11 +141,10 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
   }
   prepared.left_out = static_cast<std::size_t>(std::ranges::count(prepared.counts, 0));
   if (prepared.left_out == record.size()) {
-    throw InvalidArgument(
-        fmt::format("nothing is left of record {}: {} samples lie outside what --select says, in "
-                    "the cycles that "
-                    "are skipped, are glitches, or are held out",
-                    number + 1, prepared.left_out));
+    throw InvalidArgument(fmt::format(
+        "nothing is left of record {}: {} samples lie outside what --select says, are glitches, or "
+        "are held out",
+        number + 1, prepared.left_out));
   }
 }
 

@@ -129,9 +129,8 @@ std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel) {
     legend += fmt::format("<li><svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">{}</svg>{}</li>",
                           symbol, Prose(label));
   }
-  return FigureHtml(
-      said, legend, static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes),
-      io::DrawPanel(panel, fmt::format("figure '{}'", said.id), kWidth, axes, kMostPoints));
+  return FigureHtml(said, legend, static_cast<int>(io::kAboveAxes + axes + io::kBelowAxes),
+                    io::DrawPanel(panel, kWidth, axes, kMostPoints));
 }
 
 std::string FigureHtml(const FigureText& said, std::string_view legend, int height,

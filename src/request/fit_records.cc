@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/term_selection.h"
@@ -400,11 +399,8 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   io::RecordColumns columns = request.columns;
   columns.covariates = MakeFitOptions(request).covariates;
   std::vector<RecordFile> inputs;
-  io::ReadLimits left{.memory = MemoryOfProcess()};
   for (const std::string& file : request.files) {
-    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
-    const std::size_t rows = input.record.size();
-    left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns));
     KeepTimeWindow(request, file, input);
   }
   return inputs;

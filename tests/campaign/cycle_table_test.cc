@@ -12,26 +12,12 @@ CycleFit Filled() {
   fit.first_line = 3402;
   fit.samples = 201;
   double next = 0.1;
-  for (std::optional<double>* value : {&fit.start_time,
-                                       &fit.amplitude,
-                                       &fit.peak_force,
-                                       &fit.sliding_amplitude,
-                                       &fit.half_gap,
-                                       &fit.energy,
-                                       &fit.energy_ratio,
-                                       &fit.energy_friction_coefficient,
-                                       &fit.slope_after_reversal,
-                                       &fit.normal_load,
-                                       &fit.sigma.value,
-                                       &fit.sigma.standard_error,
-                                       &fit.alpha.value,
-                                       &fit.alpha.standard_error,
-                                       &fit.slip_force.value,
-                                       &fit.slip_force.standard_error,
-                                       &fit.force_offset.value,
-                                       &fit.force_offset.standard_error,
-                                       &fit.rms,
-                                       &fit.friction_coefficient}) {
+  for (std::optional<double>* value :
+       {&fit.start_time, &fit.amplitude, &fit.peak_force, &fit.sliding_amplitude, &fit.half_gap,
+        &fit.energy, &fit.energy_ratio, &fit.energy_friction_coefficient, &fit.normal_load,
+        &fit.sigma.value, &fit.sigma.standard_error, &fit.alpha.value, &fit.alpha.standard_error,
+        &fit.slip_force.value, &fit.slip_force.standard_error, &fit.force_offset.value,
+        &fit.force_offset.standard_error, &fit.rms, &fit.friction_coefficient}) {
     *value = next /= 3;  // no round number of decimals
   }
   fit.slips_grossly = true;
@@ -86,14 +72,14 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
   EXPECT_EQ(CycleTableHeader(false),
             "cycle,first_line,samples,start_time [s],amplitude [m],peak_force [N],"
             "sliding_amplitude [m],half_gap [N],energy [J],energy_ratio,"
-            "energy_friction_coefficient,slope_after_reversal [N/m],normal_load [N],sigma [N/m],"
+            "energy_friction_coefficient,normal_load [N],sigma [N/m],"
             "sigma_error [N/m],alpha,alpha_error,slip_force [N],slip_force_error [N],"
             "force_offset [N],force_offset_error [N],rms [N],friction_coefficient,"
             "contact_radius [m],slip_regime,accumulated_energy [J],flags,checksum\n");
   EXPECT_EQ(CycleTableHeader(true),
             "cycle,first_line,samples,start_time [s],amplitude [rad],peak_force [N m],"
             "sliding_amplitude [rad],half_gap [N m],energy [J],energy_ratio,"
-            "energy_friction_coefficient,slope_after_reversal [N m/rad],normal_load [N m],"
+            "energy_friction_coefficient,normal_load [N m],"
             "sigma [N m/rad],sigma_error [N m/rad],alpha,alpha_error,slip_force [N m],"
             "slip_force_error [N m],force_offset [N m],force_offset_error [N m],rms [N m],"
             "friction_coefficient,slip_regime,accumulated_energy [J],flags,"
@@ -107,7 +93,6 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
   fit.energy = 6.5;
   fit.energy_ratio = 7.5;
   fit.energy_friction_coefficient = 8.5;
-  fit.slope_after_reversal = 9.5;
   fit.normal_load = 10.5;
   fit.sigma = {11.5, 12.5};
   fit.alpha = {13.5, 14.5};
@@ -117,7 +102,7 @@ TEST(CycleTable, HasEachNumberInItsColumn) {
   fit.friction_coefficient = 20.5;
   fit.contact_radius = 22.5;
   EXPECT_EQ(CycleTableRow(fit, 21.5),
-            "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,9.5,10.5,11.5,12.5,13.5,14.5,15.5,16.5,"
+            "17,3402,201,1.5,2.5,3.5,4.5,5.5,6.5,7.5,8.5,10.5,11.5,12.5,13.5,14.5,15.5,16.5,"
             "17.5,18.5,19.5,20.5,22.5,gross,21.5,glitches alpha_open,fedcba9876543210\n");
   fit.slips_grossly = false;
   EXPECT_NE(CycleTableRow(fit, 21.5).find(",partial,"), std::string::npos);

@@ -3,9 +3,9 @@
 
 usage: signals_test.py --program PATH [--kills N]
 
-SIGKILL and SIGINT, N times (default 25): the table of `track` holds rows of the undisturbed table and
-perhaps a piece of one, and --resume completes it to the same bytes. A fit that a signal ends leaves
-whole outputs or none.
+SIGKILL, SIGINT, SIGTERM and SIGHUP in turn, N times (default 25): the table of `track` holds rows of the
+undisturbed table and perhaps a piece of one, and --resume completes it to the same bytes. A fit that a
+signal ends leaves whole outputs or none.
 """
 import argparse
 import random
@@ -18,6 +18,7 @@ from pathlib import Path
 
 CONTACT = ["--sigma", "5e7", "--slip-force", "60", "--amplitude", "2.5e-6", "--noise-force", "0.5"]
 CYCLES = 1500
+SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class Tests:
@@ -36,10 +37,10 @@ class Tests:
         self.whole = self.table.read_bytes()
         self.table.unlink()
 
-    def start(self, words=None, **options):
+    def start(self):
         resume = ["--resume"] if self.table.exists() else []
-        return subprocess.Popen([*(words or self.track), *resume], cwd=self.folder,
-                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **options)
+        return subprocess.Popen([*self.track, *resume], cwd=self.folder,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def end_at_random(self, process, number):
         try:
@@ -49,6 +50,10 @@ class Tests:
         _, errors = process.communicate(timeout=60)
         assert process.returncode in (0, -number), (process.returncode, errors)
         return process.returncode != 0
+
+    def check_table(self):
+        content = self.table.read_bytes() if self.table.exists() else b""
+        assert self.whole.startswith(content), "the table does not begin as the undisturbed one"
 
     def complete(self):
         process = self.start()
@@ -65,11 +70,9 @@ class Tests:
         while ended < kills:
             tries += 1
             assert tries < 10 * kills, "the runs end before they are killed"
-            number = self.random.choice([signal.SIGKILL, signal.SIGINT])
-            was_ended = self.end_at_random(self.start(), number)
+            was_ended = self.end_at_random(self.start(), SIGNALS[tries % len(SIGNALS)])
             ended += was_ended
-            content = self.table.read_bytes() if self.table.exists() else b""
-            assert self.whole.startswith(content), "the table does not begin as the undisturbed one"
+            self.check_table()
             if tries % 2 == 0 or not was_ended:
                 self.complete()
         if self.table.exists():
@@ -107,13 +110,13 @@ def main():
     parser.add_argument("--kills", type=int, default=25)
     options = parser.parse_args()
     # A test started in the background of a script ignores SIGINT, and so would the program.
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in SIGNALS[1:]:
         signal.signal(number, signal.SIG_DFL)
     with tempfile.TemporaryDirectory() as scratch:
         tests = Tests(options.program, scratch)
         kills = tests.kill(options.kills)
         tests.stop_fit(5)
-    print(f"{kills} runs killed, each completed to the same bytes")
+    print(f"{kills} runs ended by a signal; each completed to the same bytes")
 
 
 if __name__ == "__main__":

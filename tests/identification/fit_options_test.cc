@@ -98,7 +98,7 @@ TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
   EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0}, {0, 1, -1})}, {}),
             "3 samples are too few for 5 free parameters: record more or fix some");
   FitOptions skipping;
-  skipping.preparation.skip_cycles = 2;
+  skipping.preparation.cycles = {3, 9};
   EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0, 1, 0, 0.5}, {0, 1, -1, 1, -1, 0})}, skipping),
             "2 samples are too few for 5 free parameters; of 6 that were read 4 are left out, 0 "
             "of them glitches: record more or fix some");

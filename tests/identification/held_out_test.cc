@@ -20,22 +20,17 @@ SampleMask CountingFrom(std::size_t first) {
   return mask;
 }
 
-TEST(PartsOf, CyclesBeginWithTheFirstThatIsNotSkipped) {
+TEST(PartsOf, CyclesBeginWithTheFirstTurn) {
   const FitResult fit = FitThatTurns();
-  const std::vector<Part> all = PartsOf(fit, CountingFrom(0), 0, 2, 2);
+  const std::vector<Part> all = PartsOf(fit, CountingFrom(0), 2, 2);
   ASSERT_EQ(all.size(), 3U);
   EXPECT_EQ(all[0].begin, 10U);
   EXPECT_EQ(all[0].end, 30U);
   EXPECT_EQ(all[0].samples, 20.0);
-  // One cycle skipped: to the second turn.
-  const std::vector<Part> later = PartsOf(fit, CountingFrom(20), 1, 2, 2);
-  ASSERT_EQ(later.size(), 2U);
-  EXPECT_EQ(later[0].begin, 20U);
-  EXPECT_EQ(later[1].end, 60U);
 }
 
-TEST(PartsOf, StrokesBeginWithTheFirstThatIsNotSkipped) {
-  const std::vector<Part> strokes = PartsOf(FitThatTurns(), CountingFrom(20), 1, 1, 4);
+TEST(PartsOf, StrokesBeginWithTheFirstThatCounts) {
+  const std::vector<Part> strokes = PartsOf(FitThatTurns(), CountingFrom(20), 1, 4);
   ASSERT_EQ(strokes.size(), 5U);
   EXPECT_EQ(strokes.front().begin, 20U);
   EXPECT_EQ(strokes.back().end, 70U);
@@ -54,7 +49,7 @@ struct ThreeCycles {
     fit = FitOne(record, options);
     views = {record};
     samples = CountedSamples(fit, views);
-    cycles = PartsOf(fit, samples.mask, 0, 2, 2);
+    cycles = PartsOf(fit, samples.mask, 2, 2);
   }
 
   std::optional<double> Predict(std::size_t free) const {

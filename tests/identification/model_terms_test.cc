@@ -175,9 +175,6 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   loaded.normal_load.assign(loaded.size(), 200.0);
   EXPECT_THAT(RefusalOf({loaded}, options), HasSubstr("nothing is left of record 1"));
   options = {};
-  options.preparation.skip_cycles = 2;
-  EXPECT_THAT(RefusalOf({Loop(1.2)}, options), HasSubstr("nothing is left of record 1"));
-  options = {};
   options.preparation.held_out = {{true, false}};
   EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("held-out mask"));
   options = {};

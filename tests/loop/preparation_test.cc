@@ -28,12 +28,12 @@ PreparedRecords PrepareAll(const std::vector<Record>& records, const Preparation
   return Prepare(views, options);
 }
 
-TEST(Preparation, OneMaskLeavesOutWhatWindowSkippedCyclesAndMasksDo) {
+TEST(Preparation, OneMaskLeavesOutWhatWindowCyclesAndMasksDo) {
   const std::vector<Record> records = {Made()};
   const std::size_t size = records[0].size();
   PreparationOptions options;
   options.load_window = {9.0, 11.0};
-  options.skip_cycles = 1;
+  options.cycles = {2, 9};
   options.held_out = {std::vector<bool>(size, false)};
   options.held_out[0][290] = true;
   const PreparedRecords prepared = PrepareAll(records, options);

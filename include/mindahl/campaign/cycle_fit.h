@@ -35,7 +35,6 @@ struct CycleFit {
   std::optional<double> energy;  ///< a cycle
   std::optional<double> energy_ratio;
   std::optional<double> energy_friction_coefficient;
-  std::optional<double> slope_after_reversal;
   std::optional<double> normal_load;  ///< mean, given or of the column
   // The fit; empty where it failed.
   FittedValue sigma;

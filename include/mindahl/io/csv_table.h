@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,18 +18,6 @@ struct NamedColumn {
 
 /// The name of standard input where a file is asked for; ./- is a file of that name.
 inline constexpr std::string_view kStandardInput = "-";
-
-/// Limits the memory [bytes] for a table that is read whole, and its fit. A file beyond it is
-/// refused as soon as that shows, not when it has been read.
-struct ReadLimits {
-  std::uintmax_t memory = std::numeric_limits<std::uintmax_t>::max();
-
-  /// @returns the memory [bytes] of a fit per row, and of reading it per byte of text, measured for
-  ///   records of three columns: 1.14 kB a row of 59 bytes
-  static std::uintmax_t MemoryOf(std::uintmax_t rows, std::uintmax_t text) {
-    return 1000 * rows + 3 * text;
-  }
-};
 
 /// Rows that were left out, and the fault of the first.
 struct LeftOutRows {
@@ -101,10 +88,10 @@ struct CsvTable {
 /// @param encoding     as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS, GB18030 or
 ///   Windows-1252 by the first bytes, with a note of the latter three
 /// @param skip_broken  rows with a cell too many and text among the rows are left out
-/// @throws InputError also when the file cannot be read, and where it is beyond the limits: a file
-///   that is too large, holds a zero byte or a line of more than 16 MiB is read no further
-CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits = {},
-                      const std::string& encoding = {}, bool skip_broken = false);
+/// @throws InputError also when the file cannot be read: one whose fit needs more memory than the
+///   process may have, or that holds a zero byte or a line of more than 16 MiB, is read no further
+CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {},
+                      bool skip_broken = false);
 
 /// Returns a table of columns that are in memory, to be read as a file with these names in its
 /// first line is; its lines are the rows, counted from 1.

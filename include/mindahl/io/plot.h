@@ -7,7 +7,7 @@
 
 namespace mindahl::io {
 
-/// Points are small dots for dense records; markers are large, and of another shape in each series.
+/// Points are small dots for dense records; markers are large circles.
 /// A band is a line with the area between the lower and upper ends.
 enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kBand };
 
@@ -61,7 +61,7 @@ void RequirePlotName(const std::filesystem::path& path);
 /// is lost.
 /// @throws InputError when the extension is another, the file cannot be written, or for PNG the
 ///   program rsvg-convert is not installed or fails
-/// @throws InvalidArgument naming the panel and series when a value is not finite, or not > 0 on a
+/// @throws InvalidArgument naming the series when a value is not finite, or not > 0 on a
 ///   logarithmic axis, numbers of values differ, or there is nothing to draw
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,26 +96,25 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
 ///   number, a time before that of the row above; a file beyond the limits
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {},
-                      const ReadLimits& limits = {});
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
 
 /// Reads a table in memory as ReadRecord() reads a file.
 /// @throws InputError as ReadRecord()
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
 
-/// Puts the times of files that are pieces of one record one after the other: where a file's clock
-/// begins anew, one step after the last time of the file before.
+/// Puts the times of files, or blocks of a file, that are pieces of one record one after the other:
+/// where a clock begins anew, one step after the last time of the piece before.
 class JoinedTimes {
  public:
-  /// Declares that the times that follow are from another file.
-  void NextFile() { begins_ = true; }
-  /// @param times  [s], the next; changed
-  void Shift(std::vector<double>& times);
+  /// Declares that the times that follow are from another piece.
+  void NextPiece() { begins_ = true; }
+  /// Returns the next time, in its unit, in the joined record.
+  double Next(double time);
 
  private:
   bool begins_ = false;
   double shift_ = 0.0;
-  double last_ = 0.0;
+  double last_ = -std::numeric_limits<double>::infinity();
   double step_ = 0.0;
 };
 

@@ -45,9 +45,6 @@ struct LoopFacts {
   std::optional<double> sliding_amplitude;            ///< [m]
   std::optional<double> half_gap;                     ///< [N]
   std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
-  /// Slope [N/m] of the least-squares line over the first tenth of each stroke, median over
-  /// strokes. A lower limit of the stiffness: the loop may have bent within it.
-  std::optional<double> slope_after_reversal;
   /// [-]: how far the falling stroke is from the rising one turned about the loop's centre, over
   /// T*: of the forces U_j and D_j in ten parts of the strokes the standard deviation of (U_j +
   /// D_{11−j})/2. Zero of a loop that has the symmetry of a contact; a slope of both strokes and
@@ -63,10 +60,6 @@ struct LoopFacts {
   std::optional<double> backlash;
 };
 
-/// Returns W/(4·X·|half gap|) [-]: 1 where the gap is the same over the whole stroke; empty where
-/// the amplitude or the half gap is zero or not known.
-std::optional<double> EnergyOverEvenGap(const LoopFacts& facts);
-
 /// True if a measured loop slides over most of its stroke, so that its half gap is the slip
 /// force's, whatever the law: the gap is more than half of T*, and the energy ratio at least 0.6
 /// or, as beside a spring parallel to the contact, the gap the same over the stroke to a tenth.
@@ -81,9 +74,6 @@ bool RanAway(const LoopFacts& facts, double slip_force);
 /// from 1.2 times its gross-slip displacement on, one with α = 1 at T* = 0.993 Tc; an ellipse has
 /// π/4. A spring parallel to the contact hides it.
 bool ReachesSlip(const LoopFacts& facts);
-
-/// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.
-std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);
 
 /// @param record       with the force of either sign
 /// @param reversals    as from FindReversals on the same record; the first and the last sample may

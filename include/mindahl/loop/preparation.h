@@ -49,9 +49,6 @@ struct PreparationOptions {
   /// Samples under another load [N] do not count; they still make history.
   std::optional<Interval> load_window{};
 
-  /// Cycles at the start of each record that do not count; they still make history.
-  std::size_t skip_cycles = 0;
-
   /// Samples of other cycles do not count; they still make history. The first cycle lasts from the
   /// record's start to its second reversal, each other one two reversals longer, the last to the
   /// record's end.
