@@ -11,7 +11,6 @@
 #include "core/extremes.h"
 #include "loop/interpolated.h"
 #include "loop/statistics.h"
-#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
@@ -205,14 +204,33 @@ class InterpolatedChannel {
     BridgeOver(begin, end);
   }
 
+  /// Takes everything of a kind back where there is more of it than a fraction of the samples.
+  void TakeBackIfCommon(Glitch kind, double most) {
+    const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
+    if (!(count > most * static_cast<double>(values_.size()))) return;
+    std::ranges::replace(glitches_, kind, Glitch::kNone);
+    interpolated_.assign(values_.begin(), values_.end());
+    for (std::size_t begin = 0; begin < size(); ++begin) {
+      if (glitches_[begin] == Glitch::kNone) continue;
+      std::size_t end = begin + 1;
+      while (end < size() && glitches_[end] != Glitch::kNone) ++end;
+      BridgeOver(begin, end);
+      begin = end;
+    }
+  }
+
+  [[nodiscard]] bool IsWhole() const {
+    return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
+  }
   [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
   std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
 
  private:
-  /// Draws a line between the samples about [begin, end), inside the record.
+  /// Draws a line between the samples about [begin, end); a level one at the record's ends.
   void BridgeOver(std::size_t begin, std::size_t end) {
-    const double last = interpolated_[end];
-    const double first = interpolated_[begin - 1];
+    if (begin == 0 && end == size()) return;
+    const double last = interpolated_[end < size() ? end : begin - 1];
+    const double first = begin > 0 ? interpolated_[begin - 1] : last;
     const auto steps = static_cast<double>(end - begin + 1);
     for (std::size_t i = begin; i < end; ++i) {
       const double share = static_cast<double>(i - begin + 1) / steps;
@@ -245,9 +263,11 @@ double UsualStepWithoutZeros(Readings values, const RecordView& record) {
 struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
+
+  [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-/// Returns the samples that read 0 and 0, but for those at an end of the record.
+/// Returns the samples that read 0 and 0.
 std::vector<Run> ZeroRuns(const RecordView& record) {
   const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
     return x[i] == 0 && force[i] == 0;
@@ -261,7 +281,7 @@ std::vector<Run> ZeroRuns(const RecordView& record) {
     if (!is_zero(begin)) continue;
     std::size_t end = begin + 1;
     while (end < size && is_zero(end)) ++end;
-    if (begin > 0 && end < size) runs.push_back({begin, end});
+    runs.push_back({begin, end});
     begin = end;
   }
   return runs;
@@ -270,16 +290,25 @@ std::vector<Run> ZeroRuns(const RecordView& record) {
 void FindDropouts(const RecordView& record, const GlitchRules& rules,
                   InterpolatedChannel& displacement, InterpolatedChannel& force) {
   const std::vector<Run> runs = ZeroRuns(record);
-  if (runs.empty()) return;
-  const auto lies_off = [&](Readings values) {
-    const double least = rules.dropout * UsualStepWithoutZeros(values, record);
-    return std::ranges::any_of(runs, [&](const Run& run) {
-      return OutsideOf(values[run.begin - 1], values[run.end]) > least;
-    });
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
+  const Readings x = record.displacement;
+  const double step_of_x = UsualStepWithoutZeros(x, record);
+  const double step_of_force = UsualStepWithoutZeros(record.force, record);
+  const auto lies_off = [&](const Run& run) {
+    if (!run.IsInside(record.size())) {
+      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
+    }
+    const auto outside = [&](Readings values) {
+      return OutsideOf(values[run.begin - 1], values[run.end]);
+    };
+    return outside(x) > rules.dropout * step_of_x ||
+           outside(record.force) > rules.dropout * step_of_force;
   };
-  // If one is a dropout, so are the others, wherever the loop was.
-  if (!lies_off(record.displacement) && !lies_off(record.force)) return;
+  // If one run inside the record is a dropout, so are the others, wherever the loop was.
+  const bool any = std::ranges::any_of(
+      runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
   for (const Run& run : runs) {
+    if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
     displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
     force.LeaveOut(run.begin, run.end, Glitch::kDropout);
   }
@@ -353,6 +382,15 @@ bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
   return found;
 }
 
+double LargestStep(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
+  double largest = 0.0;
+  const std::size_t last = std::min(end, channel.size());
+  for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
+    largest = std::max(largest, channel.Step(i));
+  }
+  return largest;
+}
+
 /// True if half of the samples of [begin, end) have another value than the one before them.
 bool Moves(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
   std::size_t moves = 0;
@@ -363,10 +401,9 @@ bool Moves(const InterpolatedChannel& channel, std::size_t begin, std::size_t en
 /// True if the column jumps at the end of the run [begin, end) of equal values.
 bool JumpsAtTheEnd(const InterpolatedChannel& channel, std::size_t begin, std::size_t end,
                    const GlitchRules& rules) {
-  const Readings values = channel.values();
   const std::size_t length = end - begin;
-  const double about = std::max(LargestStep(values, begin - std::min(begin, length + 1), begin),
-                                LargestStep(values, end, end + length));
+  const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
+                                LargestStep(channel, end + 1, end + 1 + length));
   return channel.Step(end) > rules.held_jump * about;
 }
 
@@ -389,6 +426,29 @@ Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
     if (end - begin >= shortest) return {begin, end};
   }
   return {values.size(), values.size()};
+}
+
+/// Finds where one channel reads one value, away from what it read before and reads again after.
+void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& other,
+                      const GlitchRules& rules) {
+  const std::size_t size = channel.size();
+  Readings values = channel.values();
+  for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
+       run = NextRun(values, run.end, rules.shortest_held)) {
+    const auto& [begin, end] = run;
+    const std::size_t length = end - begin;
+    const double in = values[begin] - values[begin - 1];
+    const double out = values[end] - values[end - 1];
+    // The steps into it and out of it are what is looked at, not what is compared with.
+    const double about =
+        std::max({LargestStep(channel, begin - std::min(begin, length), begin),
+                  LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
+    if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
+        Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
+      channel.LeaveOut(begin, end, Glitch::kDropout);
+      values = channel.values();
+    }
+  }
 }
 
 void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
@@ -415,13 +475,19 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
   InterpolatedChannel force(record.force);
   FindDropouts(record, rules, displacement, force);
   for (InterpolatedChannel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
+    channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
   }
+  FindFlatDropouts(displacement, force, rules);
+  FindFlatDropouts(force, displacement, rules);
   FindHeld(displacement, force, rules);
   FindHeld(force, displacement, rules);
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    if (channel->glitches().empty()) continue;
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
+    channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
+    if (channel->IsWhole()) continue;
     if (interpolated.glitches.empty()) interpolated.glitches.assign(record.size(), Glitch::kNone);
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (channel->glitches()[i] != Glitch::kNone)

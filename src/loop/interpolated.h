@@ -12,7 +12,7 @@ namespace mindahl::loop {
 enum class Glitch : std::uint8_t {
   kNone,
   kSpike,    ///< one channel is far off its neighbours, for one to three samples
-  kDropout,  ///< both channels read 0, off their neighbours
+  kDropout,  ///< both channels read 0, or one of them one value, off their neighbours
   kHeld,     ///< one channel repeats its last value while the other goes on, and then jumps
 };
 
@@ -31,12 +31,15 @@ struct Interpolated {
 ///   nine are smaller). So corners, turning points of few samples a cycle, and square pulses that
 ///   come again are none.
 /// - A dropout reads exactly 0 and 0, outside its neighbours' range by more than two such steps in
-///   either channel; where one does, all that read so. At an end there is none: a record may begin
-///   at rest.
+///   either channel; where one does, all inside the record that read so. At an end of the record,
+///   which may begin at rest, it is off by more than four such steps of the displacement. So is one
+///   channel alone that reads one value five times or more while the other moves, whatever it is:
+///   it jumps there and back by more than three times the steps about it and of the record.
 /// - A value is held where five or more samples of one channel are the same while the other moves,
 ///   and it then jumps, alone, by more than three times the steps about it. So rest, an encoder's
 ///   steps, and the plateau of a law that slips at a constant force are none.
-/// In the first and last two samples no spike is found.
+/// A kind that makes up more than a quarter of a channel is no glitch of it. In the first and last
+/// two samples no spike is found.
 ///
 /// @param record  valid
 /// Cost: linear in the samples.

@@ -101,7 +101,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range,
 bool Jumps(std::span<const double> displacement, const Excursion& excursion, double share) {
   constexpr std::size_t kLongest = 64;  // [samples]
   if (excursion.duration() > kLongest) return false;
-  return LargestStep(displacement, excursion.first, excursion.last) >= share * excursion.range;
+  return LargestStep(displacement, excursion) >= share * excursion.range;
 }
 
 /// Classifies an excursion by itself.
@@ -197,9 +197,9 @@ void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit vi
   }
 }
 
-/// Returns the widest of the plateaus nearly as good as the best.
-Plateau WidestPlateau(Excursions excursions, std::span<const Look> looks,
-                      const ReversalRules& rules) {
+/// Returns the widest, and the next widest, of the plateaus nearly as good as the best.
+std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<const Look> looks,
+                                           const ReversalRules& rules) {
   const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));
   if (noise == 0) return {};
   std::size_t fewest = noise;  // under no gate
@@ -208,10 +208,38 @@ Plateau WidestPlateau(Excursions excursions, std::span<const Look> looks,
   const double allowed =
       static_cast<double>(fewest) + rules.exceptions * static_cast<double>(noise);
   Plateau widest;
+  Plateau next;
   ForEachPlateau(excursions, looks, [&](const Plateau& plateau) {
     if (static_cast<double>(plateau.exceptions) > allowed) return;
-    if (plateau.width() > widest.width()) widest = plateau;
+    if (plateau.width() > widest.width()) {
+      next = widest;
+      widest = plateau;
+    } else if (plateau.width() > next.width()) {
+      next = plateau;
+    }
   });
+  return {widest, next};
+}
+
+/// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
+/// though none of them looks like it: vibration, or noise that a filter has made smooth.
+Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
+                                const ReversalRules& rules) {
+  Plateau widest;
+  double least = 0.0;  // of the brief excursions, since the last gap
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 1 < excursions.size() && judge.IsBrief(excursions[i]); ++i) {
+    const double range = excursions[i].range;
+    if (i == 0 || range > rules.clear * excursions[i - 1].range) {
+      least = range;
+      count = 0;
+    }
+    ++count;
+    const double upper = excursions[i + 1].range;
+    if (count >= rules.many && range >= rules.spread * least && upper >= rules.far * range) {
+      widest = {.lower = range, .upper = upper, .below = i + 1};
+    }
+  }
   return widest;
 }
 
@@ -237,14 +265,19 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
   looks.reserve(excursions.size());
   for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
   DoubtEnds(excursions, judge, rules, looks);
-  const Plateau chosen = WidestPlateau(excursions, looks, rules);
+  const auto [chosen, rival] = WidestPlateaus(excursions, looks, rules);
+  const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
+  if (smooth.below > chosen.below) return Doubted(excursions, smooth.gate(), chosen.gate());
   if (chosen.below == 0) return Under(excursions, 0.0);
   const bool is_narrow = chosen.upper < rules.clear * chosen.lower;
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
   if (is_narrow && static_cast<double>(chosen.below) < rules.outnumber * kept) {
     return Doubted(excursions, 0.0, chosen.gate());
   }
-  return is_narrow ? Doubted(excursions, chosen.gate(), 0.0) : Under(excursions, chosen.gate());
+  if (is_narrow) return Doubted(excursions, chosen.gate(), 0.0);
+  const bool is_rivalled = rival.width() > rules.rival * chosen.width();
+  return is_rivalled ? Doubted(excursions, chosen.gate(), rival.gate())
+                     : Under(excursions, chosen.gate());
 }
 
 }  // namespace
@@ -253,7 +286,12 @@ ReversalGate ChooseReversalGate(std::span<const double> displacement) {
   const ReversalRules rules;
   const std::vector<Excursion> excursions = FindExcursions(displacement);
   if (excursions.size() < 2) return Under(excursions, 0.0);
-  return ChooseByLooks(displacement, excursions, rules);
+  const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules);
+  // An encoder that counts to and fro is at rest, however long that takes it.
+  const double flicker = rules.counts * EncoderStep(displacement);
+  const bool flickers = excursions.front().range <= flicker;
+  const bool is_stroke = flicker >= excursions.back().range / 2;
+  return flickers && !is_stroke && flicker > chosen.gate ? Under(excursions, flicker) : chosen;
 }
 
 }  // namespace mindahl::loop

@@ -17,6 +17,9 @@ struct ReversalRules {
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
   double beyond = 1.25;
+  /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less
+  /// than the two that a motion makes.
+  double counts = 1.5;
   /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
   double rough = 0.05;
   /// [of the excursions that look like noise] Largest fraction classified otherwise.
@@ -26,8 +29,14 @@ struct ReversalRules {
   /// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
   /// drive: of random walks, whose excursions are of all ranges, it is not.
   double outnumber = 20.0;
-  /// Smooth disturbances, brief and wider, among which one at an end of the record is another.
+  /// [of the plateau's width in log(gate)] Least width of a second plateau that competes.
+  double rival = 0.5;
+  /// Smooth disturbances are distinguished from nested loops by their number,
   std::size_t many = 8;
+  /// [-] the ratio of their ranges, which lie as densely as those of noise,
+  double spread = 10.0;
+  /// [-] The third mark is the ratio of the plateau's ends above them.
+  double far = 10.0;
 };
 
 /// Sets the limits beyond which a sample is a glitch.
@@ -42,10 +51,15 @@ struct GlitchRules {
   std::size_t about = 12;
   /// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
   double dropout = 2.0;
+  /// [usual steps of the displacement] The same at an end: a record may begin at 0 and 0.
+  double end_dropout = 4.0;
   /// [samples] Fewer equal readings are common where a file has few digits.
   std::size_t shortest_held = 5;
-  /// [steps about it and of the record] Least jump from a held value to the next.
+  /// [steps about it and of the record] Least jump from a held value to the next, and there and
+  /// back of a dropout of one channel.
   double held_jump = 3.0;
+  /// [of the samples] Largest fraction that may be glitches; more of them are the record.
+  double most = 0.25;
 };
 
 /// Sets the limits within which a normal load is a series of constant ones.
@@ -112,6 +126,8 @@ struct TestPartRules {
   /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
   /// growing amplitude and a nested loop are inside.
   double travel = 0.25;
+  /// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
+  double small_part = 0.125;
   /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.
   std::size_t classes = 64;
   /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.

@@ -22,12 +22,11 @@ struct Excursion {
   [[nodiscard]] std::size_t duration() const { return last - first; }
 };
 
-/// Returns the largest step between the samples from `first` to `last` of a column; those outside
-/// it make none.
-inline double LargestStep(std::span<const double> values, std::size_t first, std::size_t last) {
+/// Returns the largest step [m] between two samples of an excursion.
+inline double LargestStep(std::span<const double> displacement, const Excursion& excursion) {
   double largest = 0.0;
-  for (std::size_t i = first + 1; i <= last && i < values.size(); ++i) {
-    const double step = values[i] - values[i - 1];
+  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
+    const double step = displacement[i] - displacement[i - 1];
     largest = std::max(largest, step < 0 ? -step : step);
   }
   return largest;

@@ -39,8 +39,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
   std::size_t count = 0;
   double lasting = 0.0;  // [samples]
   for (const Excursion& excursion : excursions) {
-    if (LargestStep(displacement, excursion.first, excursion.last) >= rules.jump * excursion.range)
-      continue;
+    if (LargestStep(displacement, excursion) >= rules.jump * excursion.range) continue;
     count += excursion.reversals;
     lasting += static_cast<double>(excursion.duration() * excursion.reversals);
     strokes.first = std::min(strokes.first, excursion.first);
@@ -74,34 +73,43 @@ std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displ
   return std::nullopt;
 }
 
-/// Returns the sample beyond which travel follows on the test; empty where none does. Follows the
-/// turning points from an end of the test's strokes outwards, as long as none leaves the positions
-/// of all before suddenly: amplitude and mean of a test may change slowly. What is left is travel
-/// unless it has as many strokes, as wide or wider, as make a test: a random motion is one.
+/// The part of a record that lies outside of its test, which ends at a sample.
+struct Part {
+  std::size_t sample = 0;
+  bool is_travel = false;
+};
+
+/// Follows the turning points from an end of the test's strokes outwards, as long as none leaves
+/// the positions of all before suddenly: amplitude and mean of a test may change slowly. What is
+/// left is travel unless it has as many strokes, as wide or wider, as make a test, and more than a
+/// small part of all: a random motion is a test, the swings of a broken specimen are none.
 /// @param points  samples of the turning points, outwards, and of the end
 /// @param travel  [m] by which travel leaves the positions
+/// @param count   number of the strokes of the record
 template <typename Points>
-std::optional<std::size_t> EndBeforeTravel(std::span<const double> displacement,
-                                           const Points& points, const RepeatedStrokes& strokes,
-                                           double travel) {
+Part Outside(std::span<const double> displacement, const Points& points,
+             const RepeatedStrokes& strokes, double travel, std::size_t count) {
   double lowest = strokes.lowest;
   double highest = strokes.highest;
   auto point = points.begin();
-  std::size_t end = *point;
+  Part outside{.sample = *point};
   for (; point != points.end(); ++point) {
     const double at = displacement[*point];
     if (at < lowest - travel || at > highest + travel) break;
     // A rest within the stroke is no turn of the test.
-    if (at < lowest + travel || at > highest - travel) end = *point;
+    if (at < lowest + travel || at > highest - travel) outside.sample = *point;
     lowest = std::min(lowest, at);
     highest = std::max(highest, at);
   }
-  if (point == points.end()) return std::nullopt;
+  if (point == points.end()) return outside;
   std::size_t as_wide = 0;
   for (auto next = std::next(point); next != points.end(); ++point, ++next) {
     if (std::abs(displacement[*next] - displacement[*point]) > strokes.range / 2) ++as_wide;
   }
-  return as_wide < TestPartRules().fewest ? std::optional(end) : std::nullopt;
+  const TestPartRules rules;
+  const auto small_part = static_cast<std::size_t>(rules.small_part * static_cast<double>(count));
+  outside.is_travel = as_wide < std::max(rules.fewest, small_part);
+  return outside;
 }
 
 /// Returns the number of samples, at least one, at which the displacement rests from its start.
@@ -172,15 +180,13 @@ class TestSearch {
     points.push_back(displacement.size() - 1);
     const auto turn = [&](std::size_t sample) { return std::ranges::lower_bound(points, sample); };
     const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
-    if (const auto first = EndBeforeTravel(
-            displacement, std::ranges::subrange(begin, points.rend()), *strokes, travel)) {
-      CutBefore(LeftOutReason::kTravel, from + *first);
-    }
-    if (const auto last =
-            EndBeforeTravel(displacement, std::ranges::subrange(turn(strokes->last), points.end()),
-                            *strokes, travel)) {
-      CutAfter(LeftOutReason::kTravel, from + *last + 1);
-    }
+    const Part before = Outside(displacement, std::ranges::subrange(begin, points.rend()), *strokes,
+                                travel, points.size());
+    if (before.is_travel) CutBefore(LeftOutReason::kTravel, from + before.sample);
+    const Part after =
+        Outside(displacement, std::ranges::subrange(turn(strokes->last), points.end()), *strokes,
+                travel, points.size());
+    if (after.is_travel) CutAfter(LeftOutReason::kTravel, from + after.sample + 1);
   }
 
   void LeaveOutRests() {

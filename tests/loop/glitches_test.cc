@@ -193,13 +193,13 @@ TEST(FindGlitches, FindsSpikesOfOneToThreeSamplesWhereTheyAre) {
   }
 }
 
-TEST(FindGlitches, FindsDropoutsOfAnyLengthInsideTheRecord) {
+TEST(FindGlitches, FindsDropoutsOfAnyLengthAlsoAtTheEnds) {
   Generator generator(3);
   Record record = Noisy();
   for (double& displacement : record.displacement) displacement -= 110;  // far off
   std::vector<std::size_t> zeros;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    if (i == 0 || i + 1 == record.size() || (i > 4 && generator() % 20 != 0)) continue;
+    if (i > 2 && i + 4 < record.size() && generator() % 20 != 0) continue;
     zeros.push_back(i);
   }
   for (const std::size_t i : zeros) record.displacement[i] = record.force[i] = 0.0;
@@ -222,6 +222,32 @@ TEST(FindGlitches, FindsAChannelThatIsHeldOnItsWay) {
     EXPECT_EQ(count.total(), 11U);
     EXPECT_EQ(count.examples[0], at + 1);  // the first of the readings is a good one
   }
+}
+
+TEST(FindGlitches, ADropoutOfOneChannelComesBackToWhereItWas) {
+  // A step that stays is the record's, a rest of both channels the drive's.
+  Record step = Noisy();
+  for (std::size_t i = 60; i < 68; ++i) step.force[i] = 5.0;
+  for (std::size_t i = 68; i < step.size(); ++i) step.force[i] += 10.0;
+  EXPECT_EQ(CountIn(step).dropouts, 0U);
+  Record rest = Noisy();
+  for (std::size_t i = 60; i < 68; ++i) {
+    rest.force[i] = 5.0;
+    rest.displacement[i] = rest.displacement[60];
+  }
+  EXPECT_EQ(CountIn(rest).dropouts, 0U);
+}
+
+TEST(FindGlitches, TakesNothingForAGlitchThatMakesUpAQuarterOfTheRecord) {
+  const auto with_zeros = [](std::size_t every) {
+    Record record = Noisy();
+    for (std::size_t i = 1; i + 1 < record.size(); i += every) {
+      record.displacement[i] = record.force[i] = 0.0;
+    }
+    return CountIn(record).dropouts;
+  };
+  EXPECT_EQ(with_zeros(3), 0U);
+  EXPECT_GT(with_zeros(5), 150U);
 }
 
 TEST(FindGlitches, NamesTheFirstFew) {
@@ -303,7 +329,8 @@ bool HasDropoutAt(const GlitchRules& rules, double level, std::size_t at) {
   const double shift = level - record.displacement[at];
   for (double& displacement : record.displacement) displacement += shift;
   for (double& force : record.force) force = 0.01 * (force - record.force[at]);
-  record.displacement[at + 1] = record.force[at + 1] = 0.0;  // neighbours at `level` and beyond
+  const std::size_t row = at == 0 ? 0 : at + 1;  // its neighbours are at `level` and beyond
+  record.displacement[row] = record.force[row] = 0.0;
   return HasGlitch(record, rules);
 }
 
@@ -351,11 +378,26 @@ const std::vector<Rule>& Rules() {
        [](const GlitchRules& rules) {
          return HasDropoutAt(rules, 2.5, 20) && !HasDropoutAt(rules, 1.5, 20);
        }},
+      {"end_dropout", scaled(&GlitchRules::end_dropout),
+       [](const GlitchRules& rules) {
+         return HasDropoutAt(rules, 4.5, 0) && !HasDropoutAt(rules, 2.5, 0);
+       }},
       {"shortest_held", scaled(&GlitchRules::shortest_held),
        [](const GlitchRules& rules) { return HasHeld(rules, 5, 5) && !HasHeld(rules, 4, 5); }},
       {"held_jump", scaled(&GlitchRules::held_jump),
        [](const GlitchRules& rules) {
          return HasHeld(rules, 10, 3.5) && !HasHeld(rules, 10, 2.5);
+       }},
+      {"most", scaled(&GlitchRules::most),
+       [](const GlitchRules& rules) {
+         const auto has = [&](std::size_t every) {
+           Record record = Steps(900);
+           for (std::size_t i = 1; i < record.size(); i += every) {
+             record.displacement[i] = record.force[i] = 0.0;
+           }
+           return HasGlitch(record, rules);
+         };
+         return has(5) && !has(3);
        }},
   };
   return list;

@@ -291,6 +291,21 @@ TEST(ChooseReversalGate, ASingleNoisyStrokeHasNone) {
   }
 }
 
+TEST(ChooseReversalGate, SaysBothCountsWhereItIsNotSure) {
+  // Vibration: as smooth as a drive, with ranges from a little to a tenth of a stroke.
+  History history = Sine(3, 4000);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const auto at = static_cast<double>(i);
+    history[i] += 0.02 * std::sin(at / 5) * (1.01 + std::sin(at / 97));
+  }
+  const ReversalGate choice = ChooseReversalGate(history);
+  EXPECT_FALSE(choice.certain);
+  EXPECT_EQ(choice.count, 6U);
+  EXPECT_GT(choice.other_count, 100U);
+  EXPECT_EQ(FindReversals(history, choice.gate).size(), choice.count);
+  EXPECT_EQ(FindReversals(history, choice.other_gate).size(), choice.other_count);
+}
+
 class MeasuredReversals : public ::testing::Test {
  protected:
   /// Rows of a measured record, or a skip.
@@ -374,6 +389,22 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
   // 0.5 Hz for 18 s and a ramp at either end.
   EXPECT_EQ(CountGated(position), 17U);
   EXPECT_GT(FindReversals(position, 0.0).size(), 1000U) << "the gate has nothing to do";
+}
+
+TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
+  // Two cycles over seven counts, whose readings flicker by one wherever a count ends.
+  constexpr double kCount = 1e-6;
+  Generator generator(3);
+  for (int record = 0; record < 20; ++record) {
+    std::vector<double> displacement;
+    for (std::size_t i = 0; i <= 800; ++i) {
+      const double place = 3.5 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 400);
+      displacement.push_back(kCount * std::round(place + 0.2 * testing::Normal(generator)));
+    }
+    const ReversalGate gate = ChooseReversalGate(displacement);
+    EXPECT_GE(gate.gate, 1.5 * kCount);
+    EXPECT_EQ(gate.count, 4U) << record;
+  }
 }
 
 }  // namespace

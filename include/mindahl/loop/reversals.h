@@ -96,9 +96,11 @@ struct ReversalGate {
 ///   1.25·2√(2 ln n) standard deviations,
 /// or made mostly of a jump between two samples. Of the plateaus of the count that nearly agree
 /// with these looks the widest in log(gate) is taken, never beyond a stroke that looks like the
-/// drive's; the gate lies in it, at most at twice the range below it. Where nothing looks like
-/// noise - a clean record, nested loops, few samples a cycle, vibration as smooth as a drive - it
-/// is 0. The choice is uncertain where the plateau is narrow.
+/// drive's; the gate lies in it, at most at twice the range below it, and at one and a half counts
+/// where an encoder flickers by one. Where nothing looks like
+/// noise - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain
+/// where the plateau is narrow, where another is half as wide, and where excursions that lie as
+/// densely as those of noise are smooth, as vibration is.
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.
