@@ -93,8 +93,7 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
 
 /// Includes Mindlin's contact in a compliant rig, where the record does not distinguish it.
 void ConsiderRig(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
-  const auto rig =
-      TryRig(fitted, result.parameters[kShape], attempt.options, attempt.solver);
+  const auto rig = TryRig(fitted, result.parameters[kShape], attempt.options, attempt.solver);
   if (!rig) return;
   result.parameters = IncludeRig(*rig, attempt.options.thresholds, std::move(result.parameters));
   result.findings.push_back(

@@ -31,7 +31,7 @@ std::string ListHtml(const std::vector<std::string>& sentences);
 std::string VerdictHtml(std::string_view css_class, std::string_view word,
                         std::string_view sentence);
 
-/// A row of a table.
+/// Holds a row of a table.
 struct TableLine {
   std::string head;
   std::vector<std::string> cells;

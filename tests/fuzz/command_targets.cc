@@ -179,6 +179,15 @@ struct TrackedTest {
   }
 };
 
+/// Returns a row of the table without the energy of all cycles up to it: the sum has also what
+/// somebody changed.
+std::string WithoutTotal(std::string row) {
+  const std::size_t end = row.rfind(',', row.rfind(',') - 1);
+  const std::size_t begin = row.rfind(',', end - 1);
+  if (end != std::string::npos && begin < end) row.erase(begin, end - begin);
+  return row;
+}
+
 }  // namespace
 
 void FitRecords(Input input) {
@@ -260,7 +269,8 @@ void ResumeTables(Input input) {
     const std::vector<std::string> undisturbed = LinesOf(test.table);
     Require(lines.size() == undisturbed.size(), "a table that is gone on with becomes as long");
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      Require(lines[i] == undisturbed[i] || (i < before.size() && lines[i] == before[i]),
+      Require(WithoutTotal(lines[i]) == WithoutTotal(undisturbed[i]) ||
+                  (i < before.size() && lines[i] == before[i]),
               "a table that is gone on with becomes the undisturbed");
     }
   }

@@ -25,8 +25,8 @@ struct Thresholds {
   /// [missed over half gap or T*] A model that misses more gives no parameters of the shape. Where
   /// the law carries half of Tc, an error of 0.15 is a third of the force: the knee is elsewhere.
   double failing_misfit = 0.15;
-  /// [p] What white noise makes less often is not noise: residuals that repeat, or an omitted term.
-  /// 22 terms are tried, so one loop in forty has a cause by chance.
+  /// [p] Residuals that repeat, and omitted terms, are not noise if white noise makes them less
+  /// often. 22 terms are tried, so one loop in forty has a cause by chance.
   double rare_chance = 1e-3;
   /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
   /// are nested loops, run-in or run-out; the same as for X and T*.
@@ -70,10 +70,10 @@ struct Thresholds {
   /// [p] Residuals that noise alone makes less often are not noise alone, and records whose noise
   /// is one have variances that differ so less often. One adequate loop in two hundred is doubted.
   double doubt = 0.005;
-  /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the tests
-  /// of omitted terms say; larger than those of the last fit, or of another term, they are those of
-  /// another minimum or a worse term. Noise by pure error or by neighbours is known to a few per
-  /// cent: half as much again is more.
+  /// [rms over rms] Residuals larger than the noise by this factor are not noise, whatever the
+  /// tests of omitted terms say; larger than those of the last fit, or of another term, they are
+  /// those of another minimum or a worse term. Noise by pure error or by neighbours is known to a
+  /// few per cent: half as much again is more.
   double larger_rms = 1.5;
   /// [samples] Columns of omitted terms are looked for if so many samples pay for each. With fewer
   /// the columns together explain much of any noise.
