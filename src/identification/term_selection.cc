@@ -431,6 +431,10 @@ bool Selection::Add(std::size_t candidate, Model model) {
   considered.added = true;
   result_.added.push_back(considered.name);
   base_ = std::move(model);
+  // An initial state that was found without the term may be another with it.
+  Model anew = FitWith({}, nullptr);
+  const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
+  if (is_fit && Gains(anew.fit)) base_ = std::move(anew);
   return true;
 }
 

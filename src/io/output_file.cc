@@ -33,9 +33,7 @@ void ReplaceName(const char* old_name, const char* new_name) {
 /// Only what POSIX allows in a handler. The signal is at its default again and ends
 /// the program as soon as it is no longer blocked, on return.
 void RemoveAndRaise(int signal) {
-  for (const std::atomic<const char*>& slot : registered_names) {
-    if (const char* const name = slot.load()) RemoveName(name);
-  }
+  RemoveTemporaryFiles();
   std::raise(signal);
 }
 
@@ -67,6 +65,12 @@ class TemporaryName {
 }
 
 }  // namespace
+
+void RemoveTemporaryFiles() {
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) RemoveName(name);
+  }
+}
 
 void RemoveTemporaryFilesOnSignals() { HandleEndingSignals(&RemoveAndRaise); }
 

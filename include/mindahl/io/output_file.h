@@ -19,6 +19,10 @@ namespace mindahl::io {
 /// it returns, which takes some milliseconds.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
+/// Removes the files that this module has begun and not yet finished; allocates nothing. For a
+/// program that is about to end.
+void RemoveTemporaryFiles();
+
 /// For a program: from now on SIGINT, SIGTERM and SIGHUP, unless they are ignored, remove the files
 /// that this module has begun and not yet finished, and then end the program as they would have.
 void RemoveTemporaryFilesOnSignals();
