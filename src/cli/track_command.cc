@@ -337,8 +337,8 @@ class TrackRun {
       try {
         if (!has_write_failed_) tracker_->Finish();
         if (output_) output_->Finish();
-      } catch (
-          const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
+        // NOLINTNEXTLINE(bugprone-empty-catch): the disk, as the first one says
+      } catch (const InputError&) {
       }
       throw InputError(fmt::format("{}; {} rows are kept in {}: repair the fault and add --resume",
                                    error.what(), test_.fits, options_.output));

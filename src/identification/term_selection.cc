@@ -579,8 +579,11 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
     tried.insert(tried.begin(), {c, {}});
   };
   if (HasGap(law)) try_first(*Find("backlash"));
-  const auto column = std::ranges::find_if(candidates_, FollowsForce);
-  if (column != candidates_.end()) try_first(column - candidates_.begin());
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    if (!FollowsForce(candidates_[c])) continue;
+    try_first(c);
+    break;
+  }
   tried.resize(std::min(tried.size(), most));
   std::multimap<double, std::string, std::greater<>> by_gain;
   for (const auto& [c, score] : tried) {

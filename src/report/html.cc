@@ -152,10 +152,12 @@ std::string SideBySide(std::string_view parts) {
 
 std::string ProvenanceHtml(const Provenance& provenance) {
   std::vector<TableLine> inputs;
+  inputs.reserve(provenance.inputs.size());
   for (const InputFile& input : provenance.inputs) {
     inputs.push_back({input.name, {input.sha256.value_or("not a regular file, read once")}});
   }
   std::vector<TableLine> options;
+  options.reserve(provenance.options.size());
   for (const auto& [name, value] : provenance.options) options.push_back({name, {value}});
   return SectionHtml("How to reproduce this page",
                      (provenance.command.empty() ? ""
