@@ -25,4 +25,3 @@ if(MINDAHL_BUILD_PROGRAM)
   add_library(tomlplusplus::headers INTERFACE IMPORTED)
   target_include_directories(tomlplusplus::headers INTERFACE ${TOMLPLUSPLUS_INCLUDE_DIR})
 endif()
-

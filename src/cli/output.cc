@@ -65,6 +65,14 @@ struct Output {
 };
 
 void RequireWritable(const Output& output) {
+  constexpr std::array<std::string_view, 11> kNotWritten = {
+      ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
+      ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
+  const std::string ending = LowerCase(fs::path(output.path).extension().string());
+  if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
+    throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
+                                 output.option, output.path, ending));
+  }
   std::error_code ignored;
   if (output.is_directory) return;
   if (fs::is_directory(output.path, ignored)) {

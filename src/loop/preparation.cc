@@ -124,11 +124,17 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
           "--select load=LO:HI needs a normal load in every record: name its column with "
           "--normal-load-column");
     }
+    const auto [least, greatest] = ExtremesOf(record.normal_load);
+    const auto& [lower, upper] = *options.load_window;
+    const auto lies_inside = [&](double load) { return load >= lower && load <= upper; };
+    if (std::ranges::none_of(record.normal_load, lies_inside)) {
+      throw InvalidArgument(
+          fmt::format("--select load={}:{} holds no sample: the normal load runs from {:.6g} to "
+                      "{:.6g} N",
+                      lower, upper, least, greatest));
+    }
     for (std::size_t i = 0; i < record.size(); ++i) {
-      const double load = record.normal_load[i];
-      if (load < options.load_window->lower || load > options.load_window->upper) {
-        prepared.counts[i] = 0;
-      }
+      if (!lies_inside(record.normal_load[i])) prepared.counts[i] = 0;
     }
   }
   LeaveOutBeyondRanges(prepared, number, options);

@@ -243,8 +243,9 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"LoadWindowUpsideDown",
                {"--load-window", "5:4"},
                "'5:4' is empty: the first number must be the smaller"},
-        Misuse{
-            "LoadWindowWithoutSamples", {"--select", "load=5:6"}, "lie outside what --select says"},
+        Misuse{"LoadWindowWithoutSamples",
+               {"--select", "load=5:6"},
+               "--select load=5:6 holds no sample: the normal load runs from 100 to 100 N"},
         Misuse{"LagBeyondTheRecord", {"--fix", "lag=1e6"}, "nothing is left of record 1"},
         Misuse{"AsymmetryOfOneSense",
                {"--fix", "asymmetry=1"},

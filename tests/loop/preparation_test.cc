@@ -51,6 +51,22 @@ TEST(Preparation, OneMaskLeavesOutWhatWindowCyclesAndMasksDo) {
   EXPECT_EQ(prepared.counted(), size - left_out);
 }
 
+TEST(Preparation, RefusesALoadWindowThatHoldsNoSampleWithTheRangeOfTheLoad) {
+  const std::vector<Record> records = {Made()};
+  const auto message_of = [&](double lower, double upper) {
+    PreparationOptions options;
+    options.load_window = {lower, upper};
+    return MessageOf<InvalidArgument>([&] { PrepareAll(records, options); });
+  };
+  EXPECT_EQ(message_of(10.5, 11.5),
+            "--select load=10.5:11.5 holds no sample: the normal load runs from 10 to 12 N");
+  EXPECT_THAT(message_of(13, 20), HasSubstr("holds no sample"));
+  EXPECT_THAT(message_of(1, 9), HasSubstr("holds no sample"));
+  PreparationOptions at_the_end;
+  at_the_end.load_window = {1, 10};
+  EXPECT_GT(PrepareAll(records, at_the_end).counted(), 0U);
+}
+
 /// Places of the samples that count.
 std::vector<std::size_t> Counting(const PreparedRecord& record) {
   std::vector<std::size_t> places;
