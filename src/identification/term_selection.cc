@@ -564,7 +564,7 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
 }
 
 /// Fits each of the few candidates that promise most, and returns those that can be added, the one
-/// that leaves least first.
+/// that gains most first; the gain of a column that follows the force counts twice.
 std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law,
                                            std::size_t most) {
   if (!IsFitted(law) || !Begin(options, law, TermCandidates(records_, options, law))) return {};
@@ -572,28 +572,27 @@ std::vector<std::string> Selection::Likely(const FitOptions& options, const FitR
   std::erase_if(tried, [&](const Gain& gain) {
     return gain.score.gain < Limits().worthwhile_gain || IsRefused(gain);
   });
-  // What no linear step predicts is tried first: a gap, and a column that makes the force, without
-  // which the law takes its part.
+  // A linear step does not predict the gain of a gap, nor that of a column whose force the law has
+  // taken up: these two are fitted first.
   const auto try_first = [&](std::size_t c) {
     std::erase_if(tried, [&](const Gain& gain) { return gain.candidate == c; });
     tried.insert(tried.begin(), {c, {}});
   };
   if (HasGap(law)) try_first(*Find("backlash"));
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    if (!FollowsForce(candidates_[c])) continue;
-    try_first(c);
-    break;
+  const auto column = std::ranges::find_if(candidates_, FollowsForce);
+  if (column != candidates_.end()) {
+    try_first(static_cast<std::size_t>(column - candidates_.begin()));
   }
   tried.resize(std::min(tried.size(), most));
   std::multimap<double, std::string, std::greater<>> by_gain;
   for (const auto& [c, score] : tried) {
     const Model model =
         FitWith(candidates_[c].choice, score.values.empty() ? nullptr : &score.values);
-    // A column takes its own part of Tc.
+    // A column that causes a part of the force reduces Tc: that alone does not rule it out.
     const std::string_view obstacle = ObstacleTo(model);
     const bool is_column = FollowsForce(candidates_[c]);
     if (!obstacle.empty() && !(is_column && obstacle == "confounded" && Gains(model.fit))) continue;
-    // What was measured and gains half as much as a term is the better explanation.
+    // A measured column is preferred to a term that gains less than twice as much.
     const double gain = base_.fit.rms - model.fit.rms;
     by_gain.emplace(is_column ? gain / Limits().rival : gain, candidates_[c].considered.name);
   }

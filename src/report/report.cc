@@ -162,7 +162,7 @@ std::string DifferentLoads(const Report& report) {
     least = std::min(least, half_gap);
     greatest = std::max(greatest, half_gap);
   }
-  if (!(greatest > identification::Thresholds().other_test * least)) return "";
+  if (!(greatest > report.options.thresholds.other_test * least)) return "";
   const std::string_view unit = report.units.force;
   return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",
                      Quantity(least, unit, 3), Quantity(greatest, unit, 3),

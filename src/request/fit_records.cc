@@ -317,7 +317,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
                           .misfit_before = *before,
                           .misfit_after = *before};
     if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
-    if (!with.fit.covariates.empty()) step.text = "column " + with.fit.covariates.front();
+    const bool by_column = !with.fit.covariates.empty();
+    if (by_column) step.text = "column " + with.fit.covariates.front();
     // With the term another law may be the better one, and miss otherwise.
     if (request.fit.model == nullptr) {
       step.options += fmt::format(" --model {}", options.model->name);
@@ -332,7 +333,6 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       const double most = (1 - options.thresholds.advised_gain) * *before;
-      const bool by_column = !with.fit.covariates.empty();
       if (!(step.misfit_after <= most) ||
           LosesSlipForce(fit, found, by_column, options.thresholds)) {
         continue;
