@@ -173,7 +173,8 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
             "--normal-load-column");
   Record loaded = Loop();
   loaded.normal_load.assign(loaded.size(), 200.0);
-  EXPECT_THAT(RefusalOf({loaded}, options), HasSubstr("nothing is left of record 1"));
+  EXPECT_EQ(RefusalOf({loaded}, options),
+            "--select load=90:110 holds no sample: the normal load runs from 200 to 200 N");
   options = {};
   options.preparation.held_out = {{true, false}};
   EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("held-out mask"));
