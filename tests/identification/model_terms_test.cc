@@ -183,26 +183,5 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("rig_stiffness [N/m] = -1 is invalid"));
 }
 
-TEST(ModelTerms, LoopsFarFromSlipNeverHaveAnIdentifiableSlipForce) {
-  constexpr int kSeeds = 60;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
-    Generator generator(static_cast<std::uint64_t>(seed));
-    const double lambda = std::vector{0.05, 0.1, 0.15}[generator() % 3];
-    const double cycles = 2.0 + static_cast<double>(generator() % 9);
-    const bool steady = generator() % 2 == 0;
-    const History displacement = Cycling(Wave::kSine, lambda * kGrossSlip, cycles + 1, 60);
-    Record record =
-        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
-    // From the second extreme on the loop is closed.
-    record = testing::From(record, steady ? 45 : 0);
-    const double peak = *std::ranges::max_element(record.force);
-    const FitResult fit = FitOne(WithForceNoise(record, 0.01 * peak, generator));
-    const ParameterEstimate& slip_force = *fit.Find("slip_force");
-    EXPECT_NE(slip_force.identifiability, Identifiability::kIdentifiable)
-        << "seed " << seed << ", lambda " << lambda << ", cycles " << cycles << ", steady "
-        << steady << ": " << slip_force.value << " of " << kMindlin.slip_force;
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::identification::model_terms_test

@@ -133,19 +133,22 @@ TEST(Noise, ShapeExponentAtItsBoundHasAOneSidedIntervalAndNoStandardError) {
 }
 
 TEST(Noise, LoopFarFromSlipNeverHasAnIdentifiableSlipForce) {
-  constexpr int kSeeds = 200;
-  constexpr double kLambda = 0.15;
-  const Record clean = LoopOf(kMindlin, Cycling(Wave::kSine, kLambda * kGrossSlip, 1.5, 100));
-  const double peak = *std::ranges::max_element(clean.force);
+  constexpr int kSeeds = 120;
   int confident = 0;
   int stiff = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Generator generator(static_cast<std::uint64_t>(seed));
-    const FitResult fit = FitOne(WithForceNoise(clean, 0.01 * peak, generator));
+    const double lambda = std::array{0.05, 0.1, 0.15}[generator() % 3];
+    const double cycles = 1.5 + static_cast<double>(generator() % 9);
+    const Record clean = LoopOf(kMindlin, Cycling(Wave::kSine, lambda * kGrossSlip, cycles, 60));
+    // From the second extreme on the loop is closed.
+    const Record record = testing::From(clean, generator() % 2 == 0 ? 45 : 0);
+    const double peak = *std::ranges::max_element(record.force);
+    const FitResult fit = FitOne(WithForceNoise(record, 0.01 * peak, generator));
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     if (slip_force.is_known()) {
       ++confident;
-      ADD_FAILURE() << "seed " << seed << ": " << slip_force.value;
+      ADD_FAILURE() << "seed " << seed << ", lambda " << lambda << ": " << slip_force.value;
     }
     // What it does show is the stiffness: of contact and rig, where it cannot tell these.
     stiff += fit.Find("sigma")->is_known() || fit.FindFinding("shape_or_rig") != nullptr;
