@@ -366,6 +366,9 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
   }
   ceres::Solver::Options search = CeresOptionsOf(options, ceres::DENSE_QR);
   search.max_num_iterations = max_iterations;
+  // A step that lowers the cost less than it promises is damped: to search along it instead took as
+  // many evaluations again, and ended no lower.
+  search.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(search, &problem, &summary);
   return summary;
