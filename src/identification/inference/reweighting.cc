@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/statistics/univariate_statistics.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -21,6 +22,7 @@ namespace {
 /// A standard deviation from as many draws is good to 1/√(2·200) = 5 %; of long records fewer,
 /// whose many strokes average.
 constexpr std::size_t kMostDraws = 200;
+constexpr std::size_t kDrawsForWeights = 40;
 constexpr std::size_t kLeastDraws = 20;
 constexpr std::size_t kMostNumbers = 400'000;
 constexpr std::uint64_t kSeed = 1;
@@ -48,13 +50,14 @@ std::vector<double> DrawReading(const loop::PreparedRecord& record, double lengt
 }  // namespace
 
 DisplacementErrors::DisplacementErrors(const loop::PreparedRecords& records,
-                                       const ScaledRecords& data)
+                                       const ScaledRecords& data, Depth depth)
     : data_(data) {
   if (std::ranges::none_of(records.records,
                            [](const auto& record) { return record.displacement_noise > 0; })) {
     return;
   }
-  draws_.resize(std::clamp(kMostNumbers / data.samples(), kLeastDraws, kMostDraws));
+  const std::size_t most = depth < Depth::kErrors ? kDrawsForWeights : kMostDraws;
+  draws_.resize(std::clamp(kMostNumbers / data.samples(), kLeastDraws, most));
   Draws draws(kSeed);
   for (std::vector<Drawn>& draw : draws_) {
     for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -142,6 +145,12 @@ double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
   return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
 }
 
+double RmsDifference(std::span<const double> a, std::span<const double> b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
 /// One round of weights, from residuals without weights.
 class Weighting {
  public:
@@ -163,15 +172,8 @@ class Weighting {
     std::vector<double> residual(problem_.size());
     response.Bind(problem_);
     Predict(problem_, theta, response, residual);
-    std::vector<double> from_displacement(residual.size(), 0.0);  // variance
+    std::vector<double> from_displacement = VarianceOfDraws(residual, theta);
     TakeOffMeasured(data_, residual);
-    if (errors_.any()) {
-      const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
-      const auto draws = static_cast<double>(drawn.cols());
-      for (std::size_t i = 0; i < residual.size(); ++i) {
-        from_displacement[i] = drawn.row(static_cast<Eigen::Index>(i)).squaredNorm() / draws;
-      }
-    }
     Noise noise;
     noise.samples = data_.counted;
     noise.confidence = options_.confidence;
@@ -205,6 +207,7 @@ class Weighting {
                              : std::max(RobustScale(standardised), kRoundingRms / unit);
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
     scale_ = unit * scale;
+    noise_ = unit;
     without_loss_ = from_displacement;
     noise.force_share = std::move(share);
     return noise;
@@ -240,6 +243,23 @@ class Weighting {
     }
   }
 
+  /// Variance σ_T² of the draws at every sample; that of the last time where the forces have moved
+  /// by next to nothing since.
+  const std::vector<double>& VarianceOfDraws(const std::vector<double>& force,
+                                             std::span<const double> theta) {
+    if (variance_of_draws_.empty()) {
+      variance_of_draws_.assign(force.size(), 0.0);
+    } else if (RmsDifference(force, drawn_at_) < kHarmless * noise_) {
+      return variance_of_draws_;
+    }
+    if (!errors_.any()) return variance_of_draws_;
+    const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
+    Eigen::Map<Eigen::VectorXd>(variance_of_draws_.data(), drawn.rows()) =
+        drawn.rowwise().squaredNorm() / static_cast<double>(drawn.cols());
+    drawn_at_ = force;
+    return variance_of_draws_;
+  }
+
   /// σ_F of each record, none below a thousandth of the largest, and of all of them.
   void SetNoiseOfRecords(const std::vector<double>& residual,
                          const std::vector<double>& from_displacement, Loss loss,
@@ -269,7 +289,7 @@ class Weighting {
 
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
   /// displacement determine it. Where outliers are expected, that for which the standardised
-  /// residuals have the median of normal ones. Bisection.
+  /// residuals have the median of normal ones.
   /// @param samples_a_degree  samples over degrees of freedom
   [[nodiscard]] double ForceNoise(const std::vector<double>& residual,
                                   const std::vector<double>& from_displacement, Loss loss,
@@ -300,14 +320,17 @@ class Weighting {
     for (std::size_t i = begin; i < end; ++i) {
       high = std::max(high, 2 * residual[i] * residual[i]);
     }
-    double low = kRoundingRms * kRoundingRms;
-    if (!(excess(low) > 0)) return std::sqrt(low);
-    constexpr int kBisections = 60;
-    for (int k = 0; k < kBisections; ++k) {
-      const double middle = std::sqrt(low * high);
-      (excess(middle) > 0 ? low : high) = middle;
-    }
-    return std::sqrt(high);
+    const double low = kRoundingRms * kRoundingRms;
+    const double at_low = excess(low);
+    const double at_high = excess(high);
+    if (!(at_low > 0)) return std::sqrt(low);
+    if (!(at_high < 0)) return std::sqrt(high);
+    constexpr int kBits = 40;
+    std::uintmax_t most = 60;
+    const auto [from, to] = boost::math::tools::toms748_solve(
+        [&](double log_variance) { return excess(std::exp(log_variance)); }, std::log(low),
+        std::log(high), at_low, at_high, boost::math::tools::eps_tolerance<double>(kBits), most);
+    return std::exp((from + to) / 4);
   }
 
   void SetWeights(const std::vector<double>& standardised, const std::vector<double>& root_weight,
@@ -349,6 +372,9 @@ class Weighting {
   bool by_record_;
   std::vector<unsigned char> counts_;
   std::vector<double> without_loss_;  // root weights
+  std::vector<double> variance_of_draws_;
+  std::vector<double> drawn_at_;  // forces
+  double noise_ = 0.0;            // of the last weights
   double scale_ = 1.0;
   double degrees_ = 1.0;
   bool is_lost_ = false;
@@ -418,12 +444,8 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     }
     response.Bind(problem);
     Predict(problem, solution.theta, response, force);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      squares += (force[i] - last_force[i]) * (force[i] - last_force[i]);
-    }
+    change = RmsDifference(force, last_force);
     std::swap(force, last_force);
-    change = std::sqrt(squares / static_cast<double>(force.size()));
     const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) {
       FillCost(problem, response, solution);
