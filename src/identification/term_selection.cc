@@ -217,7 +217,7 @@ class Selection {
       : records_(records), depth_(depth), result_(result) {}
 
   void Run(const FitOptions& options);
-  bool RunNamed(FitOptions options, std::span<const std::string> names);
+  bool RunNamed(FitOptions options, std::span<const std::string> names, const FitResult* law);
   std::vector<std::string> Likely(const FitOptions& options, const FitResult& law,
                                   std::size_t most);
 
@@ -540,7 +540,8 @@ void Selection::FitLast(const FitResult& law) {
 
 /// Adds the named terms, from the solution without them.
 /// @returns false where one of them cannot be fitted so
-bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
+bool Selection::RunNamed(FitOptions options, std::span<const std::string> names,
+                         const FitResult* law) {
   result_.options = options;
   std::vector<TermCandidate> candidates;
   for (const std::string& name : names) {
@@ -549,8 +550,11 @@ bool Selection::RunNamed(FitOptions options, std::span<const std::string> names)
                   [&](const std::string& term) { return std::erase(options.terms, term) == 0; });
     candidates.push_back(std::move(candidate));
   }
-  const FitResult law = Fitter(options).Fit(records_, Depth::kErrors);
-  if (!IsFitted(law) || !law.converged || !Begin(options, law, std::move(candidates))) return false;
+  FitResult own;
+  if (law == nullptr) law = &(own = Fitter(options).Fit(records_, Depth::kErrors));
+  if (!IsFitted(*law) || !law->converged || !Begin(options, *law, std::move(candidates))) {
+    return false;
+  }
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const std::vector<Gain> gains = Score();
     const auto gain = std::ranges::find(gains, c, &Gain::candidate);
@@ -611,9 +615,9 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
 }
 
 TermSelection FitNamedTerms(std::span<const RecordView> records, const FitOptions& options,
-                            std::span<const std::string> names, Depth depth) {
+                            std::span<const std::string> names, Depth depth, const FitResult* law) {
   TermSelection result;
-  if (!options.start.empty() || !Selection(records, depth, result).RunNamed(options, names)) {
+  if (!options.start.empty() || !Selection(records, depth, result).RunNamed(options, names, law)) {
     result.fit = Fitter(options).Fit(records, depth);
   }
   return result;

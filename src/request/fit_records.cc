@@ -202,9 +202,10 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
 }
 
 /// Fits the options' law with the terms that are named or, where asked for, chosen.
+/// @param law  the fit without them, where there is one
 TermSelection FitLaw(const FitRequest& request, const FitOptions& options,
                      std::span<const Record> records, bool chooses_terms,
-                     Depth depth = Depth::kFull) {
+                     Depth depth = Depth::kFull, const FitResult* law = nullptr) {
   std::vector<std::string> named = NamedTerms(request);
   std::erase_if(named, [](const std::string& name) {
     return identification::FindTermGroup(name) == nullptr;
@@ -217,7 +218,7 @@ TermSelection FitLaw(const FitRequest& request, const FitOptions& options,
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   return chooses_terms ? identification::SelectTerms(views, options, depth)
-                       : identification::FitNamedTerms(views, options, named, depth);
+                       : identification::FitNamedTerms(views, options, named, depth, law);
 }
 
 /// Takes back a preference for the law that the program did not choose.
@@ -329,7 +330,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       tried.initial_state = options.initial_state;
       tried.model = options.model;
       const FitResult found =
-          FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals).fit;
+          FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals, &fit).fit;
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       const double most = (1 - options.thresholds.advised_gain) * *before;
