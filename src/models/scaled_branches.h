@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/extremes.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
@@ -211,8 +212,9 @@ inline void RequireSizes(const LoadingPath& path, std::span<const double> displa
 inline void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
                          std::span<const double> displacement) {
   if (law.shape_exponent <= 1) return;
-  double farthest = 0.0;
-  for (const double at : displacement) farthest = std::max(farthest, std::abs(at));
+  if (displacement.empty()) return;
+  const Extremes extremes = ExtremesOf(displacement);
+  double farthest = std::max(-extremes.least, extremes.greatest);
   double steepest = 0.0;
   double farthest_origin = 0.0;
   for (const ScaledBranch& branch : branches) {

@@ -231,8 +231,9 @@ ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& soluti
   const LawPoint point = PointAt(problem, solution.theta);
   std::vector<double> factors;
   for (const ScaledRecord& record : problem.data->records) {
+    const Eigen::ArrayXd of_samples = response.SlipFactors(record, point);
     for (const std::size_t i : record.reversals) {
-      factors.push_back(std::max(response.SlipFactor(record, point, i), 0.0));
+      factors.push_back(std::max(of_samples[static_cast<Eigen::Index>(i)], 0.0));
     }
   }
   IncludeRatios(stiffness, factors);

@@ -12,6 +12,14 @@
 #include "mindahl/models/joint_friction.h"
 
 namespace mindahl::identification {
+namespace {
+
+using Array = Eigen::Map<Eigen::ArrayXd>;
+using ConstArray = Eigen::Map<const Eigen::ArrayXd>;
+
+ConstArray ArrayOf(std::span<const double> values) { return {values.data(), std::ssize(values)}; }
+
+}  // namespace
 
 LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
   const bool is_forced = problem.data->is_forced();
@@ -202,8 +210,10 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
   const bool is_state = IsStateOfJoint(*problem_, record);
   std::vector<double> state(is_state ? record.size() : 0);
   if (is_state) DifferentiatePath(at, r, state, {});
+  Eigen::ArrayXd slip_factor;
+  if (slip_varies_) slip_factor = SlipOf(record, at).factor;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    double factor = slip_varies_ ? SlipFactor(record, at, i) : 1.0;
+    double factor = slip_varies_ ? slip_factor[static_cast<Eigen::Index>(i)] : 1.0;
     if (is_state) {
       factor *= models::JointForceSlope(state[i], LoadRatioAt(record, i),
                                         problem_->parameters.AsymmetryAt(at.theta));
@@ -309,52 +319,57 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
   }
 }
 
-Response::Slip Response::SlipAt(const ScaledRecord& record, const LawPoint& at,
-                                std::size_t sample) const {
+Response::Slip Response::SlipOf(const ScaledRecord& record, const LawPoint& at) const {
   const auto theta = [&](TermId id) { return at.theta[RowOf(id)]; };
-  const double position = record.displacement[sample];
+  const ConstArray position = ArrayOf(record.displacement);
   Slip slip;
-  slip.factor += position * (theta(TermId::kSlipSlope) + theta(TermId::kSlipCurvature) * position) +
-                 theta(TermId::kSlipTrend) * record.time[sample];
+  slip.factor =
+      1 + (position * (theta(TermId::kSlipSlope) + theta(TermId::kSlipCurvature) * position) +
+           theta(TermId::kSlipTrend) * ArrayOf(record.time));
+  slip.log_speed = Eigen::ArrayXd::Zero(position.size());
+  slip.change = slip.log_speed;
   if (!record.log_speed.empty()) {
-    slip.log_speed = record.log_speed[sample] - std::log(record.units.reference_speed);
+    slip.log_speed = ArrayOf(record.log_speed) - std::log(record.units.reference_speed);
   }
   if (Has(TermId::kSlipSpeed)) {
-    slip.change = std::expm1(theta(TermId::kSlipSpeedExponent) * slip.log_speed);
+    const double exponent = theta(TermId::kSlipSpeedExponent);
+    slip.change = slip.log_speed.unaryExpr([&](double x) { return std::expm1(exponent * x); });
     slip.factor += theta(TermId::kSlipSpeed) * slip.change;
   }
   if (Has(TermId::kDragFraction)) slip.factor -= theta(TermId::kDragFraction);
   return slip;
 }
 
-void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<double> t,
+void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<double> response,
                                 const ResponseColumns& columns) const {
   const ScaledRecord& record = problem_->data->records[r];
-  const std::vector<std::span<double>> wanted = columns.Wanted();
-  const bool has_drag = Has(TermId::kDragFraction);
-  const double drag = at.theta[RowOf(TermId::kDragFraction)];
-  const double drag_exponent = at.theta[RowOf(TermId::kDragExponent)];
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const Slip slip = SlipAt(record, at, i);
-    const double position = record.displacement[i];
-    // (v/v₀)^m along the motion, which has no memory.
-    const double dragged = has_drag ? record.velocity[i] * std::exp(-record.log_speed[i]) *
-                                          std::exp(drag_exponent * slip.log_speed)
-                                    : 0.0;
-    for (const std::span<double> column : wanted) column[i] *= slip.factor;
-    const auto set = [&](TermId id, double derivative) {
-      if (!columns[id].empty()) columns[id][i] = derivative;
-    };
-    set(TermId::kSlipSlope, t[i] * position);
-    set(TermId::kSlipCurvature, t[i] * position * position);
-    set(TermId::kSlipTrend, t[i] * record.time[i]);
-    set(TermId::kSlipSpeed, t[i] * slip.change);
-    set(TermId::kSlipSpeedExponent,
-        t[i] * at.theta[RowOf(TermId::kSlipSpeed)] * slip.log_speed * (1 + slip.change));
-    set(TermId::kDragFraction, dragged - t[i]);
-    set(TermId::kDragExponent, drag * dragged * slip.log_speed);
-    t[i] = slip.factor * t[i] + drag * dragged;
+  const auto theta = [&](TermId id) { return at.theta[RowOf(id)]; };
+  const Slip slip = SlipOf(record, at);
+  const ConstArray position = ArrayOf(record.displacement);
+  Array t(response.data(), std::ssize(response));
+  for (const std::span<double> column : columns.Wanted()) {
+    Array(column.data(), t.size()) *= slip.factor;
   }
+  const auto set = [&](TermId id, const auto& derivative) {
+    if (!columns[id].empty()) Array(columns[id].data(), t.size()) = derivative;
+  };
+  set(TermId::kSlipSlope, t * position);
+  set(TermId::kSlipCurvature, t * position * position);
+  set(TermId::kSlipTrend, t * ArrayOf(record.time));
+  set(TermId::kSlipSpeed, t * slip.change);
+  set(TermId::kSlipSpeedExponent,
+      t * theta(TermId::kSlipSpeed) * slip.log_speed * (1 + slip.change));
+  if (!Has(TermId::kDragFraction)) {
+    t *= slip.factor;
+    return;
+  }
+  // (v/v₀)^m along the motion, which has no memory.
+  const Eigen::ArrayXd dragged = ArrayOf(record.velocity) * (-ArrayOf(record.log_speed)).exp() *
+                                 (theta(TermId::kDragExponent) * slip.log_speed).exp();
+  const double drag = theta(TermId::kDragFraction);
+  set(TermId::kDragFraction, dragged - t);
+  set(TermId::kDragExponent, drag * dragged * slip.log_speed);
+  t = slip.factor * t + drag * dragged;
 }
 
 namespace {

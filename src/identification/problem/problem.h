@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -96,10 +97,9 @@ class Response {
                               models::OriginSensitivity& sensitivity);
   /// Returns the loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
-  /// Returns the slip force over Tc at a sample of the problem that is bound.
-  [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
-                                  std::size_t sample) const {
-    return SlipAt(record, at, sample).factor;
+  /// Returns the slip force over Tc at every sample of a record of the problem that is bound.
+  [[nodiscard]] Eigen::ArrayXd SlipFactors(const ScaledRecord& record, const LawPoint& at) const {
+    return SlipOf(record, at).factor;
   }
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
@@ -108,14 +108,13 @@ class Response {
   }
 
  private:
-  /// The slip force over Tc at a sample, and how it depends on the speed there.
+  /// The slip force over Tc at every sample, and how it depends on the speed there.
   struct Slip {
-    double factor = 1.0;
-    double log_speed = 0.0;  // ln(v/v₀); far below zero, and finite, where it does not move
-    double change = 0.0;     // (v/v₀)^m − 1
+    Eigen::ArrayXd factor;
+    Eigen::ArrayXd log_speed;  // ln(v/v₀); far below zero, and finite, where it does not move
+    Eigen::ArrayXd change;     // (v/v₀)^m − 1
   };
-  [[nodiscard]] Slip SlipAt(const ScaledRecord& record, const LawPoint& at,
-                            std::size_t sample) const;
+  [[nodiscard]] Slip SlipOf(const ScaledRecord& record, const LawPoint& at) const;
   /// Differentiates the response of one record by its path, over the slip force of the path.
   void DifferentiatePath(const LawPoint& at, std::size_t record, std::span<double> t,
                          const ResponseColumns& columns);
@@ -124,7 +123,7 @@ class Response {
   void DifferentiateMoved(const LawPoint& at, std::size_t record, std::span<double> t,
                           const ResponseColumns& columns);
   /// Multiplies t and its derivatives by the slip force at each sample, and adds the drag.
-  void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> t,
+  void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> response,
                         const ResponseColumns& columns) const;
   [[nodiscard]] models::NormalizedGradient GradientOf(const ResponseColumns& columns) const;
   [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
