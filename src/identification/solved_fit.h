@@ -33,8 +33,7 @@ struct Attempt {
 /// Holds the least squares of some records: what every later stage starts from.
 struct SolvedFit {
   SolvedFit(Candidate found, const Attempt& attempt)
-      : best(std::move(found)),
-        displacement_errors(attempt.prepared, attempt.data, attempt.depth) {}
+      : best(std::move(found)), displacement_errors(attempt.prepared, attempt.data) {}
 
   Candidate best;  ///< best of the initial states that were tried
   DisplacementErrors displacement_errors;

@@ -22,7 +22,6 @@ namespace {
 /// A standard deviation from as many draws is good to 1/√(2·200) = 5 %; of long records fewer,
 /// whose many strokes average.
 constexpr std::size_t kMostDraws = 200;
-constexpr std::size_t kDrawsForWeights = 40;
 constexpr std::size_t kLeastDraws = 20;
 constexpr std::size_t kMostNumbers = 400'000;
 constexpr std::uint64_t kSeed = 1;
@@ -50,14 +49,13 @@ std::vector<double> DrawReading(const loop::PreparedRecord& record, double lengt
 }  // namespace
 
 DisplacementErrors::DisplacementErrors(const loop::PreparedRecords& records,
-                                       const ScaledRecords& data, Depth depth)
+                                       const ScaledRecords& data)
     : data_(data) {
   if (std::ranges::none_of(records.records,
                            [](const auto& record) { return record.displacement_noise > 0; })) {
     return;
   }
-  const std::size_t most = depth < Depth::kErrors ? kDrawsForWeights : kMostDraws;
-  draws_.resize(std::clamp(kMostNumbers / data.samples(), kLeastDraws, most));
+  draws_.resize(std::clamp(kMostNumbers / data.samples(), kLeastDraws, kMostDraws));
   Draws draws(kSeed);
   for (std::vector<Drawn>& draw : draws_) {
     for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -247,12 +245,10 @@ class Weighting {
   /// by next to nothing since.
   const std::vector<double>& VarianceOfDraws(const std::vector<double>& force,
                                              std::span<const double> theta) {
-    if (variance_of_draws_.empty()) {
-      variance_of_draws_.assign(force.size(), 0.0);
-    } else if (RmsDifference(force, drawn_at_) < kHarmless * noise_) {
-      return variance_of_draws_;
-    }
-    if (!errors_.any()) return variance_of_draws_;
+    variance_of_draws_.resize(force.size());
+    const bool has_moved =
+        drawn_at_.empty() || !(RmsDifference(force, drawn_at_) < kHarmless * noise_);
+    if (!errors_.any() || !has_moved) return variance_of_draws_;
     const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
     Eigen::Map<Eigen::VectorXd>(variance_of_draws_.data(), drawn.rows()) =
         drawn.rowwise().squaredNorm() / static_cast<double>(drawn.cols());

@@ -9,7 +9,6 @@
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -23,9 +22,8 @@ namespace mindahl::identification {
 /// variance of a sample represents that; a drawn record has it all.
 class DisplacementErrors {
  public:
-  /// @param data   the prepared records, scaled; must outlive this
-  /// @param depth  of the fit: for weights alone fewer are drawn than for errors
-  DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data, Depth depth);
+  /// @param data  the prepared records, scaled; must outlive this
+  DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data);
 
   /// True if the displacement of a record is inexact.
   [[nodiscard]] bool any() const { return !draws_.empty(); }

@@ -365,10 +365,11 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
     problem.SetParameterUpperBound(u.data(), static_cast<int>(j), searched.upper);
   }
   ceres::Solver::Options search = CeresOptionsOf(options, ceres::DENSE_QR);
-  search.max_num_iterations = max_iterations;
-  // A step that lowers the cost less than it promises is damped: to search along it instead took as
-  // many evaluations again, and ended no lower.
+  // Ceres would search along every step, with twenty evaluations or more next to a bound. Steps by
+  // themselves end no higher, of which there may be more.
+  constexpr int kOfOneSearch = 3;
   search.max_num_line_search_step_size_iterations = 0;
+  search.max_num_iterations = kOfOneSearch * max_iterations;
   ceres::Solver::Summary summary;
   ceres::Solve(search, &problem, &summary);
   return summary;
