@@ -79,7 +79,8 @@ struct FitOptions {
   double function_tolerance = 1e-10;
   /// … or |Δθ| < 1e-13·(|θ| + 1e-13), θ non-dimensional …
   /// … or 20 steps together raise twice the log-likelihood by less than 1e-3 …
-  /// … or it has made this many steps: then the result is not converged.
+  /// … or it has made this many steps, or three times as many where it ends at a bound: then the
+  /// result is not converged.
   int max_iterations = 500;
 
   Thresholds thresholds{};

@@ -210,10 +210,9 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
   const bool is_state = IsStateOfJoint(*problem_, record);
   std::vector<double> state(is_state ? record.size() : 0);
   if (is_state) DifferentiatePath(at, r, state, {});
-  Eigen::ArrayXd slip_factor;
-  if (slip_varies_) slip_factor = SlipOf(record, at).factor;
+  const Eigen::ArrayXd slip_factors = SlipFactors(record, at);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    double factor = slip_varies_ ? slip_factor[static_cast<Eigen::Index>(i)] : 1.0;
+    double factor = slip_factors[static_cast<Eigen::Index>(i)];
     if (is_state) {
       factor *= models::JointForceSlope(state[i], LoadRatioAt(record, i),
                                         problem_->parameters.AsymmetryAt(at.theta));

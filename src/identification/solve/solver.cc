@@ -365,8 +365,8 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
     problem.SetParameterUpperBound(u.data(), static_cast<int>(j), searched.upper);
   }
   ceres::Solver::Options search = CeresOptionsOf(options, ceres::DENSE_QR);
-  // Ceres would search along every step, with twenty evaluations or more next to a bound. Steps by
-  // themselves end no higher, of which there may be more.
+  // Next to a bound Ceres would search along every step, with twenty evaluations or more. Without
+  // that its steps end no higher, though they are more.
   constexpr int kOfOneSearch = 3;
   search.max_num_line_search_step_size_iterations = 0;
   search.max_num_iterations = kOfOneSearch * max_iterations;
