@@ -18,13 +18,15 @@ namespace {
 
 /// Refuses a file whose fit would need more memory than the process may have, by as much of it as
 /// has been read. Measured for records of three columns: 1.14 kB a row of 59 bytes.
-void RequireMemory(std::uintmax_t rows, std::uintmax_t bytes, const std::string& name) {
+/// @param most  memory of the process [bytes]
+void RequireMemory(std::uintmax_t rows, std::uintmax_t bytes, std::uintmax_t most,
+                   const std::string& name) {
   const std::uintmax_t memory = 1000 * rows + 3 * bytes;
-  if (memory <= MemoryOfProcess()) return;
+  if (memory <= most) return;
   Refuse(
       "{}: {} of it need about {} of memory, more than the {} that the process may have: fit a "
       "part of the file, every n-th row, or each cycle with mindahl track",
-      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(MemoryOfProcess()));
+      name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(most));
 }
 
 }  // namespace
@@ -47,13 +49,14 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   std::string_view text = pieces.Next();
   std::error_code is_no_file;
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
-  if (!is_no_file) RequireMemory(0, size, name);
+  const std::uintmax_t most = MemoryOfProcess();
+  if (!is_no_file) RequireMemory(0, size, most, name);
   const Layout layout = FindLayout(text, name);
   TableReader reader(layout, name, skip_broken);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
     if (!reader.fault().empty()) break;
-    RequireMemory(reader.table().rows(), pieces.bytes(), name);
+    RequireMemory(reader.table().rows(), pieces.bytes(), most, name);
   }
   if (reader.fault().empty()) reader.Finish();
   if (!reader.fault().empty()) throw InputError(reader.fault());

@@ -372,7 +372,10 @@ std::vector<double> Quantity::Numbers(const CsvTable& table) const {
 }
 
 std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
-  const double value = Values(table)[row];
+  double value = sum.offset;
+  for (const auto& [column, weight] : sum.terms) {
+    value += weight * table.columns[column].values[row];
+  }
   if (std::isfinite(unit.ToSi(value))) return "";
   return fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units",
                      table.file, table.lines[row], first_column() + 1, RulesOf(role).name, value,

@@ -124,10 +124,10 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
           "--select load=LO:HI needs a normal load in every record: name its column with "
           "--normal-load-column");
     }
-    const auto [least, greatest] = ExtremesOf(record.normal_load);
     const auto& [lower, upper] = *options.load_window;
     const auto lies_inside = [&](double load) { return load >= lower && load <= upper; };
     if (std::ranges::none_of(record.normal_load, lies_inside)) {
+      const auto [least, greatest] = ExtremesOf(record.normal_load);
       throw InvalidArgument(
           fmt::format("--select load={}:{} holds no sample: the normal load runs from {:.6g} to "
                       "{:.6g} N",

@@ -211,8 +211,7 @@ inline void RequireSizes(const LoadingPath& path, std::span<const double> displa
 /// For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
 inline void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
                          std::span<const double> displacement) {
-  if (law.shape_exponent <= 1) return;
-  if (displacement.empty()) return;
+  if (law.shape_exponent <= 1 || displacement.empty()) return;
   const Extremes extremes = ExtremesOf(displacement);
   double farthest = std::max(-extremes.least, extremes.greatest);
   double steepest = 0.0;

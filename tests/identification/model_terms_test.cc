@@ -13,7 +13,6 @@ using namespace loop;
 using namespace models;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
-constexpr double kGrossSlip = 1.5e-6;
 constexpr double kRig = 6e7;  // [N/m]
 
 /// Contact and rig are told apart by the law's curvature alone: the condition of the fit, 1e4 for
