@@ -1,5 +1,6 @@
 #include "mindahl/loop/disturbances.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
@@ -55,33 +56,32 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   return is_even ? known_rests == kFewestRests : known_rests > 1;
 }
 
-/// The value at t = 0 of the least-squares parabola through 2h + 1 samples is their sum with the
-/// weights (a − b·t²); its variance is the noise's times the middle one, a.
-struct ParabolaWeights {
-  explicit ParabolaWeights(std::size_t reach) {
-    const auto h = static_cast<double>(reach);
-    const double divisor = (2 * h - 1) * (2 * h + 1) * (2 * h + 3);
-    middle = reach == 0 ? 1.0 : 3 * (3 * h * h + 3 * h - 1) / divisor;
-    fall = reach == 0 ? 0.0 : 15 / divisor;
-  }
-
-  [[nodiscard]] double Apply(std::span<const double> values, std::size_t at,
-                             std::size_t reach) const {
-    double sum = middle * values[at];
-    for (std::size_t t = 1; t <= reach; ++t) {
-      const auto distance = static_cast<double>(t);
-      sum += (middle - fall * distance * distance) * (values[at - t] + values[at + t]);
-    }
-    return sum;
-  }
-
-  double middle;
-  double fall;
-};
-
 /// Windows that are tried, each about √2 times the last.
 constexpr std::array<std::size_t, 15> kReaches = {2,  3,  4,  6,  8,   11,  16, 23,
                                                   32, 45, 64, 91, 128, 181, 256};
+
+/// Weights of 2h + 1 samples whose sum is the value at the middle one, t = 0, of the least-squares
+/// parabola through them: a − b·t². Its variance is the noise's times a.
+const Eigen::VectorXd& ParabolaWeights(std::size_t reach) {
+  static const std::vector<Eigen::VectorXd> weights = [] {
+    std::vector<Eigen::VectorXd> of_reaches;
+    for (double h = 0; of_reaches.size() <= kReaches.back(); ++h) {
+      const double divisor = (2 * h - 1) * (2 * h + 1) * (2 * h + 3);
+      const auto samples = static_cast<Eigen::Index>(2 * h + 1);
+      of_reaches.emplace_back((3 * (3 * h * h + 3 * h - 1) -
+                               15 * Eigen::ArrayXd::LinSpaced(samples, -h, h).square()) /
+                              divisor);
+    }
+    return of_reaches;
+  }();
+  return weights[reach];
+}
+
+double ParabolaAt(std::span<const double> values, std::size_t at, std::size_t reach) {
+  const Eigen::VectorXd& weights = ParabolaWeights(reach);
+  return weights.dot(
+      Eigen::Map<const Eigen::VectorXd>(values.data() + (at - reach), weights.size()));
+}
 
 /// Returns half of the widest window about a sample in which parabolas agree.
 std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise) {
@@ -92,9 +92,9 @@ std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise
   std::size_t widest = 0;
   for (const std::size_t reach : kReaches) {
     if (reach > room) break;
-    const ParabolaWeights weights(reach);
-    const double estimate = weights.Apply(values, at, reach);
-    const double deviation = kDeviations * noise * std::sqrt(weights.middle);
+    const double estimate = ParabolaAt(values, at, reach);
+    const double middle = ParabolaWeights(reach)[static_cast<Eigen::Index>(reach)];
+    const double deviation = kDeviations * noise * std::sqrt(middle);
     lowest = std::max(lowest, estimate - deviation);
     highest = std::min(highest, estimate + deviation);
     if (!(lowest <= highest)) break;
@@ -136,7 +136,7 @@ std::vector<double> DisplacementSmoother::Smooth(std::span<const double> displac
   std::vector<double> smoothed;
   smoothed.reserve(displacement.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    smoothed.push_back(ParabolaWeights(reach_[i]).Apply(displacement, i, reach_[i]));
+    smoothed.push_back(ParabolaAt(displacement, i, reach_[i]));
   }
   return smoothed;
 }

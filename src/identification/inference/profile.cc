@@ -165,7 +165,7 @@ bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter,
 }
 
 /// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
-/// is badly known, and where the likelihood at the ends of the parabola's interval is another one.
+/// is badly known, and where the likelihood at the upper end of the parabola's interval is another.
 bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
                   Solver& solver) {
   const auto& [problem, best, noise, estimates] = fitted;
@@ -176,17 +176,16 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   const double half = estimates.HalfWidth(parameter);
   if (!is_inside || IsBadlyKnown(fitted, parameter, options.thresholds)) return true;
   SolverOptions search = SolverOptionsOf(options);
-  // The parabola predicts the cost at the ends.
+  // The parabola predicts the cost at the end.
   search.predicts_last = true;
   constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
   const double critical = estimates.critical();
   search.last_step = kLastGain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(fitted, parameter, search, solver);
-  return std::ranges::any_of(std::array{-half, half}, [&](double step) {
-    const std::vector<double> start = estimates.Beside(parameter, step);
-    const double ratio = held.At(start[parameter], start) / critical;
-    return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
-  });
+  // What is cubic in the likelihood shows at either end: the one that is further away in truth.
+  const std::vector<double> start = estimates.Beside(parameter, half);
+  const double ratio = held.At(start[parameter], start) / critical;
+  return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
 }
 
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.

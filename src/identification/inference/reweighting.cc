@@ -23,7 +23,7 @@ namespace {
 /// whose many strokes average.
 constexpr std::size_t kMostDraws = 200;
 constexpr std::size_t kLeastDraws = 20;
-constexpr std::size_t kMostNumbers = 400'000;
+constexpr std::size_t kMostNumbers = 200'000;
 constexpr std::uint64_t kSeed = 1;
 
 /// Draws a reading in units of the data.
@@ -291,25 +291,18 @@ class Weighting {
                                   const std::vector<double>& from_displacement, Loss loss,
                                   std::size_t begin, std::size_t end,
                                   double samples_a_degree) const {
-    std::vector<double> standardised;
     const auto excess = [&](double variance) {
-      standardised.clear();
-      for (std::size_t i = begin; i < end; ++i) {
-        if (counts_[i] != 0) {
-          standardised.push_back(residual[i] / std::sqrt(variance + from_displacement[i]));
-        }
-      }
-      if (loss != Loss::kNone) return RobustScale(standardised) - 1;
+      std::vector<double> standardised;  // for the median
       double squares = 0.0;
       double precisions = 0.0;
-      std::size_t k = 0;
       for (std::size_t i = begin; i < end; ++i) {
         if (counts_[i] == 0) continue;
         const double precision = 1 / (variance + from_displacement[i]);
-        squares += standardised[k] * standardised[k] * precision;
+        squares += residual[i] * residual[i] * (precision * precision);
         precisions += precision;
-        ++k;
+        if (loss != Loss::kNone) standardised.push_back(residual[i] * std::sqrt(precision));
       }
+      if (loss != Loss::kNone) return RobustScale(standardised) - 1;
       return samples_a_degree * squares / precisions - 1;
     };
     double high = kRoundingRms * kRoundingRms;
