@@ -182,7 +182,7 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   const double critical = estimates.critical();
   search.last_step = kLastGain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(fitted, parameter, search, solver);
-  // What is cubic in the likelihood shows at either end: the one that is further away in truth.
+  // A skewness shows at either end.
   const std::vector<double> start = estimates.Beside(parameter, half);
   const double ratio = held.At(start[parameter], start) / critical;
   return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
