@@ -373,72 +373,51 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
 
 namespace {
 
-/// The column of a linear parameter in a record, with the derivative by what shapes it.
-class LinearColumn {
- public:
-  struct Value {
-    double value = 0.0;
-    double slope = 0.0;  // by the parameter that shapes the column (Term::shapes)
-  };
-
-  LinearColumn(const Problem& problem, std::size_t parameter, std::size_t record,
-               std::span<const double> theta)
-      : record_(problem.data->records[record]),
-        kind_(problem.parameters[parameter].term->column),
-        plain_(record_.ColumnOf(kind_, problem.parameters[parameter].column)),
-        is_power_(!problem.parameters[RowOf(TermId::kSpeedExponent)].absent),
-        speed_exponent_(theta[RowOf(TermId::kSpeedExponent)]),
-        ripple_rate_(2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)])) {
-    const TermUnits& first = problem.data->records.front().units;
-    ripple_shift_ =
-        (record_.units.displacement_reference - first.displacement_reference) / first.length;
-  }
-
-  [[nodiscard]] Value At(std::size_t i) const {
-    const double position = record_.displacement[i];
-    switch (kind_) {
-      case Regressor::kOne:
-        return {1.0};
-      case Regressor::kDisplacementSquared:
-        return {position * position};
-      case Regressor::kVelocity:
-        return is_power_ ? SpeedPower(i) : Value{plain_[i]};
-      case Regressor::kRippleCosineUp:
-      case Regressor::kRippleSineUp:
-        return record_.direction[i] > 0 ? Ripple(position) : Value{};
-      case Regressor::kRippleCosineDown:
-      case Regressor::kRippleSineDown:
-        return record_.direction[i] < 0 ? Ripple(position) : Value{};
-      default:
-        return {plain_[i]};
+/// The column of a linear parameter in a record, or its derivative by the parameter that shapes it
+/// (Term::shapes).
+Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size_t r,
+                        std::span<const double> theta, bool derivative) {
+  const ScaledRecord& record = problem.data->records[r];
+  const Parameter& of = problem.parameters[parameter];
+  const Regressor kind = of.term->column;
+  const ConstArray position = ArrayOf(record.displacement);
+  switch (kind) {
+    case Regressor::kOne:
+      return Eigen::ArrayXd::Ones(position.size());
+    case Regressor::kDisplacementSquared:
+      return position.square();
+    case Regressor::kVelocity: {
+      // A power of the speed in units of the data, so that C keeps the unit of a viscous force:
+      //   φ(v) = v·((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
+      // which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
+      if (problem.parameters[RowOf(TermId::kSpeedExponent)].absent) break;
+      const double exponent = theta[RowOf(TermId::kSpeedExponent)];
+      const Eigen::ArrayXd log_speed = ArrayOf(record.log_speed) + std::log(record.units.speed);
+      const Eigen::ArrayXd power = ArrayOf(record.velocity) * ((exponent - 1) * log_speed).exp();
+      return derivative ? Eigen::ArrayXd(power * log_speed) : power;
     }
+    case Regressor::kRippleCosineUp:
+    case Regressor::kRippleSineUp:
+    case Regressor::kRippleCosineDown:
+    case Regressor::kRippleSineDown: {
+      // cos or sin of 2πδ/λ, δ from the middle of the first record, and its derivative by ln λ.
+      const TermUnits& first = problem.data->records.front().units;
+      const double shift =
+          (record.units.displacement_reference - first.displacement_reference) / first.length;
+      const double rate = 2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)]);
+      const Eigen::ArrayXd phase = rate * (position + shift);
+      const bool is_sine = kind == Regressor::kRippleSineUp || kind == Regressor::kRippleSineDown;
+      const bool is_up = kind == Regressor::kRippleCosineUp || kind == Regressor::kRippleSineUp;
+      Eigen::ArrayXd wave = phase.sin();
+      if (is_sine == derivative) wave = phase.cos();
+      if (derivative) wave *= (is_sine ? -1.0 : 1.0) * phase;
+      return ((is_up ? 1.0 : -1.0) * ArrayOf(record.direction) > 0).select(wave, 0.0);
+    }
+    default:
+      break;
   }
-
- private:
-  /// The power of the speed in units of the data, so that C keeps the unit of a viscous force:
-  ///   φ(v) = v·(((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
-  /// which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
-  [[nodiscard]] Value SpeedPower(std::size_t i) const {
-    const double log_speed = record_.log_speed[i] + std::log(record_.units.speed);
-    const double power = plain_[i] * std::exp((speed_exponent_ - 1) * log_speed);
-    return {power, power * log_speed};
-  }
-  /// cos or sin of 2πδ/λ, and its derivative by ln λ.
-  [[nodiscard]] Value Ripple(double position) const {
-    const double phase = ripple_rate_ * (position + ripple_shift_);
-    const bool is_sine = kind_ == Regressor::kRippleSineUp || kind_ == Regressor::kRippleSineDown;
-    if (is_sine) return {std::sin(phase), -phase * std::cos(phase)};
-    return {std::cos(phase), phase * std::sin(phase)};
-  }
-
-  const ScaledRecord& record_;
-  Regressor kind_;
-  std::span<const double> plain_;  // what the record has of it
-  bool is_power_;
-  double speed_exponent_;
-  double ripple_rate_;         // 2π/λ
-  double ripple_shift_ = 0.0;  // of the record's middle from that of the first
-};
+  return ArrayOf(record.ColumnOf(kind, of.column));
+}
 
 bool IsInRecord(const Parameter& parameter, std::size_t record) {
   return !parameter.absent &&
@@ -449,9 +428,14 @@ bool IsInRecord(const Parameter& parameter, std::size_t record) {
 
 void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
                std::span<const double> theta, double factor, std::span<double> to) {
-  if (!IsInRecord(problem.parameters[parameter], r)) return;
-  const LinearColumn column(problem, parameter, r, theta);
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * column.At(i).value;
+  const Parameter& of = problem.parameters[parameter];
+  if (!IsInRecord(of, r)) return;
+  Array sum(to.data(), std::ssize(to));
+  if (of.term->column == Regressor::kOne) {
+    sum += factor;
+  } else {
+    sum += factor * ColumnOf(problem, parameter, r, theta, /*derivative=*/false);
+  }
 }
 
 bool ShapesColumns(const Problem& problem, std::size_t parameter) {
@@ -468,8 +452,8 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::
     const bool is_shaped =
         linear.column != Regressor::kNone && linear.name.starts_with(term.shapes);
     if (!is_shaped || !IsInRecord(problem.parameters[q], r)) continue;
-    const LinearColumn column(problem, q, r, theta);
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * theta[q] * column.At(i).slope;
+    Array(to.data(), std::ssize(to)) +=
+        factor * theta[q] * ColumnOf(problem, q, r, theta, /*derivative=*/true);
   }
 }
 
