@@ -68,9 +68,9 @@ const Eigen::VectorXd& ParabolaWeights(std::size_t reach) {
     for (double h = 0; of_reaches.size() <= kReaches.back(); ++h) {
       const double divisor = (2 * h - 1) * (2 * h + 1) * (2 * h + 3);
       const auto samples = static_cast<Eigen::Index>(2 * h + 1);
-      of_reaches.emplace_back((3 * (3 * h * h + 3 * h - 1) -
-                               15 * Eigen::ArrayXd::LinSpaced(samples, -h, h).square()) /
-                              divisor);
+      of_reaches.emplace_back(
+          (3 * (3 * h * h + 3 * h - 1) - 15 * Eigen::ArrayXd::LinSpaced(samples, -h, h).square()) /
+          divisor);
     }
     return of_reaches;
   }();
