@@ -199,6 +199,17 @@ int Print(std::string_view results, const std::string& program, int status, std:
   return kBadInput;
 }
 
+struct CommandRow {
+  std::string_view name;
+  void (*add)(CLI::App& app, Console& console);
+};
+constexpr std::array kCommands = {
+    CommandRow{"fit", AddFitCommand},           CommandRow{"simulate", AddSimulateCommand},
+    CommandRow{"validate", AddValidateCommand}, CommandRow{"contact", AddContactCommand},
+    CommandRow{"convert", AddConvertCommand},   CommandRow{"tradeoff", AddTradeoffCommand},
+    CommandRow{"plan", AddPlanCommand},         CommandRow{"track", AddTrackCommand},
+    CommandRow{"batch", AddBatchCommand}};
+
 int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   // Results go out in one piece at the end: of a run that fails nothing is printed, and what a full
   // disk does not take is noticed.
@@ -223,15 +234,11 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
   Console console{results, err, kDone, CommandLine(argc, argv)};
-  AddFitCommand(app, console);
-  AddSimulateCommand(app, console);
-  AddValidateCommand(app, console);
-  AddContactCommand(app, console);
-  AddConvertCommand(app, console);
-  AddTradeoffCommand(app, console);
-  AddPlanCommand(app, console);
-  AddTrackCommand(app, console);
-  AddBatchCommand(app, console);
+  // Options of a command that does not run would cost a tenth of a short fit.
+  const auto asked = std::ranges::find(kCommands, argc > 1 ? argv[1] : "", &CommandRow::name);
+  for (const CommandRow& command : kCommands) {
+    if (asked == kCommands.end() || command.name == asked->name) command.add(app, console);
+  }
 
   if (const auto unknown = UnknownCommand(app, argc, argv)) {
     const std::vector<std::string> commands = CommandNames(app);

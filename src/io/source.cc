@@ -175,15 +175,13 @@ std::string_view LinePieces::Next() {
 
 /// Appends the next bytes of the file to a text.
 void LinePieces::ReadBytes(std::string& to) {
-  const std::size_t before = to.size();
-  to.resize(before + kPiece);
-  const int count = gzread(file_.get(), to.data() + before, kPiece);
+  const int count = gzread(file_.get(), piece_.get(), kPiece);
   int error = Z_OK;
   const char* const reason = gzerror(file_.get(), &error);
   if (count < 0 || (error != Z_OK && error != Z_STREAM_END)) {
     ThrowCannotRead(name_, error == Z_ERRNO ? std::strerror(errno) : reason);
   }
-  to.resize(before + static_cast<std::size_t>(count));
+  to.append(piece_.get(), static_cast<std::size_t>(count));
   at_end_ = static_cast<std::size_t>(count) < kPiece;
   bytes_ += static_cast<std::uintmax_t>(count);
 }
