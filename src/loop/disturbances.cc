@@ -204,21 +204,10 @@ class InterpolatedChannel {
     BridgeOver(begin, end);
   }
 
-  /// Takes everything of a kind back where there is more of it than a fraction of the samples.
-  void TakeBackIfCommon(Glitch kind, double most) {
-    const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
-    if (!(count > most * static_cast<double>(values_.size()))) return;
-    std::ranges::replace(glitches_, kind, Glitch::kNone);
-    interpolated_.assign(values_.begin(), values_.end());
-    for (std::size_t begin = 0; begin < size(); ++begin) {
-      if (glitches_[begin] == Glitch::kNone) continue;
-      std::size_t end = begin + 1;
-      while (end < size() && glitches_[end] != Glitch::kNone) ++end;
-      BridgeOver(begin, end);
-      begin = end;
-    }
+  [[nodiscard]] bool HasMoreOf(Glitch kind, double share) const {
+    return static_cast<double>(std::ranges::count(glitches_, kind)) >
+           share * static_cast<double>(size());
   }
-
   [[nodiscard]] bool IsWhole() const {
     return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
   }
@@ -287,10 +276,10 @@ std::vector<Run> ZeroRuns(const RecordView& record) {
   return runs;
 }
 
-void FindDropouts(const RecordView& record, const GlitchRules& rules,
-                  InterpolatedChannel& displacement, InterpolatedChannel& force) {
-  const std::vector<Run> runs = ZeroRuns(record);
-  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
+/// Returns the samples that read 0 and 0 away from their neighbours.
+std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
+  std::vector<Run> runs = ZeroRuns(record);
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
   const Readings x = record.displacement;
   const double step_of_x = UsualStepWithoutZeros(x, record);
   const double step_of_force = UsualStepWithoutZeros(record.force, record);
@@ -307,11 +296,10 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules,
   // If one run inside the record is a dropout, so are the others, wherever the loop was.
   const bool any = std::ranges::any_of(
       runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
-  for (const Run& run : runs) {
-    if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
-    displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
-    force.LeaveOut(run.begin, run.end, Glitch::kDropout);
-  }
+  std::erase_if(runs, [&](const Run& run) {
+    return !(any && run.IsInside(record.size())) && !lies_off(run);
+  });
+  return runs;
 }
 
 /// Returns the third largest step about [begin, end), that into it and that out of it aside: a
@@ -473,20 +461,27 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
   constexpr int kPasses = 3;
   InterpolatedChannel displacement(record.displacement);
   InterpolatedChannel force(record.force);
-  FindDropouts(record, rules, displacement, force);
+  // What is common is no glitch.
+  const auto take = [&rules](Glitch kind, InterpolatedChannel& channel, const auto& find) {
+    InterpolatedChannel without = channel;
+    find(channel);
+    if (channel.HasMoreOf(kind, rules.most)) channel = std::move(without);
+  };
+  const std::vector<Run> dropouts = FindDropouts(record, rules);
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
-    channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
+    take(Glitch::kDropout, *channel, [&](auto& in) {
+      for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end, Glitch::kDropout);
+    });
+    take(Glitch::kSpike, *channel, [&](auto& in) {
+      for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
+    });
   }
-  FindFlatDropouts(displacement, force, rules);
-  FindFlatDropouts(force, displacement, rules);
-  FindHeld(displacement, force, rules);
-  FindHeld(force, displacement, rules);
+  take(Glitch::kDropout, displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
+  take(Glitch::kDropout, force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
+  take(Glitch::kHeld, displacement, [&](auto& in) { FindHeld(in, force, rules); });
+  take(Glitch::kHeld, force, [&](auto& in) { FindHeld(in, displacement, rules); });
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
     if (channel->IsWhole()) continue;
     if (interpolated.glitches.empty()) interpolated.glitches.assign(record.size(), Glitch::kNone);
     for (std::size_t i = 0; i < record.size(); ++i) {
