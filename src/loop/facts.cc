@@ -275,19 +275,6 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Returns the path length over the widths of all strokes of the cycles.
-double PathRatio(Column displacement, Points points, std::size_t cycles) {
-  double path = 0.0;
-  for (std::size_t i = points[0] + 1; i <= points[2 * cycles]; ++i) {
-    path += std::abs(displacement[i] - displacement[i - 1]);
-  }
-  double widths = 0.0;
-  for (std::size_t k = 0; k < 2 * cycles; ++k) {
-    widths += std::abs(displacement[points[k + 1]] - displacement[points[k]]);
-  }
-  return path / widths;
-}
-
 /// Returns a fact of the steady cycles that have it.
 template <typename Fact>
 std::vector<double> SteadyValues(const LoopFacts& facts, Fact fact) {
@@ -346,7 +333,6 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
     }));
     facts.backlash = FindBacklash(strokes, centre, *facts.half_gap, facts.amplitude);
   }
-  facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
   return facts;
 }
 

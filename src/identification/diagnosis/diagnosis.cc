@@ -47,8 +47,7 @@ Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
 
 }  // namespace
 
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
-                                   loop::Channel excitation) {
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
   std::vector<Finding> findings;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const RecordFit& record = records[r];
@@ -56,11 +55,6 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thr
       findings.push_back(OfRecord(r, records.size(), std::move(finding)));
     };
     if (!record.gate.certain) append(UncertainReversals(record));
-    // Noise of a displacement that responds is no part of the path.
-    const bool is_driven = excitation == loop::Channel::kDisplacement;
-    if (is_driven && record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
-      append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
-    }
     if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
     if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
