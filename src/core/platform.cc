@@ -124,8 +124,6 @@ int CopyPermissions(const std::string& from, int file) {
   return ::fchmod(file, status.st_mode & 07777) != 0 ? errno : 0;
 }
 
-void RemoveName(const char* name) { ::unlink(name); }
-
 int OpenTemporary(const std::string& name, int& file) {
 #ifdef O_TMPFILE
   const std::string directory = name.substr(0, name.rfind('/') + 1);

@@ -49,7 +49,6 @@ int WriteToDisk(int file);
 int WriteDirectoryToDisk(const std::string& name);
 int CloseFile(int file);
 int CopyPermissions(const std::string& from, int file);
-void RemoveName(const char* name);
 
 /// Opens a new file, in the directory of a name, that has no name yet and goes with the process;
 /// where the file system has no such files, one of that name.

@@ -71,7 +71,9 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
           .string();
-  const auto remove = [](const std::string* temporary) { RemoveName(temporary->c_str()); };
+  const auto remove = [](const std::string* temporary) {
+    static_cast<void>(std::remove(temporary->c_str()));
+  };
   std::unique_ptr<const std::string, decltype(remove)> temporary(&name, remove);
   OutputFile file(path);
   file.Require(OpenTemporary(name, file.file()));
