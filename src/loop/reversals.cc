@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "loop/rules.h"
 #include "loop/statistics.h"
@@ -237,17 +237,13 @@ Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
   return widest;
 }
 
-ReversalGate Under(Excursions excursions, double gate) {
-  const std::size_t count = CountReversals(excursions, gate);
-  return {.gate = gate, .count = count, .other_count = count, .other_gate = gate};
-}
-
-ReversalGate Doubted(Excursions excursions, double gate, double other_gate) {
-  ReversalGate chosen = Under(excursions, gate);
-  chosen.certain = false;
-  chosen.other_gate = other_gate;
-  chosen.other_count = CountReversals(excursions, other_gate);
-  return chosen;
+/// @param other  another gate that competes
+ReversalGate Under(Excursions excursions, double gate, std::optional<double> other = {}) {
+  return {.gate = gate,
+          .count = CountReversals(excursions, gate),
+          .certain = !other,
+          .other_count = CountReversals(excursions, other.value_or(gate)),
+          .other_gate = other.value_or(gate)};
 }
 
 /// Chooses the gate by what the excursions look like, one by one.
@@ -261,13 +257,13 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
   DoubtEnds(excursions, judge, rules, looks);
   const Plateau chosen = WidestPlateau(excursions, looks, rules);
   const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
-  if (smooth.below > chosen.below) return Doubted(excursions, smooth.gate(), chosen.gate());
+  if (smooth.below > chosen.below) return Under(excursions, smooth.gate(), chosen.gate());
   if (chosen.below == 0) return Under(excursions, 0.0);
   if (chosen.upper >= rules.clear * chosen.lower) return Under(excursions, chosen.gate());
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
   return static_cast<double>(chosen.below) < rules.outnumber * kept
-             ? Doubted(excursions, 0.0, chosen.gate())
-             : Doubted(excursions, chosen.gate(), 0.0);
+             ? Under(excursions, 0.0, chosen.gate())
+             : Under(excursions, chosen.gate(), 0.0);
 }
 
 }  // namespace
