@@ -4,8 +4,10 @@
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/extremes.h"
@@ -31,9 +33,8 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   if (!(step > kFinest * (highest - lowest))) return false;
   const auto pairs = static_cast<double>(displacement.size() - 1);
   std::size_t broken = 0;
-  std::size_t rest = 1;                           // samples
-  std::array<std::size_t, kFewestRests> rests{};  // different ones
-  std::size_t known_rests = 0;
+  std::size_t rest = 1;         // samples
+  std::set<std::size_t> rests;  // different ones
   bool is_even = true;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
@@ -45,14 +46,11 @@ bool IsQuantised(std::span<const double> displacement, double step) {
     if (steps == 0) {
       ++rest;
     } else {
-      const auto end = rests.begin() + static_cast<std::ptrdiff_t>(known_rests);
-      if (known_rests < kFewestRests && std::find(rests.begin(), end, rest) == end) {
-        rests[known_rests++] = rest;
-      }
+      if (rests.size() < kFewestRests) rests.insert(rest);
       rest = 1;
     }
   }
-  return is_even ? known_rests == kFewestRests : known_rests > 1;
+  return is_even ? rests.size() == kFewestRests : rests.size() > 1;
 }
 
 /// The value at t = 0 of the least-squares parabola through 2h + 1 samples is their sum with the
@@ -122,9 +120,10 @@ double EstimateDisplacementNoise(std::span<const double> displacement) {
 DisplacementSmoother::DisplacementSmoother(std::span<const double> displacement, double noise)
     : reach_(displacement.size(), 0) {
   RequireNonNegative("displacement noise [m]", noise);
-  if (noise == 0) return;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    reach_[i] = ReachOf(displacement, i, noise);
+  std::vector<std::size_t> reaches(displacement.size(), 0);
+  for (std::size_t i = 0; i < displacement.size() && noise > 0; ++i) {
+    reaches[i] = ReachOf(displacement, i, noise);
+  return reaches;
   }
 }
 
@@ -194,24 +193,20 @@ class InterpolatedChannel {
     return *usual_step_;
   }
 
-  void LeaveOut(std::size_t begin, std::size_t end, Glitch kind) {
+  void LeaveOut(std::size_t begin, std::size_t end) {
     if (glitches_.empty()) {
-      glitches_.assign(values_.size(), Glitch::kNone);
+      glitches_.assign(values_.size(), false);
       interpolated_.assign(values_.begin(), values_.end());
     }
     std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
-              glitches_.begin() + static_cast<std::ptrdiff_t>(end), kind);
+              glitches_.begin() + static_cast<std::ptrdiff_t>(end), true);
     BridgeOver(begin, end);
   }
 
-  [[nodiscard]] bool HasMoreOf(Glitch kind, double share) const {
-    return static_cast<double>(std::ranges::count(glitches_, kind)) >
-           share * static_cast<double>(size());
+  [[nodiscard]] const std::vector<bool>& glitches() const { return glitches_; }
+  [[nodiscard]] double CountGlitches() const {
+    return static_cast<double>(std::ranges::count(glitches_, true));
   }
-  [[nodiscard]] bool IsWhole() const {
-    return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
-  }
-  [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
   std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
 
  private:
@@ -229,7 +224,7 @@ class InterpolatedChannel {
 
   Readings values_;
   std::vector<double> interpolated_;
-  std::vector<Glitch> glitches_;
+  std::vector<bool> glitches_;
   std::optional<double> usual_step_;
 };
 
@@ -308,14 +303,8 @@ double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::siz
                  const GlitchRules& rules) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
-    const double step = channel.Step(i);
-    if (step > largest[0]) {
-      largest = {step, largest[0], largest[1]};
-    } else if (step > largest[1]) {
-      largest = {largest[0], step, largest[1]};
-    } else if (step > largest[2]) {
-      largest[2] = step;
-    }
+    largest[2] = std::max(largest[2], channel.Step(i));
+    std::ranges::sort(largest, std::greater<>());
   };
   for (std::size_t i = begin - 1; i >= 1 && begin - i <= rules.about; --i) look_at(i);
   const std::size_t size = channel.size();
@@ -363,7 +352,7 @@ bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
        i = NextLeap(values, i + 1, rules.spike)) {
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;
-    channel.LeaveOut(i, i + samples, Glitch::kSpike);
+    channel.LeaveOut(i, i + samples);
     values = channel.values();
     found = true;
   }
@@ -433,7 +422,7 @@ void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& o
                   LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
     if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
         Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
-      channel.LeaveOut(begin, end, Glitch::kDropout);
+      channel.LeaveOut(begin, end);
       values = channel.values();
     }
   }
@@ -449,7 +438,7 @@ void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
     if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
         !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
         channel.Step(end) > rules.held_jump * channel.usual_step()) {
-      channel.LeaveOut(begin + 1, end, Glitch::kHeld);
+      channel.LeaveOut(begin + 1, end);
       values = channel.values();
     }
   }
@@ -462,31 +451,31 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
   InterpolatedChannel displacement(record.displacement);
   InterpolatedChannel force(record.force);
   // What is common is no glitch.
-  const auto take = [&rules](Glitch kind, InterpolatedChannel& channel, const auto& find) {
+  const auto take = [&rules](InterpolatedChannel& channel, const auto& find) {
     InterpolatedChannel without = channel;
     find(channel);
-    if (channel.HasMoreOf(kind, rules.most)) channel = std::move(without);
+    const double found = channel.CountGlitches() - without.CountGlitches();
+    if (found > rules.most * static_cast<double>(channel.size())) channel = std::move(without);
   };
   const std::vector<Run> dropouts = FindDropouts(record, rules);
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    take(Glitch::kDropout, *channel, [&](auto& in) {
-      for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end, Glitch::kDropout);
+    take(*channel, [&](auto& in) {
+      for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end);
     });
-    take(Glitch::kSpike, *channel, [&](auto& in) {
+    take(*channel, [&](auto& in) {
       for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
     });
   }
-  take(Glitch::kDropout, displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
-  take(Glitch::kDropout, force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
-  take(Glitch::kHeld, displacement, [&](auto& in) { FindHeld(in, force, rules); });
-  take(Glitch::kHeld, force, [&](auto& in) { FindHeld(in, displacement, rules); });
+  take(displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
+  take(force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
+  take(displacement, [&](auto& in) { FindHeld(in, force, rules); });
+  take(force, [&](auto& in) { FindHeld(in, displacement, rules); });
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    if (channel->IsWhole()) continue;
-    if (interpolated.glitches.empty()) interpolated.glitches.assign(record.size(), Glitch::kNone);
+    if (channel->CountGlitches() == 0) continue;
+    interpolated.glitches.resize(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (channel->glitches()[i] != Glitch::kNone)
-        interpolated.glitches[i] = channel->glitches()[i];
+      if (channel->glitches()[i]) interpolated.glitches[i] = true;
     }
     (channel == &displacement ? interpolated.displacement : interpolated.force) =
         channel->TakeInterpolated();

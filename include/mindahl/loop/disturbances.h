@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -51,16 +50,10 @@ class DisplacementSmoother {
 std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
                                        std::span<const std::size_t> reversals);
 
-/// How many samples of a record are glitches [-], and where the first of them are.
+/// How many samples of a record are glitches [-], and which is the first.
 struct GlitchCount {
-  static constexpr std::size_t kMostExamples = 5;
-
-  std::size_t spikes = 0;
-  std::size_t dropouts = 0;
-  std::size_t held = 0;
-  std::array<std::size_t, kMostExamples> examples{};  ///< samples, the first min(total, 5) in use
-
-  [[nodiscard]] std::size_t total() const { return spikes + dropouts + held; }
+  std::size_t total = 0;
+  std::size_t first = 0;  ///< sample, where there is one
 };
 
 }  // namespace mindahl::loop

@@ -65,7 +65,7 @@ struct PreparationOptions {
 /// One record as every later stage sees it.
 struct PreparedRecord {
   RecordView record;                              ///< measured record; must outlive this
-  GlitchCount glitches;                           ///< glitches left out, by kind
+  GlitchCount glitches;                           ///< glitches left out
   std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
   std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
   ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given

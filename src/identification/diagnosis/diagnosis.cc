@@ -33,18 +33,6 @@ Finding UncertainReversals(const RecordFit& record) {
                       {"other_gate", gate.other_gate}}};
 }
 
-Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
-  Finding finding{.code = "glitches_left_out",
-                  .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
-                              {"dropouts", static_cast<double>(glitches.dropouts)},
-                              {"held", static_cast<double>(glitches.held)}}};
-  const std::size_t examples = std::min(glitches.total(), glitches.examples.size());
-  for (std::size_t i = 0; i < examples; ++i) {
-    finding.numbers.emplace_back("row", static_cast<double>(glitches.examples[i] + 1));
-  }
-  return finding;
-}
-
 }  // namespace
 
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
@@ -55,7 +43,10 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
       findings.push_back(OfRecord(r, records.size(), std::move(finding)));
     };
     if (!record.gate.certain) append(UncertainReversals(record));
-    if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
+    if (record.glitches.total > 0) {
+      append({.code = "glitches_left_out",
+              .numbers = {{"count", static_cast<double>(record.glitches.total)}}});
+    }
     if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
   return findings;
