@@ -117,25 +117,22 @@ double EstimateDisplacementNoise(std::span<const double> displacement) {
   return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
 }
 
-DisplacementSmoother::DisplacementSmoother(std::span<const double> displacement, double noise)
-    : reach_(displacement.size(), 0) {
+std::vector<std::size_t> SmoothingReaches(std::span<const double> displacement, double noise) {
   RequireNonNegative("displacement noise [m]", noise);
   std::vector<std::size_t> reaches(displacement.size(), 0);
   for (std::size_t i = 0; i < displacement.size() && noise > 0; ++i) {
     reaches[i] = ReachOf(displacement, i, noise);
-  return reaches;
   }
+  return reaches;
 }
 
-std::vector<double> DisplacementSmoother::Smooth(std::span<const double> displacement) const {
-  if (displacement.size() != reach_.size()) {
-    ThrowInvalid("samples to be smoothed [-]", static_cast<double>(displacement.size()),
-                 "must be as many as the windows");
-  }
+std::vector<double> Smoothed(std::span<const double> displacement,
+                             std::span<const std::size_t> reaches) {
+  RequireSameSize("displacement", displacement.size(), "windows", reaches.size());
   std::vector<double> smoothed;
   smoothed.reserve(displacement.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    smoothed.push_back(ParabolaWeights(reach_[i]).Apply(displacement, i, reach_[i]));
+    smoothed.push_back(ParabolaWeights(reaches[i]).Apply(displacement, i, reaches[i]));
   }
   return smoothed;
 }

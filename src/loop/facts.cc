@@ -226,8 +226,8 @@ double FlatOf(std::span<const Passage> passages) {
     slopes = before + after;
   }
   const bool scatters = flat > 0 && std::ranges::any_of(passages, [&](const Passage& passage) {
-    return std::abs(GapAt(passage, level, slopes) - flat) > kScatter * flat;
-  });
+                          return std::abs(GapAt(passage, level, slopes) - flat) > kScatter * flat;
+                        });
   return scatters ? 0.0 : flat;
 }
 

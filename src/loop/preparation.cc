@@ -36,8 +36,8 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
 void Smooth(PreparedRecord& prepared) {
   if (!(prepared.displacement_noise > 0)) return;
   const std::span<const double> displacement = prepared.readings().displacement;
-  prepared.smoother.emplace(displacement, prepared.displacement_noise);
-  prepared.smoothed = prepared.smoother->Smooth(displacement);
+  prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
+  prepared.smoothed = Smoothed(displacement, prepared.smoothing);
   prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
 }
 
