@@ -8,7 +8,6 @@
 
 #include "bindings.h"
 #include "cli/app.h"
-#include "mindahl/io/output_file.h"
 #include "mindahl/request/batch.h"
 #include "mindahl/request/fit_request.h"
 
@@ -30,7 +29,6 @@ int Run(const std::vector<std::string>& words, std::ostream& out, std::ostream& 
 /// Runs the command line as the program does, and returns its exit status.
 int RunProgram(const std::vector<std::string>& words) {
   const py::gil_scoped_release others_may_run;
-  io::RemoveTemporaryFilesOnSignals();
   return Run(words, std::cout, std::cerr);
 }
 

@@ -136,7 +136,7 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   }
   if (!result->converged) fit.flags.emplace_back("not_converged");
   const identification::RecordFit& fitted = result->records.front();
-  if (fitted.glitches.total() > 0) fit.flags.emplace_back("glitches");
+  if (fitted.glitches.total > 0) fit.flags.emplace_back("glitches");
   FillFacts(FactsOf(record, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
   fit.sigma = FittedValueOf(*result, "sigma", "sigma_open", fit);

@@ -5,7 +5,6 @@
 
 #include "cli/app.h"
 #include "core/platform.h"
-#include "mindahl/io/output_file.h"
 
 namespace {
 
@@ -17,7 +16,6 @@ const std::terminate_handler kDefaultEnd = std::get_terminate();
   try {
     if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
   } catch (const std::bad_alloc&) {
-    mindahl::io::RemoveTemporaryFiles();
     mindahl::EndAtOnce("mindahl: memory ran out\n", mindahl::cli::kBadInput);
   } catch (...) {  // NOLINT(bugprone-empty-catch): ends below
   }
@@ -31,7 +29,6 @@ int main(int argc, char** argv) {
   std::set_terminate(&EndForWantOfMemory);
   mindahl::KeepFreedMemory();
   mindahl::OccupyClosedStreams();
-  mindahl::io::RemoveTemporaryFilesOnSignals();
   mindahl::IgnoreFileSizeSignal();
   return mindahl::cli::Run(argc, argv, std::cout, std::cerr);
 }

@@ -124,20 +124,25 @@ int CopyPermissions(const std::string& from, int file) {
   return ::fchmod(file, status.st_mode & 07777) != 0 ? errno : 0;
 }
 
-void RemoveName(const char* name) {
-  if (::unlink(name) != 0) ::rmdir(name);
+int OpenTemporary(const std::string& name, int& file) {
+#ifdef O_TMPFILE
+  const std::string directory = name.substr(0, name.rfind('/') + 1);
+  const char* const where = directory.empty() ? "." : directory.c_str();
+  if (::access("/proc/self/fd", X_OK) == 0) {  // by which it is named
+    file = ::open(where, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (file >= 0) return 0;
+  }
+#endif
+  return OpenFile(name, Opening::kNew, file);
 }
 
-void HandleEndingSignals(void (*handler)(int)) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction action {};
-    // The program may have been started to ignore the signal, as by nohup.
-    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
-    action = {};
-    action.sa_handler = handler;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    ::sigaction(signal, &action, nullptr);
-  }
+int NameTemporary(int file, const std::string& name) {
+  struct stat status {};
+  if (::fstat(file, &status) != 0) return errno;
+  if (status.st_nlink > 0) return 0;
+  const std::string from = "/proc/self/fd/" + std::to_string(file);
+  const int error = ::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+  return error != 0 ? errno : 0;
 }
 
 int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOutput& written) {

@@ -49,12 +49,13 @@ int WriteToDisk(int file);
 int WriteDirectoryToDisk(const std::string& name);
 int CloseFile(int file);
 int CopyPermissions(const std::string& from, int file);
-/// Removes a file or an empty directory. A signal handler may call it.
-void RemoveName(const char* name);
 
-/// Calls a handler once for each signal that ends the program by a person's or a system's wish,
-/// unless the program was started to ignore it.
-void HandleEndingSignals(void (*handler)(int signal));
+/// Opens a new file, in the directory of a name, that has no name yet and goes with the process;
+/// where the file system has no such files, one of that name.
+int OpenTemporary(const std::string& name, int& file);
+/// Gives it the name.
+int NameTemporary(int file, const std::string& name);
+
 /// Holds what a program wrote.
 struct ProgramOutput {
   std::string output, messages;

@@ -108,7 +108,7 @@ FitResult Assemble(const Attempt& attempt, const SolvedFit& solved) {
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
   const bool is_judged = attempt.depth >= Depth::kIntervals;
   if (is_judged) {
-    result.findings = FindInRecords(result.records, attempt.options.thresholds, data.excitation);
+    result.findings = FindInRecords(result.records);
     Append(result.findings, FindVaryingLoads(data));
   }
   const bool any_virgin = problem.state.Any(InitialState::kVirgin);

@@ -40,45 +40,47 @@ Cell ReadWithPoint(std::string_view digits, bool negative) {
   return {.kind = Cell::Kind::kNumber, .value = negative ? -magnitude : magnitude};
 }
 
-/// Holds a text as whole numbers and what stands between them: "05.03.24 1:2:3" is 5, 3, 24, 1, 2,
-/// 3 and "..", " ", "::".
-struct Numbers {
-  std::array<int, 6> numbers{};
-  std::string between;
-  std::size_t count = 0;
-};
-
-Numbers TakeNumbers(std::string_view& text) {
+/// Takes a whole number off a text.
+std::optional<int> TakeWhole(std::string_view& text) {
   constexpr std::size_t kMostDigits = 6;
-  Numbers taken;
-  while (taken.count < taken.numbers.size()) {
-    const std::size_t size = std::min(text.find_first_not_of(kDecimalDigits), text.size());
-    if (size == 0 || size > kMostDigits) break;
-    taken.numbers[taken.count++] = NumberIn<int>(text.substr(0, size)).value_or(0);
-    text.remove_prefix(size);
-    if (text.empty() || taken.count == taken.numbers.size()) break;
-    if (taken.count == 3 && taken.between == "::") break;  // a time of day without a date
-    taken.between += text.front();
-    text.remove_prefix(1);
-    while (text.starts_with(' ')) text.remove_prefix(1);
-  }
-  return taken;
+  const std::size_t size = std::min(text.find_first_not_of(kDecimalDigits), text.size());
+  if (size == 0 || size > kMostDigits) return std::nullopt;
+  const auto number = NumberIn<int>(text.substr(0, size));
+  text.remove_prefix(size);
+  return number;
 }
 
-bool IsDate(const Numbers& text) {
-  return text.count >= 3 && (text.between.starts_with("--") || text.between.starts_with("..") ||
-                             text.between.starts_with("//"));
+/// Takes three numbers with one of some signs between them off a text: "05.03.24", "10:11:12".
+/// @returns none, and leaves the text, where it does not begin with them
+std::optional<std::array<int, 3>> TakeThree(std::string_view& text, std::string_view signs) {
+  std::string_view rest = text;
+  std::array<int, 3> numbers{};
+  char sign = '\0';
+  for (int& number : numbers) {
+    if (&number != numbers.data()) {
+      const bool is_known = !rest.empty() && signs.find(rest.front()) != std::string_view::npos;
+      if (!is_known || (sign != '\0' && sign != rest.front())) return std::nullopt;
+      sign = rest.front();
+      rest.remove_prefix(1);
+    }
+    const std::optional<int> taken = TakeWhole(rest);
+    if (!taken) return std::nullopt;
+    number = *taken;
+  }
+  text = rest;
+  return numbers;
 }
+
+constexpr std::string_view kSignsOfDates = "-./";
 
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
-  const Numbers read = TakeNumbers(text);
-  if (!read.between.ends_with("::") || read.count % 3 != 0) return std::nullopt;
   double midnight = 0.0;
-  if (read.count == 6) {
-    if (!IsDate(read) || (read.between[2] != 'T' && read.between[2] != ' ')) return std::nullopt;
-    const auto& [year, month, day, hour, minute, second] = read.numbers;
+  if (const auto parts = TakeThree(text, kSignsOfDates)) {
+    if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
+    text = Trimmed(text.substr(1));
+    const auto& [year, month, day] = *parts;
     const std::chrono::year_month_day date{std::chrono::year(year),
                                            std::chrono::month(static_cast<unsigned>(month)),
                                            std::chrono::day(static_cast<unsigned>(day))};
@@ -86,9 +88,11 @@ std::optional<double> ReadClock(std::string_view text) {
       midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
     }
   }
-  const int* const clock = read.numbers.data() + (read.count - 3);
-  if (clock[0] > 23 || clock[1] > 59 || clock[2] > 60) return std::nullopt;  // 60: a leap second
-  double seconds = 3600.0 * clock[0] + 60.0 * clock[1] + clock[2];
+  const auto clock = TakeThree(text, ":");
+  if (!clock) return std::nullopt;
+  const auto& [hour, minute, second] = *clock;
+  if (hour > 23 || minute > 59 || second > 60) return std::nullopt;  // 60: a leap second
+  double seconds = 3600.0 * hour + 60.0 * minute + second;
   if (!text.empty() && std::string_view(".,:").find(text.front()) != std::string_view::npos) {
     const std::size_t end = std::min(text.find_first_not_of(kDecimalDigits, 1), text.size());
     const auto fraction = NumberIn<double>("0." + std::string(text.substr(1, end - 1)));
@@ -190,7 +194,7 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
   std::string_view rest = text;
-  const bool is_date = IsDate(TakeNumbers(rest)) && rest.empty();
+  const bool is_date = TakeThree(rest, kSignsOfDates) && rest.empty();
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 

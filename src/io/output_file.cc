@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -18,68 +17,18 @@ namespace mindahl::io {
 
 namespace {
 
-// Holds the names that a signal handler may read. It does not remove more than these at once.
-constexpr std::size_t kMostNames = 32;
-std::array<std::atomic<const char*>, kMostNames> registered_names{};
-static_assert(std::atomic<const char*>::is_always_lock_free);
-
-void ReplaceName(const char* old_name, const char* new_name) {
-  for (std::atomic<const char*>& slot : registered_names) {
-    const char* expected = old_name;
-    if (slot.compare_exchange_strong(expected, new_name)) return;
-  }
-}
-
-/// Only what POSIX allows in a handler. The signal is at its default again and ends
-/// the program as soon as it is no longer blocked, on return.
-void RemoveAndRaise(int signal) {
-  RemoveTemporaryFiles();
-  std::raise(signal);
-}
-
-/// A file that goes with this object unless it is kept; and with the program, when
-/// RemoveTemporaryFilesOnSignals() was called and a signal ends it.
-class TemporaryName {
- public:
-  /// Before the file is made: a signal may come in between.
-  explicit TemporaryName(const char* name) : name_(name) { ReplaceName(nullptr, name_); }
-  ~TemporaryName() {
-    if (!kept_) RemoveName(name_);
-    ReplaceName(name_, nullptr);
-  }
-  TemporaryName(const TemporaryName&) = delete;
-  TemporaryName& operator=(const TemporaryName&) = delete;
-
-  void Keep() {
-    kept_ = true;
-    ReplaceName(name_, nullptr);
-  }
-
- private:
-  const char* name_;
-  bool kept_ = false;
-};
-
 [[noreturn]] void ThrowCannotWrite(const std::filesystem::path& path, int error) {
   Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
 }
 
 }  // namespace
 
-void RemoveTemporaryFiles() {
-  for (const std::atomic<const char*>& slot : registered_names) {
-    if (const char* const name = slot.load()) RemoveName(name);
-  }
-}
-
-void RemoveTemporaryFilesOnSignals() { HandleEndingSignals(&RemoveAndRaise); }
-
 /// An open file, closed with it. `path` is the name the user knows it by, for messages.
 class OutputFile {
  public:
-  OutputFile(const std::string& name, Opening opening, std::filesystem::path path)
-      : path_(std::move(path)) {
-    Require(OpenFile(name, opening, file_));
+  explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {}
+  OutputFile(std::filesystem::path path, Opening opening) : OutputFile(std::move(path)) {
+    Require(OpenFile(path_.string(), opening, file_));
   }
   ~OutputFile() {
     if (file_ >= 0) CloseFile(file_);
@@ -87,7 +36,7 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  [[nodiscard]] int file() const { return file_; }
+  [[nodiscard]] int& file() { return file_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Passes an error on, if there is one.
   void Require(int error) const {
@@ -96,11 +45,6 @@ class OutputFile {
   void Write(std::string_view content) const { Require(WriteFile(file_, content)); }
   /// A full disk may show only here.
   void Close() { Require(CloseFile(std::exchange(file_, -1))); }
-  /// Waits until the file of that name is on the disk, and closes it.
-  void Finish() {
-    Require(WriteToDisk(file_));
-    Close();
-  }
   void WriteNameToDisk(const std::filesystem::path& target) const {
     const std::filesystem::path parent = target.parent_path();
     Require(WriteDirectoryToDisk(parent.empty() ? "." : parent.string()));
@@ -127,13 +71,19 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
           .string();
-  TemporaryName temporary(name.c_str());
-  OutputFile file(name, Opening::kNew, path);
+  const auto remove = [](const std::string* temporary) {
+    static_cast<void>(std::remove(temporary->c_str()));
+  };
+  std::unique_ptr<const std::string, decltype(remove)> temporary(&name, remove);
+  OutputFile file(path);
+  file.Require(OpenTemporary(name, file.file()));
   if (is_old) file.Require(CopyPermissions(target.string(), file.file()));
   file.Write(content);
-  file.Finish();
+  file.Require(WriteToDisk(file.file()));
+  file.Require(NameTemporary(file.file(), name));
+  file.Close();
   if (std::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
-  temporary.Keep();
+  static_cast<void>(temporary.release());
   file.WriteNameToDisk(target);
 }
 
@@ -145,10 +95,9 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const bool is_old = std::filesystem::exists(old);
   if (std::filesystem::is_directory(old)) ThrowCannotWrite(path, EISDIR);
   if (IsBelowDevOrProc(path) || (is_old && !std::filesystem::is_regular_file(old))) {
-    OutputFile file(path.string(), Opening::kExisting, path);
+    OutputFile file(path, Opening::kExisting);
     file.Write(content);
-    file.Close();
-    return;
+    return file.Close();
   }
   const bool is_link = std::filesystem::is_symlink(path, error);
   const std::filesystem::path target = is_link && is_old ? std::filesystem::canonical(path) : path;
@@ -156,7 +105,7 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
 }
 
 AppendedFile::AppendedFile(const std::filesystem::path& path, std::uintmax_t kept)
-    : file_(std::make_unique<OutputFile>(path.string(), Opening::kCreated, path)), size_(kept) {
+    : file_(std::make_unique<OutputFile>(path, Opening::kCreated)), size_(kept) {
   file_->Require(EndFileAt(file_->file(), kept));
 }
 AppendedFile::~AppendedFile() = default;
@@ -169,7 +118,8 @@ void AppendedFile::Append(std::string_view block) {
 }
 
 void AppendedFile::Finish() {
-  file_->Finish();
+  file_->Require(WriteToDisk(file_->file()));
+  file_->Close();
   file_->WriteNameToDisk(file_->path());
 }
 

@@ -10,48 +10,32 @@
 
 namespace mindahl::io {
 
-namespace {
-
-/// Reduces every column that a record has, and its lines, to a part of it.
-template <typename Reduce>
-void ReduceColumns(RecordFile& file, const Reduce& reduce) {
-  loop::Record& record = file.record;
-  for (const auto column : loop::kRecordColumns) {
-    if (!(record.*column).empty()) reduce(record.*column);
-  }
-  for (loop::Covariate& covariate : record.covariates) reduce(covariate.values);
-  if (!file.lines.empty()) reduce(file.lines);
-}
-
-}  // namespace
-
 void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last) {
   const std::vector<double>& time = input.record.time;
   if (time.empty()) {
     Refuse("{}: --time-window needs a time column: name it with --time", file);
   }
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    if (time[i] >= first && time[i] <= last) kept.push_back(i);
-  }
-  if (kept.empty()) {
-    const auto [begin, end] = std::ranges::minmax(time);
+  const auto begin = std::ranges::lower_bound(time, first);
+  const auto end = std::ranges::upper_bound(time, last);
+  if (begin >= end) {
     Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", file, first,
-           last, begin, end);
+           last, time.front(), time.back());
   }
   input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
-                                    kept.size(), time.size(), first, last));
-  ReduceColumns(input, [&kept](auto& column) {
-    for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
-    column.resize(kept.size());
-  });
+                                    end - begin, time.size(), first, last));
+  KeepSamples(input, static_cast<std::size_t>(begin - time.begin()),
+              static_cast<std::size_t>(end - time.begin()));
 }
 
 void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
-  ReduceColumns(input, [first, last](auto& column) {
+  const auto keep = [first, last](auto& column) {
+    if (column.empty()) return;
     column.resize(last);
     column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first));
-  });
+  };
+  for (const auto column : loop::kRecordColumns) keep(input.record.*column);
+  for (loop::Covariate& covariate : input.record.covariates) keep(covariate.values);
+  keep(input.lines);
 }
 
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {

@@ -83,7 +83,6 @@ class RecordBuilder {
     if (Expression& time = roles[Role::kTime]; !time.terms.empty()) {
       FindOrigin(names, time);
       file_.time = choose(Role::kTime);
-      file_.time->is_clock = table.columns[file_.time->index - 1].is_clock;
     }
     if (!roles[Role::kNormalLoad].terms.empty()) file_.normal_load = choose(Role::kNormalLoad);
     if (file_.time) return;

@@ -5,8 +5,10 @@
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/extremes.h"
@@ -32,9 +34,8 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   if (!(step > kFinest * (highest - lowest))) return false;
   const auto pairs = static_cast<double>(displacement.size() - 1);
   std::size_t broken = 0;
-  std::size_t rest = 1;                           // samples
-  std::array<std::size_t, kFewestRests> rests{};  // different ones
-  std::size_t known_rests = 0;
+  std::size_t rest = 1;         // samples
+  std::set<std::size_t> rests;  // different ones
   bool is_even = true;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
@@ -46,14 +47,11 @@ bool IsQuantised(std::span<const double> displacement, double step) {
     if (steps == 0) {
       ++rest;
     } else {
-      const auto end = rests.begin() + static_cast<std::ptrdiff_t>(known_rests);
-      if (known_rests < kFewestRests && std::find(rests.begin(), end, rest) == end) {
-        rests[known_rests++] = rest;
-      }
+      if (rests.size() < kFewestRests) rests.insert(rest);
       rest = 1;
     }
   }
-  return is_even ? known_rests == kFewestRests : known_rests > 1;
+  return is_even ? rests.size() == kFewestRests : rests.size() > 1;
 }
 
 /// Windows that are tried, each about √2 times the last.
@@ -119,24 +117,22 @@ double EstimateDisplacementNoise(std::span<const double> displacement) {
   return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
 }
 
-DisplacementSmoother::DisplacementSmoother(std::span<const double> displacement, double noise)
-    : reach_(displacement.size(), 0) {
+std::vector<std::size_t> SmoothingReaches(std::span<const double> displacement, double noise) {
   RequireNonNegative("displacement noise [m]", noise);
-  if (noise == 0) return;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    reach_[i] = ReachOf(displacement, i, noise);
+  std::vector<std::size_t> reaches(displacement.size(), 0);
+  for (std::size_t i = 0; i < displacement.size() && noise > 0; ++i) {
+    reaches[i] = ReachOf(displacement, i, noise);
   }
+  return reaches;
 }
 
-std::vector<double> DisplacementSmoother::Smooth(std::span<const double> displacement) const {
-  if (displacement.size() != reach_.size()) {
-    ThrowInvalid("samples to be smoothed [-]", static_cast<double>(displacement.size()),
-                 "must be as many as the windows");
-  }
+std::vector<double> Smoothed(std::span<const double> displacement,
+                             std::span<const std::size_t> reaches) {
+  RequireSameSize("displacement", displacement.size(), "windows", reaches.size());
   std::vector<double> smoothed;
   smoothed.reserve(displacement.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    smoothed.push_back(ParabolaAt(displacement, i, reach_[i]));
+    smoothed.push_back(ParabolaAt(displacement, i, reaches[i]));
   }
   return smoothed;
 }
@@ -194,35 +190,20 @@ class InterpolatedChannel {
     return *usual_step_;
   }
 
-  void LeaveOut(std::size_t begin, std::size_t end, Glitch kind) {
+  void LeaveOut(std::size_t begin, std::size_t end) {
     if (glitches_.empty()) {
-      glitches_.assign(values_.size(), Glitch::kNone);
+      glitches_.assign(values_.size(), false);
       interpolated_.assign(values_.begin(), values_.end());
     }
     std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
-              glitches_.begin() + static_cast<std::ptrdiff_t>(end), kind);
+              glitches_.begin() + static_cast<std::ptrdiff_t>(end), true);
     BridgeOver(begin, end);
   }
 
-  /// Takes everything of a kind back where there is more of it than a fraction of the samples.
-  void TakeBackIfCommon(Glitch kind, double most) {
-    const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
-    if (!(count > most * static_cast<double>(values_.size()))) return;
-    std::ranges::replace(glitches_, kind, Glitch::kNone);
-    interpolated_.assign(values_.begin(), values_.end());
-    for (std::size_t begin = 0; begin < size(); ++begin) {
-      if (glitches_[begin] == Glitch::kNone) continue;
-      std::size_t end = begin + 1;
-      while (end < size() && glitches_[end] != Glitch::kNone) ++end;
-      BridgeOver(begin, end);
-      begin = end;
-    }
+  [[nodiscard]] const std::vector<bool>& glitches() const { return glitches_; }
+  [[nodiscard]] double CountGlitches() const {
+    return static_cast<double>(std::ranges::count(glitches_, true));
   }
-
-  [[nodiscard]] bool IsWhole() const {
-    return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
-  }
-  [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
   std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
 
  private:
@@ -240,7 +221,7 @@ class InterpolatedChannel {
 
   Readings values_;
   std::vector<double> interpolated_;
-  std::vector<Glitch> glitches_;
+  std::vector<bool> glitches_;
   std::optional<double> usual_step_;
 };
 
@@ -287,10 +268,10 @@ std::vector<Run> ZeroRuns(const RecordView& record) {
   return runs;
 }
 
-void FindDropouts(const RecordView& record, const GlitchRules& rules,
-                  InterpolatedChannel& displacement, InterpolatedChannel& force) {
-  const std::vector<Run> runs = ZeroRuns(record);
-  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
+/// Returns the samples that read 0 and 0 away from their neighbours.
+std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
+  std::vector<Run> runs = ZeroRuns(record);
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
   const Readings x = record.displacement;
   const double step_of_x = UsualStepWithoutZeros(x, record);
   const double step_of_force = UsualStepWithoutZeros(record.force, record);
@@ -307,11 +288,10 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules,
   // If one run inside the record is a dropout, so are the others, wherever the loop was.
   const bool any = std::ranges::any_of(
       runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
-  for (const Run& run : runs) {
-    if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
-    displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
-    force.LeaveOut(run.begin, run.end, Glitch::kDropout);
-  }
+  std::erase_if(runs, [&](const Run& run) {
+    return !(any && run.IsInside(record.size())) && !lies_off(run);
+  });
+  return runs;
 }
 
 /// Returns the third largest step about [begin, end), that into it and that out of it aside: a
@@ -320,14 +300,8 @@ double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::siz
                  const GlitchRules& rules) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
-    const double step = channel.Step(i);
-    if (step > largest[0]) {
-      largest = {step, largest[0], largest[1]};
-    } else if (step > largest[1]) {
-      largest = {largest[0], step, largest[1]};
-    } else if (step > largest[2]) {
-      largest[2] = step;
-    }
+    largest[2] = std::max(largest[2], channel.Step(i));
+    std::ranges::sort(largest, std::greater<>());
   };
   for (std::size_t i = begin - 1; i >= 1 && begin - i <= rules.about; --i) look_at(i);
   const std::size_t size = channel.size();
@@ -375,7 +349,7 @@ bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
        i = NextLeap(values, i + 1, rules.spike)) {
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;
-    channel.LeaveOut(i, i + samples, Glitch::kSpike);
+    channel.LeaveOut(i, i + samples);
     values = channel.values();
     found = true;
   }
@@ -445,7 +419,7 @@ void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& o
                   LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
     if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
         Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
-      channel.LeaveOut(begin, end, Glitch::kDropout);
+      channel.LeaveOut(begin, end);
       values = channel.values();
     }
   }
@@ -461,7 +435,7 @@ void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
     if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
         !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
         channel.Step(end) > rules.held_jump * channel.usual_step()) {
-      channel.LeaveOut(begin + 1, end, Glitch::kHeld);
+      channel.LeaveOut(begin + 1, end);
       values = channel.values();
     }
   }
@@ -473,25 +447,32 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
   constexpr int kPasses = 3;
   InterpolatedChannel displacement(record.displacement);
   InterpolatedChannel force(record.force);
-  FindDropouts(record, rules, displacement, force);
+  // What is common is no glitch.
+  const auto take = [&rules](InterpolatedChannel& channel, const auto& find) {
+    InterpolatedChannel without = channel;
+    find(channel);
+    const double found = channel.CountGlitches() - without.CountGlitches();
+    if (found > rules.most * static_cast<double>(channel.size())) channel = std::move(without);
+  };
+  const std::vector<Run> dropouts = FindDropouts(record, rules);
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
-    channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
+    take(*channel, [&](auto& in) {
+      for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end);
+    });
+    take(*channel, [&](auto& in) {
+      for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
+    });
   }
-  FindFlatDropouts(displacement, force, rules);
-  FindFlatDropouts(force, displacement, rules);
-  FindHeld(displacement, force, rules);
-  FindHeld(force, displacement, rules);
+  take(displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
+  take(force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
+  take(displacement, [&](auto& in) { FindHeld(in, force, rules); });
+  take(force, [&](auto& in) { FindHeld(in, displacement, rules); });
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
-    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
-    if (channel->IsWhole()) continue;
-    if (interpolated.glitches.empty()) interpolated.glitches.assign(record.size(), Glitch::kNone);
+    if (channel->CountGlitches() == 0) continue;
+    interpolated.glitches.resize(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (channel->glitches()[i] != Glitch::kNone)
-        interpolated.glitches[i] = channel->glitches()[i];
+      if (channel->glitches()[i]) interpolated.glitches[i] = true;
     }
     (channel == &displacement ? interpolated.displacement : interpolated.force) =
         channel->TakeInterpolated();

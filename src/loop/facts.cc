@@ -193,47 +193,42 @@ std::optional<Passage> PassageOf(const Stroke& stroke, double centre, double hal
 
 /// Returns the width [m] of a gap between the levels k and k + 2: the travel from a level before to
 /// one after, less what the slopes beyond these take.
-double GapAt(const Passage& passage, std::size_t k, double before, double after) {
-  return passage[k + 3] - passage[k - 1] - 4 * (before + after) / 2;
+double GapAt(const Passage& passage, std::size_t k, double slopes) {
+  return passage[k + 3] - passage[k - 1] - 4 * slopes / 2;
 }
 
-/// Returns the width [m] of the segment where the force of a direction stands still.
+/// Returns the width [m] of the segment where the force of a direction stands still; 0 where it
+/// does not.
 /// @param passages  of strokes of one direction
-std::optional<double> FlatOf(std::span<const Passage> passages) {
+double FlatOf(std::span<const Passage> passages) {
   constexpr double kSofter = 2.0;    // than what is before and after
   constexpr double kScatter = 0.25;  // of the width, between strokes
-  constexpr std::size_t kFewest = 2;
-  if (passages.size() < kFewest) return std::nullopt;
+  if (passages.size() < 2) return 0.0;
   Passage typical{};
   for (std::size_t k = 0; k < kLevels; ++k) {
     std::vector<double> travels;
     for (const Passage& passage : passages) travels.push_back(passage[k]);
     typical[k] = Median(travels);
   }
-  std::size_t level = 0;  // at which it begins; 0 where there is none
   double flat = 0.0;
-  double before = 0.0;
-  double after = 0.0;
-  // Slopes over three levels before and after it, a level apart.
+  std::size_t level = 0;  // at which it begins
+  double slopes = 0.0;    // before and after it
+  // Over three levels, a level apart.
   for (std::size_t k = 4; k + 6 < kLevels; ++k) {
-    const double one = (typical[k - 1] - typical[k - 4]) / 3;
-    const double other = (typical[k + 6] - typical[k + 3]) / 3;
+    const double before = (typical[k - 1] - typical[k - 4]) / 3;
+    const double after = (typical[k + 6] - typical[k + 3]) / 3;
     const double here = (typical[k + 2] - typical[k]) / 2;
-    const double width = GapAt(typical, k, one, other);
-    if (!(here > kSofter * std::max(one, other)) || !(one > 0) || !(other > 0)) continue;
-    if (level > 0 && flat >= width) continue;
-    level = k;
+    const double width = GapAt(typical, k, before + after);
+    const bool is_softer = here > kSofter * std::max(before, after) && before > 0 && after > 0;
+    if (!is_softer || width <= flat) continue;
     flat = width;
-    before = one;
-    after = other;
+    level = k;
+    slopes = before + after;
   }
-  if (level == 0) return std::nullopt;
-  for (const Passage& passage : passages) {
-    if (std::abs(GapAt(passage, level, before, after) - flat) > kScatter * flat) {
-      return std::nullopt;
-    }
-  }
-  return flat;
+  const bool scatters = flat > 0 && std::ranges::any_of(passages, [&](const Passage& passage) {
+                          return std::abs(GapAt(passage, level, slopes) - flat) > kScatter * flat;
+                        });
+  return scatters ? 0.0 : flat;
 }
 
 std::optional<double> FindBacklash(std::span<const Stroke> strokes, double centre, double half_gap,
@@ -247,11 +242,10 @@ std::optional<double> FindBacklash(std::span<const Stroke> strokes, double centr
     if (!passage) return std::nullopt;
     passages[stroke.rises() ? 0 : 1].push_back(*passage);
   }
-  const std::optional<double> rising = FlatOf(passages[0]);
-  const std::optional<double> falling = FlatOf(passages[1]);
-  if (!rising || !falling) return std::nullopt;
-  const double width = *rising / 2 + *falling / 2;
-  if (width < kLeastGap * amplitude) return std::nullopt;
+  const double rising = FlatOf(passages[0]);
+  const double falling = FlatOf(passages[1]);
+  const double width = rising / 2 + falling / 2;
+  if (rising == 0 || falling == 0 || width < kLeastGap * amplitude) return std::nullopt;
   return width;
 }
 
@@ -279,19 +273,6 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
   if (count == 0 || !(peak_force > 0)) return std::nullopt;
   for (double& sum : sums) sum /= 2 * static_cast<double>(count);
   return StandardDeviation(sums) / peak_force;
-}
-
-/// Returns the path length over the widths of all strokes of the cycles.
-double PathRatio(Column displacement, Points points, std::size_t cycles) {
-  double path = 0.0;
-  for (std::size_t i = points[0] + 1; i <= points[2 * cycles]; ++i) {
-    path += std::abs(displacement[i] - displacement[i - 1]);
-  }
-  double widths = 0.0;
-  for (std::size_t k = 0; k < 2 * cycles; ++k) {
-    widths += std::abs(displacement[points[k + 1]] - displacement[points[k]]);
-  }
-  return path / widths;
 }
 
 /// Returns a fact of the steady cycles that have it.
@@ -352,7 +333,6 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
     }));
     facts.backlash = FindBacklash(strokes, centre, *facts.half_gap, facts.amplitude);
   }
-  facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
   return facts;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "loop/rules.h"
@@ -8,18 +7,10 @@
 
 namespace mindahl::loop {
 
-/// Names the fault of a sample, where it has one.
-enum class Glitch : std::uint8_t {
-  kNone,
-  kSpike,    ///< one channel is far off its neighbours, for one to three samples
-  kDropout,  ///< both channels read 0, or one of them one value, off their neighbours
-  kHeld,     ///< one channel repeats its last value while the other goes on, and then jumps
-};
-
 /// A record without its glitches: lines over the samples that are left out. All empty where there
 /// is no glitch; a channel is also empty where there is none in it.
 struct Interpolated {
-  std::vector<Glitch> glitches;
+  std::vector<bool> glitches;        // one a sample
   std::vector<double> displacement;  // [m]
   std::vector<double> force;         // [N]
 };

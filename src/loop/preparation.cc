@@ -36,8 +36,8 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
 void Smooth(PreparedRecord& prepared) {
   if (!(prepared.displacement_noise > 0)) return;
   const std::span<const double> displacement = prepared.readings().displacement;
-  prepared.smoother.emplace(displacement, prepared.displacement_noise);
-  prepared.smoothed = prepared.smoother->Smooth(displacement);
+  prepared.smoothing = SmoothingReaches(displacement, prepared.displacement_noise);
+  prepared.smoothed = Smoothed(displacement, prepared.smoothing);
   prepared.reversals = MoveReversals(prepared.smoothed, prepared.reversals);
 }
 
@@ -48,13 +48,9 @@ void LeaveOutGlitches(PreparedRecord& prepared) {
   if (interpolated.glitches.empty()) return;
   GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    const Glitch glitch = interpolated.glitches[i];
-    if (glitch == Glitch::kNone) continue;
+    if (!interpolated.glitches[i]) continue;
     prepared.counts[i] = 0;
-    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
-    ++(glitch == Glitch::kSpike     ? count.spikes
-       : glitch == Glitch::kDropout ? count.dropouts
-                                    : count.held);
+    if (count.total++ == 0) count.first = i;
   }
   prepared.interpolated_displacement = std::move(interpolated.displacement);
   prepared.interpolated_force = std::move(interpolated.force);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <optional>
 
 #include "loop/rules.h"
 #include "loop/statistics.h"
@@ -197,28 +197,22 @@ void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit vi
   }
 }
 
-/// Returns the widest, and the next widest, of the plateaus nearly as good as the best.
-std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<const Look> looks,
-                                           const ReversalRules& rules) {
+/// Returns the widest of the plateaus nearly as good as the best.
+Plateau WidestPlateau(Excursions excursions, std::span<const Look> looks,
+                      const ReversalRules& rules) {
   const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));
-  if (noise == 0) return {};
+  Plateau widest;
+  if (noise == 0) return widest;
   std::size_t fewest = noise;  // under no gate
   ForEachPlateau(excursions, looks,
                  [&](const Plateau& plateau) { fewest = std::min(fewest, plateau.exceptions); });
   const double allowed =
       static_cast<double>(fewest) + rules.exceptions * static_cast<double>(noise);
-  Plateau widest;
-  Plateau next;
   ForEachPlateau(excursions, looks, [&](const Plateau& plateau) {
-    if (static_cast<double>(plateau.exceptions) > allowed) return;
-    if (plateau.width() > widest.width()) {
-      next = widest;
-      widest = plateau;
-    } else if (plateau.width() > next.width()) {
-      next = plateau;
-    }
+    const bool is_good = static_cast<double>(plateau.exceptions) <= allowed;
+    if (is_good && plateau.width() > widest.width()) widest = plateau;
   });
-  return {widest, next};
+  return widest;
 }
 
 /// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
@@ -243,17 +237,13 @@ Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
   return widest;
 }
 
-ReversalGate Under(Excursions excursions, double gate) {
-  const std::size_t count = CountReversals(excursions, gate);
-  return {.gate = gate, .count = count, .other_count = count, .other_gate = gate};
-}
-
-ReversalGate Doubted(Excursions excursions, double gate, double other_gate) {
-  ReversalGate chosen = Under(excursions, gate);
-  chosen.certain = false;
-  chosen.other_gate = other_gate;
-  chosen.other_count = CountReversals(excursions, other_gate);
-  return chosen;
+/// @param other  another gate that competes
+ReversalGate Under(Excursions excursions, double gate, std::optional<double> other = {}) {
+  return {.gate = gate,
+          .count = CountReversals(excursions, gate),
+          .certain = !other,
+          .other_count = CountReversals(excursions, other.value_or(gate)),
+          .other_gate = other.value_or(gate)};
 }
 
 /// Chooses the gate by what the excursions look like, one by one.
@@ -265,19 +255,15 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
   looks.reserve(excursions.size());
   for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
   DoubtEnds(excursions, judge, rules, looks);
-  const auto [chosen, rival] = WidestPlateaus(excursions, looks, rules);
+  const Plateau chosen = WidestPlateau(excursions, looks, rules);
   const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
-  if (smooth.below > chosen.below) return Doubted(excursions, smooth.gate(), chosen.gate());
+  if (smooth.below > chosen.below) return Under(excursions, smooth.gate(), chosen.gate());
   if (chosen.below == 0) return Under(excursions, 0.0);
-  const bool is_narrow = chosen.upper < rules.clear * chosen.lower;
+  if (chosen.upper >= rules.clear * chosen.lower) return Under(excursions, chosen.gate());
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
-  if (is_narrow && static_cast<double>(chosen.below) < rules.outnumber * kept) {
-    return Doubted(excursions, 0.0, chosen.gate());
-  }
-  if (is_narrow) return Doubted(excursions, chosen.gate(), 0.0);
-  const bool is_rivalled = rival.width() > rules.rival * chosen.width();
-  return is_rivalled ? Doubted(excursions, chosen.gate(), rival.gate())
-                     : Under(excursions, chosen.gate());
+  return static_cast<double>(chosen.below) < rules.outnumber * kept
+             ? Under(excursions, 0.0, chosen.gate())
+             : Under(excursions, chosen.gate(), 0.0);
 }
 
 }  // namespace

@@ -29,8 +29,6 @@ struct ReversalRules {
   /// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
   /// drive: of random walks, whose excursions are of all ranges, it is not.
   double outnumber = 20.0;
-  /// [of the plateau's width in log(gate)] Least width of a second plateau that competes.
-  double rival = 0.5;
   /// Smooth disturbances are distinguished from nested loops by their number,
   std::size_t many = 8;
   /// [-] the ratio of their ranges, which lie as densely as those of noise,

@@ -480,9 +480,9 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
       return sample < file.lines.size() ? file.lines[sample] : sample + 1;
     };
     std::size_t rest = fit.left_out;
-    const std::size_t faults = fit.glitches.total();
+    const std::size_t faults = fit.glitches.total;
     if (faults > 0) {
-      const std::size_t first = fit.glitches.examples[0];
+      const std::size_t first = fit.glitches.first;
       parts.push_back({.file = report.files[r],
                        .samples = faults,
                        .first = faults == 1 ? line(first) : 0,

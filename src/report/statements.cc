@@ -147,8 +147,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
      "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
      "--reversal-gate"},
     {"glitches_left_out", "measurement faults are left out"},
-    {"path_too_long",
-     "the path is far longer than the strokes: noise is taken for motion; give --reversal-gate"},
     {"no_closed_cycle",
      "no cycle ends where it began: record one and a half or more of one amplitude"},
     {"load_followed", "the normal load varies by ±{variation%}, which the law follows"},

@@ -63,6 +63,9 @@ long first = 0;
 bool goes_on = false;
 bool halves = false;
 
+/// True for a file that is made, perhaps without a name.
+bool TakesMode(int flags) { return (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE; }
+
 /// True if this call is to fail; counts it.
 bool Fails(Call call) {
   if (!is_counting) return false;
@@ -147,7 +150,7 @@ ssize_t writev(int file, const iovec* pieces, int count) {
 int open(const char* path, int flags, ...) {
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
+  const mode_t mode = TakesMode(flags) ? va_arg(arguments, mode_t) : 0;
   va_end(arguments);
   if (Fails(kOpen)) return -1;
   return static_cast<int>(::syscall(SYS_openat, AT_FDCWD, path, flags, mode));
@@ -156,7 +159,7 @@ int open(const char* path, int flags, ...) {
 int open64(const char* path, int flags, ...) {
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
+  const mode_t mode = TakesMode(flags) ? va_arg(arguments, mode_t) : 0;
   va_end(arguments);
   return open(path, flags, mode);
 }

@@ -34,7 +34,7 @@ double ErrorOfReadings(const Stages& stages, Read read) {
   const std::span<const double> truth = record.displacement();
   double squares = 0.0;
   for (int k = 0; k < kDraws; ++k) {
-    const std::vector<double> smoothed = record.smoother->Smooth(read(truth, generator));
+    const std::vector<double> smoothed = loop::Smoothed(read(truth, generator), record.smoothing);
     for (std::size_t i = 0; i < truth.size(); ++i) squares += std::pow(smoothed[i] - truth[i], 2);
   }
   return std::sqrt(squares / (kDraws * static_cast<double>(truth.size()))) / stages.data.length;

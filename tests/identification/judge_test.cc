@@ -29,7 +29,7 @@ constexpr auto kVerdicts = std::to_array<Verdict>({
     {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
     {"slip_force_bounded_below", Identifiability::kBoundedBelow},
     {"loop_not_seen", Identifiability::kNotIdentifiable},
-    {"path_too_long", Identifiability::kIdentifiable},
+    {"reversals_uncertain", Identifiability::kIdentifiable},
 });
 
 TEST(Judge, VerdictsAreInTheOrderOfPrecedence) {
@@ -93,7 +93,7 @@ TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
   EXPECT_EQ(JudgedWith(open, {}), Identifiability::kBoundedBelow);
   EXPECT_EQ(JudgedWith(open, {{.code = "loop_not_seen", .parameters = {"slip_force"}}}),
             Identifiability::kNotIdentifiable);
-  EXPECT_EQ(JudgedWith(open, {{.code = "path_too_long", .parameters = {"slip_force"}}}),
+  EXPECT_EQ(JudgedWith(open, {{.code = "reversals_uncertain", .parameters = {"slip_force"}}}),
             Identifiability::kBoundedBelow)
       << "a finding makes nothing better";
   open.lower95.reset();

@@ -21,11 +21,10 @@ std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
 RecordFit Flawless() {
   RecordFit record;
   record.facts.closed = true;
-  record.facts.path_ratio = 1.0;
   return record;
 }
 
-std::vector<Finding> FindIn(const RecordFit& record) { return FindInRecords({&record, 1}, {}); }
+std::vector<Finding> FindIn(const RecordFit& record) { return FindInRecords({&record, 1}); }
 
 TEST(FindInRecords, NothingInAFlawlessOne) { EXPECT_THAT(FindIn(Flawless()), IsEmpty()); }
 
@@ -42,18 +41,13 @@ TEST(FindInRecords, UncertainReversalsHaveBothCountsAndGates) {
   EXPECT_EQ(findings[0].Number("other_gate"), 3e-6);
 }
 
-TEST(FindInRecords, GlitchesAreANoteWithRowsCountedFromOne) {
+TEST(FindInRecords, GlitchesAreANote) {
   RecordFit record = Flawless();
-  record.glitches = {.spikes = 1, .dropouts = 0, .held = 6, .examples = {4, 10, 11, 12, 13}};
-  std::vector<Finding> findings = FindIn(record);
+  record.glitches.total = 7;
+  const std::vector<Finding> findings = FindIn(record);
   ASSERT_THAT(Codes(findings), ElementsAre("glitches_left_out"));
   EXPECT_EQ(findings[0].severity, Severity::kNote);
-  EXPECT_EQ(findings[0].Number("spikes"), 1);
-  EXPECT_EQ(findings[0].Number("held"), 6);
-  EXPECT_EQ(findings[0].Number("row"), 5);
-  EXPECT_THAT(findings[0].numbers, SizeIs(3 + 5));
-  record.glitches.held = 1;
-  EXPECT_THAT(FindIn(record)[0].numbers, SizeIs(3 + 2));
+  EXPECT_EQ(findings[0].Number("count"), 7);
 }
 
 TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
@@ -62,7 +56,7 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   EXPECT_EQ(FindIn(open)[0].severity, Severity::kNote);
   EXPECT_FALSE(FindIn(open)[0].Number("record"));
   const std::vector<RecordFit> records = {Flawless(), open};
-  EXPECT_EQ(FindInRecords(records, {}).at(0).Number("record"), 2);
+  EXPECT_EQ(FindInRecords(records).at(0).Number("record"), 2);
 }
 
 // --- whole fits
@@ -83,18 +77,6 @@ TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {
   EXPECT_EQ(intervals.records[0].gate.count, intervals.records[0].reversals.size());
   EXPECT_THAT(intervals.findings, IsEmpty());
   EXPECT_FALSE(fitter.Fit(views, Depth::kEstimate).records[0].facts.closed);
-}
-
-TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {
-  Record record = Loop();
-  testing::Generator generator(5);
-  for (double& x : record.displacement) x += 0.02 * kReach * testing::Normal(generator);
-  const std::vector<RecordView> views = {record};
-  FitOptions options;
-  EXPECT_EQ(Fitter(options).Fit(views, Depth::kIntervals).FindFinding("path_too_long"), nullptr)
-      << "it is smoothed";
-  options.preparation.displacement_noise = 0.0;
-  EXPECT_NE(Fitter(options).Fit(views, Depth::kIntervals).FindFinding("path_too_long"), nullptr);
 }
 
 TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {

@@ -56,13 +56,6 @@ bool LoopIsSeen(const Thresholds& thresholds, double r_squared) {
   return !FindUnseenLoop(result, thresholds);
 }
 
-bool WayIsTooLong(const Thresholds& thresholds, double excess) {
-  FitResult result = Made();
-  result.records[0].facts.closed = true;
-  result.records[0].facts.path_ratio = 1 + excess;
-  return !FindInRecords(result.records, thresholds).empty();
-}
-
 /// A prior of α so many standard deviations off, which prior and record make in equal parts.
 bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
   FitResult result = Made();
@@ -214,10 +207,6 @@ const std::vector<Row>& Cases() {
          for (std::size_t i = 0; i < displacement.size(); ++i) noise.push_back(Normal(generator));
          return Evaluated(t, displacement, noise).records[0].structure.strokes ==
                 std::array<std::size_t, 2>{3, 3};
-       }},
-      {&Thresholds::path_excess,
-       [](const Thresholds& t) {
-         return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
        }},
       {&Thresholds::widest_ratio,
        [](const Thresholds& t) {

@@ -81,26 +81,29 @@ TEST(EncoderStep, IsZeroForADriveThatRunsEvenlyOrFromRestToRest) {
   EXPECT_EQ(EncoderStep(Sine(3, 200)), 0.0);
 }
 
-TEST(DisplacementSmoother, LeavesARecordWithoutNoiseAsItIs) {
-  const History drive = Sine(2, 100);
-  const DisplacementSmoother smoother(drive, 0.0);
-  EXPECT_EQ(smoother.Smooth(drive), drive);
+History SmoothedOf(const History& readings, double noise) {
+  return Smoothed(readings, SmoothingReaches(readings, noise));
 }
 
-TEST(DisplacementSmoother, TakesMostOfTheNoiseFromASine) {
+TEST(Smoothed, LeavesARecordWithoutNoiseAsItIs) {
+  const History drive = Sine(2, 100);
+  EXPECT_EQ(SmoothedOf(drive, 0.0), drive);
+}
+
+TEST(Smoothed, TakesMostOfTheNoiseFromASine) {
   Generator generator(3);
   const History drive = Sine(3, 200);
   const History noisy = WithNoise(generator, drive, kNoise);
   // Windows of half a radian, 2h + 1 = 33 samples, leave √(9/4·33) = 0.26; those cut short by
   // chance and at the ends leave more.
-  EXPECT_LT(RmsDifference(DisplacementSmoother(noisy, kNoise).Smooth(noisy), drive), 0.4 * kNoise);
+  EXPECT_LT(RmsDifference(SmoothedOf(noisy, kNoise), drive), 0.4 * kNoise);
 }
 
-TEST(DisplacementSmoother, KeepsTheCornersOfATriangleToTheNoise) {
+TEST(Smoothed, KeepsTheCornersOfATriangleToTheNoise) {
   Generator generator(4);
   const History drive = Triangle(600);
   const History noisy = WithNoise(generator, drive, kNoise);
-  const History smoothed = DisplacementSmoother(noisy, kNoise).Smooth(noisy);
+  const History smoothed = SmoothedOf(noisy, kNoise);
   // A parabola through 2h + 1 samples cuts a corner by 3/16·h steps; windows whose estimates differ
   // by the 2.5 deviations of both are found out, and half of that is left.
   for (std::size_t i = 50; i < drive.size(); i += 100) {
@@ -108,10 +111,10 @@ TEST(DisplacementSmoother, KeepsTheCornersOfATriangleToTheNoise) {
   }
 }
 
-TEST(DisplacementSmoother, RefusesANegativeNoiseAndAnotherNumberOfSamples) {
+TEST(Smoothed, RefusesANegativeNoiseAndAnotherNumberOfSamples) {
   const History drive = Sine(1, 100);
-  EXPECT_THROW(DisplacementSmoother(drive, -1.0), InvalidArgument);
-  EXPECT_THROW((void)DisplacementSmoother(drive, kNoise).Smooth(History{0, 1}), InvalidArgument);
+  EXPECT_THROW((void)SmoothingReaches(drive, -1.0), InvalidArgument);
+  EXPECT_THROW((void)Smoothed(History{0, 1}, SmoothingReaches(drive, kNoise)), InvalidArgument);
 }
 
 TEST(MoveReversals, PutsThemOnTheOutermostSamples) {
@@ -120,7 +123,7 @@ TEST(MoveReversals, PutsThemOnTheOutermostSamples) {
   const History noisy = WithNoise(generator, drive, kNoise);
   const std::vector<std::size_t> found = FindReversals(noisy, 10 * kNoise);
   ASSERT_EQ(found.size(), 8U);
-  const History smoothed = DisplacementSmoother(noisy, kNoise).Smooth(noisy);
+  const History smoothed = SmoothedOf(noisy, kNoise);
   const std::vector<std::size_t> moved = MoveReversals(smoothed, found);
   ASSERT_EQ(moved.size(), found.size());
   for (std::size_t r = 0; r < moved.size(); ++r) {

@@ -174,7 +174,6 @@ TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
   EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * sliding, kRounding);
   EXPECT_NEAR(facts.energy_ratio, sliding, kRounding);
   EXPECT_NEAR(*facts.asymmetry, 0.0, kRounding);
-  EXPECT_NEAR(facts.path_ratio, 1.0, kRounding);
   // Whatever the stiffness: of a rectangle with the same plateau it is the same.
 }
 
@@ -238,16 +237,6 @@ TEST(MeasureFacts, AsymmetryIsHowMuchTheStrokesDifferTurnedAboutTheCentre) {
   EXPECT_NEAR(*facts.asymmetry * facts.peak_force, kCurvature * std::sqrt(variance), kChord);
 }
 
-TEST(MeasureFacts, HiddenReversalsLengthenThePath) {
-  Generator generator(3);
-  Record record = MakeRecord({});
-  for (double& x : record.displacement) x += 0.01 * Normal(generator);
-  const LoopFacts facts = MeasureFacts(record, FindReversals(record.displacement, 0.2), 1);
-  // Steps of N(0.005, 0.01√2): their mean size is 0.0145·√(2/π)·(1 + …) = 0.0120 for 0.005.
-  EXPECT_NEAR(facts.path_ratio, 2.4, 0.2);
-  EXPECT_NEAR(*facts.half_gap, 2.0, 0.02);
-}
-
 TEST(MeasureFacts, ReportsThatNoCycleCloses) {
   const LoopFacts facts = FactsOf(Record{{0, 1, 2, 3}, {0, 1, 2, 2}, {}, {}});
   EXPECT_FALSE(facts.closed);
@@ -274,7 +263,6 @@ TEST(MeasureFacts, OfAPreparedRecordAreWithoutItsGlitches) {
   const LoopFacts facts = FactsOfPrepared(record);
   EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
   EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * 0.9, kRounding);
-  EXPECT_NEAR(facts.path_ratio, 1.0, kRounding);
 }
 
 // Reference values are those of the measured records' README, read off the loops by others.
@@ -297,7 +285,6 @@ TEST(MeasureFacts, OfMeasuredSealsAreWhatOthersReadOff) {
     const LoopFacts facts = FactsOfPrepared(record);
     EXPECT_NEAR(*facts.half_gap, seal.half_gap, kRead);
     EXPECT_EQ(facts.cycles.size(), 9U);
-    EXPECT_LT(facts.path_ratio, 1.1);
   }
 }
 

@@ -41,7 +41,7 @@ TEST(Verdict, IsSilentIfTruthIsFarOffWithoutWarning) {
 
 TEST(Verdict, IsWarnedIfTruthIsFarOffWithWarning) {
   FitResult fit = FitOf(105.0, 1.0);
-  fit.findings.push_back({.code = "path_too_long"});
+  fit.findings.push_back({.code = "reversals_uncertain"});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kWarned);
 }
 
@@ -109,7 +109,7 @@ TEST(Verdict, AlarmsAtMoreThanWhatARecordLeavesOpen) {
   fit.findings.push_back({.code = "slip_force_bounded_below"});
   EXPECT_TRUE(CautionOf(fit).warns);
   EXPECT_FALSE(CautionOf(fit).alarms);
-  fit.findings.push_back({.code = "path_too_long"});
+  fit.findings.push_back({.code = "reversals_uncertain"});
   EXPECT_TRUE(CautionOf(fit).alarms);
 }
 

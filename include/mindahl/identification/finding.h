@@ -43,7 +43,6 @@ inline constexpr auto kFindings = [] {
       // about the record
       {.code = "reversals_uncertain"},
       {.code = "glitches_left_out", .severity = kNote},
-      {.code = "path_too_long"},
       {.code = "no_closed_cycle", .severity = kNote},
       {.code = "load_followed", .severity = kNote},
       {.code = "load_not_followed"},

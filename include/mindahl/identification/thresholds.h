@@ -31,10 +31,6 @@ struct Thresholds {
   /// [of the longest] Only strokes at least this long are compared with each other. Shorter ones
   /// are nested loops, run-in or run-out; the same as for X and T*.
   double main_stroke = 0.75;
-  /// [of the strokes] A warning is given if the path through the samples exceeds the strokes by
-  /// more. White noise of 0.8 steps between samples makes this much: one step in five then goes
-  /// backward, and the fit takes it for a reversal.
-  double path_excess = 0.25;
   /// [upper over lower end] σ or Tc does not count as known if its 95 % interval is wider. A
   /// factor of three either way: the order of magnitude.
   double widest_ratio = 9.0;

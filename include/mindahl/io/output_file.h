@@ -9,7 +9,8 @@ namespace mindahl::io {
 
 /// Writes a whole file so that a reader finds the old content or the new, never a part: to a
 /// temporary name in the same directory, then by renaming. On failure nothing is left behind and an
-/// existing file is untouched.
+/// existing file is untouched; a signal that ends the program leaves nothing where the file system
+/// has files without names.
 ///
 /// A new file gets the permissions of the umask, an existing one keeps its own, and a symbolic link
 /// stays a link. What cannot be renamed over (a device, a pipe, anything below /dev or /proc, as
@@ -18,14 +19,6 @@ namespace mindahl::io {
 /// Safe against a crash of the program and of the machine: file and directory are on the disk when
 /// it returns, which takes some milliseconds.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
-
-/// Removes the files that this module has begun and not yet finished; allocates nothing. For a
-/// program that is about to end.
-void RemoveTemporaryFiles();
-
-/// For a program: from now on SIGINT, SIGTERM and SIGHUP, unless they are ignored, remove the files
-/// that this module has begun and not yet finished, and then end the program as they would have.
-void RemoveTemporaryFilesOnSignals();
 
 class OutputFile;
 

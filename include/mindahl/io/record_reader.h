@@ -36,7 +36,6 @@ struct ChosenColumn {
   std::string name;       ///< header cell as written, or the sum; "" in a file without names
   std::size_t index = 0;  ///< 1-based; of a sum the first
   std::string unit;       ///< symbol the numbers were taken to be in
-  bool is_clock = false;  ///< its cells are times of day
 };
 
 /// Locates a record within a file that holds several constant loads.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -20,7 +19,8 @@ double EstimateDisplacementNoise(std::span<const double> displacement);
 /// whole steps or not at all. 0 where it was not.
 double EncoderStep(std::span<const double> displacement);
 
-/// Estimates the displacement under its noise, where the motion is smooth.
+/// Returns how far the windows reach, h samples to either side of each sample, over which a
+/// displacement is smoothed where the motion is smooth.
 ///
 /// Each sample becomes the value there of the parabola in the sample number through the 2h + 1
 /// samples about it (Savitzky & Golay 1964), h as large as the motion allows: of growing windows
@@ -28,21 +28,16 @@ double EncoderStep(std::span<const double> displacement);
 /// Nemirovski 1997), and half of the widest that do is taken: the parabola's error falls with h⁴,
 /// to a sixteenth, and the noise grows by √2 only. A corner narrows the windows that it lies in.
 /// The ends of a record stay nearly as they are.
-class DisplacementSmoother {
- public:
-  /// @param displacement  [m], finite; decides the windows
-  /// @param noise         standard deviation [m], >= 0; at 0 nothing is smoothed
-  /// @throws InvalidArgument when the noise is negative or not finite
-  DisplacementSmoother(std::span<const double> displacement, double noise);
+/// @param displacement  [m], finite
+/// @param noise         standard deviation [m], >= 0; at 0 nothing is smoothed
+/// @throws InvalidArgument when the noise is negative or not finite
+std::vector<std::size_t> SmoothingReaches(std::span<const double> displacement, double noise);
 
-  /// Returns the smoothed displacement, which is linear in the readings.
-  /// @throws InvalidArgument for another number of samples
-  /// Cost: at most 128 additions a sample.
-  [[nodiscard]] std::vector<double> Smooth(std::span<const double> displacement) const;
-
- private:
-  std::vector<std::size_t> reach_;  // h of each sample
-};
+/// Returns a displacement smoothed over such windows, in which it is linear.
+/// @throws InvalidArgument for another number of samples
+/// Cost: at most 128 additions a sample.
+std::vector<double> Smoothed(std::span<const double> displacement,
+                             std::span<const std::size_t> reaches);
 
 /// Returns the reversals of a smoothed displacement: the outermost sample of each swing that noise
 /// has made part of two strokes. Between them no sample lies beyond either.
@@ -51,16 +46,10 @@ class DisplacementSmoother {
 std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
                                        std::span<const std::size_t> reversals);
 
-/// How many samples of a record are glitches [-], and where the first of them are.
+/// How many samples of a record are glitches [-], and which is the first.
 struct GlitchCount {
-  static constexpr std::size_t kMostExamples = 5;
-
-  std::size_t spikes = 0;
-  std::size_t dropouts = 0;
-  std::size_t held = 0;
-  std::array<std::size_t, kMostExamples> examples{};  ///< samples, the first min(total, 5) in use
-
-  [[nodiscard]] std::size_t total() const { return spikes + dropouts + held; }
+  std::size_t total = 0;
+  std::size_t first = 0;  ///< sample, where there is one
 };
 
 }  // namespace mindahl::loop

@@ -50,9 +50,6 @@ struct LoopFacts {
   /// D_{11−j})/2. Zero of a loop that has the symmetry of a contact; a slope of both strokes and
   /// offsets do not enter.
   std::optional<double> asymmetry;
-  /// [-]: Σ|Δδ| over the strokes' widths, from the first cycle to the last: 1 where every turn is
-  /// known; far above, there are reversals or noise between.
-  double path_ratio = 0.0;
   /// Width [m] of a gap, mean over the directions, that the motion takes up after each reversal
   /// while the force rises at less than half the slope before and after it, between −0.4 and 0.4
   /// half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 % of

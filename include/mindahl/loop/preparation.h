@@ -42,7 +42,7 @@ struct PreparationOptions {
   /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
   /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. Under
   /// an imposed force it makes no gate, and the displacement is not smoothed. A
-  /// noisy displacement is smoothed (DisplacementSmoother), since noise in the argument of a curved
+  /// noisy displacement is smoothed (SmoothingReaches), since noise in the argument of a curved
   /// law is a bias.
   std::optional<double> displacement_noise{};
 
@@ -65,7 +65,7 @@ struct PreparationOptions {
 /// One record as every later stage sees it.
 struct PreparedRecord {
   RecordView record;                              ///< measured record; must outlive this
-  GlitchCount glitches;                           ///< glitches left out, by kind
+  GlitchCount glitches;                           ///< glitches left out
   std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
   std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
   ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given
@@ -77,7 +77,7 @@ struct PreparedRecord {
   std::size_t left_out = 0;            ///< samples that do not count
   std::vector<double> smoothed;        ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
-  std::optional<DisplacementSmoother> smoother;
+  std::vector<std::size_t> smoothing;
 
   /// Returns the displacement [m] that the contact is taken to have followed.
   [[nodiscard]] std::span<const double> displacement() const {

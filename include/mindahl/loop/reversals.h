@@ -99,8 +99,8 @@ struct ReversalGate {
 /// drive's; the gate lies in it, at most at twice the range below it, and at one and a half counts
 /// where an encoder flickers by one. Where nothing looks like
 /// noise - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain
-/// where the plateau is narrow, where another is half as wide, and where excursions that lie as
-/// densely as those of noise are smooth, as vibration is.
+/// where the plateau is narrow, and where excursions that lie as densely as those of noise are
+/// smooth, as vibration is.
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.

@@ -33,22 +33,9 @@ Finding UncertainReversals(const RecordFit& record) {
                       {"other_gate", gate.other_gate}}};
 }
 
-Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
-  Finding finding{.code = "glitches_left_out",
-                  .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
-                              {"dropouts", static_cast<double>(glitches.dropouts)},
-                              {"held", static_cast<double>(glitches.held)}}};
-  const std::size_t examples = std::min(glitches.total(), glitches.examples.size());
-  for (std::size_t i = 0; i < examples; ++i) {
-    finding.numbers.emplace_back("row", static_cast<double>(glitches.examples[i] + 1));
-  }
-  return finding;
-}
-
 }  // namespace
 
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
-                                   loop::Channel excitation) {
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records) {
   std::vector<Finding> findings;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const RecordFit& record = records[r];
@@ -56,12 +43,10 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thr
       findings.push_back(OfRecord(r, records.size(), std::move(finding)));
     };
     if (!record.gate.certain) append(UncertainReversals(record));
-    // Noise of a displacement that responds is no part of the path.
-    const bool is_driven = excitation == loop::Channel::kDisplacement;
-    if (is_driven && record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
-      append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
+    if (record.glitches.total > 0) {
+      append({.code = "glitches_left_out",
+              .numbers = {{"count", static_cast<double>(record.glitches.total)}}});
     }
-    if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
     if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
   return findings;

@@ -18,11 +18,9 @@ namespace mindahl::identification {
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
 
-/// Reversals that are not certain, glitches that are left out, a way that is longer than the
-/// strokes of a motion that is imposed, and that no cycle is closed: whatever is fitted. Numbers of
-/// a record count from 1.
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
-                                   loop::Channel excitation = loop::Channel::kDisplacement);
+/// Reversals that are not certain, glitches that are left out, and that no cycle is closed:
+/// whatever is fitted. Numbers of a record count from 1.
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records);
 
 /// `load_followed` where the normal load varies within a record and the law knows it,
 /// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's

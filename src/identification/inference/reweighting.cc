@@ -64,8 +64,9 @@ DisplacementErrors::DisplacementErrors(const loop::PreparedRecords& records,
       drawn.displacement = record.displacement;
       drawn.reversals = record.reversals;
       if (!(records.records[r].displacement_noise > 0)) continue;
-      drawn.displacement = records.records[r].smoother->Smooth(
-          DrawReading(records.records[r], data.length, record.displacement, draws));
+      drawn.displacement =
+          loop::Smoothed(DrawReading(records.records[r], data.length, record.displacement, draws),
+                         records.records[r].smoothing);
       drawn.reversals = loop::MoveReversals(drawn.displacement, record.reversals);
     }
   }

@@ -47,7 +47,7 @@ std::string WhatIsLeftOut(const loop::PreparedRecords& prepared) {
   const std::size_t left_out = prepared.samples() - prepared.counted();
   if (left_out == 0) return "";
   std::size_t glitches = 0;
-  for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total();
+  for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total;
   return fmt::format("; of {} that were read {} are left out, {} of them glitches",
                      prepared.samples(), left_out, glitches);
 }
