@@ -150,15 +150,22 @@ bool MayBeUnit(std::string_view text) {
          !Lists(kRemarks, LowerCase(text));
 }
 
-/// The text with the brackets of Chinese and Japanese fonts as those of ASCII.
-std::string WithNarrowBrackets(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, char>, 6> kBrackets = {
-      {{"（", '('}, {"）", ')'}, {"［", '['}, {"］", ']'}, {"【", '['}, {"】", ']'}}};
-  std::string narrow(text);
-  for (const auto& [wide, bracket] : kBrackets) {
-    for (std::size_t at = narrow.find(wide); at != std::string::npos; at = narrow.find(wide)) {
-      narrow.replace(at, wide.size(), 1, bracket);
+/// The text with the brackets, letters and signs of Chinese and Japanese fonts, U+FF01 to U+FF5E,
+/// as those of ASCII.
+std::string WithNarrowLetters(std::string_view text) {
+  std::string narrow;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const auto third = at + 2 < text.size() ? static_cast<unsigned char>(text[at + 2]) : 0U;
+    const std::string_view lead = text.substr(at, 2);
+    const bool is_bracket = lead == "\xE3\x80" && (third == 0x90 || third == 0x91);
+    const bool is_letter = lead == "\xEF\xBC" || (lead == "\xEF\xBD" && third < 0x9F);
+    if (!is_bracket && !is_letter) {
+      narrow += text[at];
+      continue;
     }
+    narrow += is_bracket ? "[]"[third - 0x90]
+                         : static_cast<char>(third - (lead == "\xEF\xBC" ? 0x60 : 0x20));
+    at += 2;
   }
   return narrow;
 }
@@ -227,7 +234,7 @@ bool LooksLikeUnit(std::string_view cell) {
 }
 
 ColumnName SplitColumnName(std::string_view header) {
-  const std::string plain = WithNarrowBrackets(Trimmed(header));
+  const std::string plain = WithNarrowLetters(Trimmed(header));
   ColumnName split{.name = plain};
   bool is_known = false;
   for (std::size_t close = plain.find_last_of("])");

@@ -118,6 +118,12 @@ std::size_t Utf8LengthAt(std::string_view text, std::size_t at) {
 std::string EncodingOf(std::string_view head) {
   if (head.starts_with(kUtf16Little)) return "UTF-16LE";
   if (head.starts_with(kUtf16Big)) return "UTF-16BE";
+  std::array<std::ptrdiff_t, 2> zeroes{};  // in even and odd places
+  for (std::size_t at = 0; at < head.size(); ++at) zeroes[at % 2] += head[at] == '\0' ? 1 : 0;
+  if (const auto [even, odd] = zeroes; even + odd > 0) {
+    if (even == 0 && 4 * odd >= std::ssize(head)) return "UTF-16LE";
+    return odd == 0 && 4 * even >= std::ssize(head) ? "UTF-16BE" : "";
+  }
   if (IsUtf8(head)) return "";
   return IsShiftJis(head) ? "CP932" : IsGb18030(head) ? "GB18030" : "WINDOWS-1252";
 }

@@ -36,9 +36,9 @@ std::string ForMessage(std::string_view text);
 std::size_t Utf8LengthAt(std::string_view text, std::size_t at);
 
 /// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
-/// UTF-16 is known by its byte order mark; of what is not UTF-8, Shift-JIS by two characters or
-/// more that begin with 0x81 to 0x9F, GB18030 by pairs of bytes from 0xA1 on alone; the rest is
-/// Windows-1252, of which Latin-1 is a part.
+/// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
+/// UTF-8, Shift-JIS by two characters or more that begin with 0x81 to 0x9F, GB18030 by pairs of
+/// bytes from 0xA1 on alone; the rest is Windows-1252, of which Latin-1 is a part.
 std::string EncodingOf(std::string_view head);
 
 /// A file, plain or compressed by gzip, as UTF-8 in pieces of whole lines that end in LF.

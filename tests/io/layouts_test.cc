@@ -106,7 +106,7 @@ BluehillWithATableOfResults 2 3 1.5e-3 2.5 0.9 | "Results"¶"","Load (N)","Exten
   "0.9","2","3"¶
 RobotWithActualValues 2 3 1.5 2.5 1.0 torsional | t,actual_q_0,actual_tau_0,actual_current¶0,1.5,2.5,1¶
   1,2,3,2¶
-WideBrackets 2 3 1.5e-3 2.5 1.0 | 時間（s）,変位【mm】,荷重［N］¶0,1.5,2.5¶1,2,3¶
+WideLettersAndBrackets 2 3 1.5e-3 2.5 1.0 | 時間（ｓ）,変位【ｍｍ】,荷重［Ｎ］¶0,1.5,2.5¶1,2,3¶
 ServoWithGoals 2 4 1.5 2.5 1.0 | t,Present Position,Goal Position,Present Load¶0,1.5,9,2.5¶1,2,9,3¶
 RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение, мм;Сила, кН¶0;1,5;2,5¶1;2;3¶
 )layouts";

@@ -28,7 +28,8 @@ TEST(LoggerFile, IsTheSameRecordInEveryEncoding) {
   const std::string mark = "\xEF\xBB\xBF";
   for (const std::string& text :
        {western, mark + western, Encoded(mark + western, "UTF-16LE"),
-        Encoded(mark + western, "UTF-16BE"), Encoded(western, "LATIN1"), japanese,
+        Encoded(mark + western, "UTF-16BE"), Encoded(western, "UTF-16LE"),
+        Encoded(western, "UTF-16BE"), Encoded(western, "LATIN1"), japanese,
         Encoded(japanese, "CP932"), Encoded(mark + japanese, "UTF-16LE")}) {
     const RecordFile file = Read(text);
     EXPECT_THAT(file.record.displacement, ElementsAre(0.0, 12 / 1e6, 7 / 1e6));
