@@ -115,7 +115,9 @@ class Reading {
   void PassResults();
   [[nodiscard]] bool HasTextAmongNumbers(const Row& row) const;
   [[nodiscard]] std::optional<Strings> HeaderCells(const Row& row) const;
+  [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
   void FindNames(const std::string& file);
+  void FindStatedUnits(const Row& row);
   void FindInterval();
   [[noreturn]] void ThrowNoHeader(const std::string& file) const;
 
@@ -180,14 +182,18 @@ std::size_t Reading::FirstDataRow() const {
   // A header of LabVIEW has rows of numbers.
   const auto names =
       std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
+  std::optional<std::size_t> any;
   for (auto row = names == rows_.end() ? rows_.begin() : names; row != rows_.end(); ++row) {
     // One that has more than most, as an event of a logger, stands below a header that names them.
     const bool is_named = row != rows_.begin() && row->cells.size() > columns_ &&
                           (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
     if (!row->HasData() || (!row->CanHave(columns_) && !is_named)) continue;
-    if (!HasTextAmongNumbers(*row)) return static_cast<std::size_t>(row - rows_.begin());
+    const auto place = static_cast<std::size_t>(row - rows_.begin());
+    if (!HasTextAmongNumbers(*row)) return place;
+    if (!any) any = place;
   }
-  return 0;  // text in every row, each time in another column
+  // Text in every row, each time in another column: the first row is as good as any.
+  return any.value_or(0);
 }
 
 /// Passes over a table of results above the data: a few rows of numbers below a header of their
@@ -239,17 +245,31 @@ std::optional<Strings> Reading::HeaderCells(const Row& row) const {
   return std::nullopt;
 }
 
+/// True for a row of text that names every column that mostly holds numbers.
+bool Reading::NamesColumns(std::span<const std::string> cells) const {
+  for (std::size_t column = 0; column < layout_.mostly_numbers.size(); ++column) {
+    const bool is_named = column < cells.size() && !cells[column].empty();
+    if (layout_.mostly_numbers[column] && !is_named) return false;
+  }
+  return true;
+}
+
 /// Looks for names and units: the row above the data, or, where that is no header or one of units,
-/// the nearest row above with words that are known.
+/// the nearest row above with a name for every column; of several the one with most known words.
 void Reading::FindNames(const std::string& file) {
+  constexpr std::size_t kFarthest = 100;
+  const std::size_t begin = data_ - std::min(data_, kFarthest);
   std::size_t header = data_;
   std::size_t most = 0;
-  for (std::size_t k = data_; k-- > 0;) {
+  for (std::size_t k = data_; k-- > begin;) {
     const Row& row = rows_[k];
     const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
     if (layout_.names.empty() && may_be_data) break;
     auto cells = HeaderCells(row);
-    if (!cells) continue;
+    if (!cells) {
+      FindStatedUnits(row);
+      continue;
+    }
     if (IsUnitsRow(*cells)) {
       const bool states = StatesUnits(cells->front());
       if (!layout_.units.empty() || (!states && !layout_.names.empty())) continue;
@@ -261,7 +281,8 @@ void Reading::FindNames(const std::string& file) {
     }
     const std::size_t known = CountKnownWords(*cells);
     const bool is_adjacent = k + 1 == data_ || (k + 1 == header && layout_.names.empty());
-    if (!(most == 0 && known >= 2) && !(layout_.names.empty() && is_adjacent)) continue;
+    const bool is_better = (most == 0 && known >= 2) || (layout_.names.empty() && is_adjacent);
+    if (!is_better || (!is_adjacent && !NamesColumns(*cells))) continue;
     most = known;
     header = k;
     layout_.names = std::move(*cells);
@@ -276,6 +297,16 @@ void Reading::FindNames(const std::string& file) {
   if (header == data_) ThrowNoHeader(file);
   layout_.header_line = rows_[header].line;
   layout_.preamble_rows = header;
+}
+
+/// A row of the preamble that states the units, "Y_Unit_Label" of LabVIEW or "Unit", behind which
+/// those of the columns stand.
+void Reading::FindStatedUnits(const Row& row) {
+  if (!layout_.units.empty() || row.cells.size() < 2) return;
+  if (!StatesUnits(row.cells.front()) || row.cells.size() > columns_ + 1) return;
+  layout_.units = row.cells;
+  layout_.units.front().clear();
+  layout_.units.resize(columns_);
 }
 
 /// The time between rows of a LabVIEW file without a column of it.
@@ -328,6 +359,13 @@ void Reading::ThrowNoNumbers(const std::string& file) const {
       file, row.line, cell + 1, ForMessage(row.cells[cell]), rows_.size(), remedy);
 }
 
+/// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.
+char StatedDelimiter(std::string_view row) {
+  if (row.starts_with('"') && row.ends_with('"')) row = row.substr(1, row.size() - 2);
+  const bool states = row.size() == 5 && LowerCase(row.substr(0, 4)) == "sep=";
+  return states ? row.back() : '\0';
+}
+
 /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
 void FindNamesIn(Row comment, Layout& layout) {
   comment.text.remove_prefix(comment.text.find('#') + 1);
@@ -347,10 +385,13 @@ void FindNamesIn(Row comment, Layout& layout) {
 Layout FindLayout(std::string_view text, const std::string& file) {
   std::vector<Row> sampled;
   std::optional<Row> comment;  // the last above all rows, where a header may stand
+  char stated = '\0';
   std::size_t line = 0;
   for (std::string_view rest = text; !rest.empty() && sampled.size() < kSampledRows;) {
     Row row{.text = {}, .line = line + 1, .offset = text.size() - rest.size()};
     row.text = TakeRow(rest, line);
+    if (row.line == 1) stated = StatedDelimiter(row.text);
+    if (row.line == 1 && stated != '\0') continue;
     if (!IsBlankOrComment(row.text)) {
       sampled.push_back(std::move(row));
     } else if (sampled.empty() && !Trimmed(row.text).empty()) {
@@ -363,6 +404,7 @@ Layout FindLayout(std::string_view text, const std::string& file) {
   std::size_t open_quote_line = 0;
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
+    if (stated != '\0' && delimiter != stated) continue;
     Reading reading(sampled, delimiter);
     open_quote_line = reading.open_quote_line();
     always_open = always_open && open_quote_line > 0;
