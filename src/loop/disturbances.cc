@@ -402,41 +402,34 @@ Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
   return {values.size(), values.size()};
 }
 
-/// Finds where one channel reads one value, away from what it read before and reads again after.
-void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& other,
-                      const GlitchRules& rules) {
-  const std::size_t size = channel.size();
-  Readings values = channel.values();
-  for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
-       run = NextRun(values, run.end, rules.shortest_held)) {
-    const auto& [begin, end] = run;
-    const std::size_t length = end - begin;
-    const double in = values[begin] - values[begin - 1];
-    const double out = values[end] - values[end - 1];
-    // The steps into it and out of it are what is looked at, not what is compared with.
-    const double about =
-        std::max({LargestStep(channel, begin - std::min(begin, length), begin),
-                  LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
-    if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
-        Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
-      channel.LeaveOut(begin, end);
-      values = channel.values();
-    }
-  }
+/// True if the run [begin, end) of equal values lies away from what is read before and after it.
+bool ComesBack(InterpolatedChannel& channel, const Run& run, const GlitchRules& rules) {
+  const auto& [begin, end] = run;
+  if (begin == 0) return false;
+  const Readings values = channel.values();
+  const std::size_t length = end - begin;
+  const double in = values[begin] - values[begin - 1];
+  const double out = values[end] - values[end - 1];
+  // The steps into it and out of it are what is looked at, not what is compared with.
+  const double about =
+      std::max({LargestStep(channel, begin - std::min(begin, length), begin),
+                LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
+  return in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about;
 }
 
-void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
+/// Finds where one channel reads one value while the other moves: away from what it read before and
+/// reads again after, or held on its way.
+void FindRuns(InterpolatedChannel& channel, const InterpolatedChannel& other,
               const GlitchRules& rules) {
-  const std::size_t size = channel.size();
-  Readings values = channel.values();
-  for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
-       run = NextRun(values, run.end, rules.shortest_held)) {
+  for (Run run = NextRun(channel.values(), 0, rules.shortest_held); run.end < channel.size();
+       run = NextRun(channel.values(), run.end, rules.shortest_held)) {
     const auto& [begin, end] = run;
-    if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
-        !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
-        channel.Step(end) > rules.held_jump * channel.usual_step()) {
-      channel.LeaveOut(begin + 1, end);
-      values = channel.values();
+    if (!Moves(other, begin + 1, end) || JumpsAtTheEnd(other, begin, end, rules)) continue;
+    if (ComesBack(channel, run, rules)) {
+      channel.LeaveOut(begin, end);
+    } else if (JumpsAtTheEnd(channel, begin, end, rules) && GoesOn(other.values(), begin, end) &&
+               channel.Step(end) > rules.held_jump * channel.usual_step()) {
+      channel.LeaveOut(begin + 1, end);  // the first reading is a good one
     }
   }
 }
@@ -463,10 +456,8 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
       for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
     });
   }
-  take(displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
-  take(force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
-  take(displacement, [&](auto& in) { FindHeld(in, force, rules); });
-  take(force, [&](auto& in) { FindHeld(in, displacement, rules); });
+  take(displacement, [&](auto& in) { FindRuns(in, force, rules); });
+  take(force, [&](auto& in) { FindRuns(in, displacement, rules); });
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
     if (channel->CountGlitches() == 0) continue;
