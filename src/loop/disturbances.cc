@@ -230,16 +230,6 @@ double OutsideOf(double one, double other) {
   return std::max({std::min(one, other), -std::max(one, other), 0.0});
 }
 
-/// Returns the steps [unit of the column] of neighbours of which neither reads 0 and 0.
-double UsualStepWithoutZeros(Readings values, const RecordView& record) {
-  std::vector<double> kept;
-  kept.reserve(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (record.displacement[i] != 0 || record.force[i] != 0) kept.push_back(values[i]);
-  }
-  return UsualStep(kept);
-}
-
 /// Successive samples: [begin, end).
 struct Run {
   std::size_t begin = 0;
@@ -248,33 +238,28 @@ struct Run {
   [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-/// Returns the samples that read 0 and 0.
-std::vector<Run> ZeroRuns(const RecordView& record) {
-  const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
-    return x[i] == 0 && force[i] == 0;
-  };
-  std::vector<Run> runs;
-  const std::size_t size = record.size();
-  bool any = false;
-  for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
-  if (!any) return runs;  // as nearly always
-  for (std::size_t begin = 0; begin < size; ++begin) {
-    if (!is_zero(begin)) continue;
-    std::size_t end = begin + 1;
-    while (end < size && is_zero(end)) ++end;
-    runs.push_back({begin, end});
-    begin = end;
-  }
-  return runs;
-}
-
 /// Returns the samples that read 0 and 0 away from their neighbours.
 std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
-  std::vector<Run> runs = ZeroRuns(record);
-  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
   const Readings x = record.displacement;
-  const double step_of_x = UsualStepWithoutZeros(x, record);
-  const double step_of_force = UsualStepWithoutZeros(record.force, record);
+  const auto is_zero = [&](std::size_t i) { return x[i] == 0 && record.force[i] == 0; };
+  bool has_any = false;
+  for (std::size_t i = 0; i < record.size(); ++i) has_any |= is_zero(i);
+  if (!has_any) return {};  // as nearly always
+  std::vector<Run> runs;
+  std::vector<double> other_x;
+  std::vector<double> other_force;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!is_zero(i)) {
+      other_x.push_back(x[i]);
+      other_force.push_back(record.force[i]);
+      continue;
+    }
+    if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  if (other_x.empty()) return {};
+  const double step_of_x = UsualStep(other_x);
+  const double step_of_force = UsualStep(other_force);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
