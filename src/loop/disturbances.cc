@@ -230,16 +230,6 @@ double OutsideOf(double one, double other) {
   return std::max({std::min(one, other), -std::max(one, other), 0.0});
 }
 
-/// Returns the steps [unit of the column] of neighbours of which neither reads 0 and 0.
-double UsualStepWithoutZeros(Readings values, const RecordView& record) {
-  std::vector<double> kept;
-  kept.reserve(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (record.displacement[i] != 0 || record.force[i] != 0) kept.push_back(values[i]);
-  }
-  return UsualStep(kept);
-}
-
 /// Successive samples: [begin, end).
 struct Run {
   std::size_t begin = 0;
@@ -248,33 +238,28 @@ struct Run {
   [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-/// Returns the samples that read 0 and 0.
-std::vector<Run> ZeroRuns(const RecordView& record) {
-  const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
-    return x[i] == 0 && force[i] == 0;
-  };
-  std::vector<Run> runs;
-  const std::size_t size = record.size();
-  bool any = false;
-  for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
-  if (!any) return runs;  // as nearly always
-  for (std::size_t begin = 0; begin < size; ++begin) {
-    if (!is_zero(begin)) continue;
-    std::size_t end = begin + 1;
-    while (end < size && is_zero(end)) ++end;
-    runs.push_back({begin, end});
-    begin = end;
-  }
-  return runs;
-}
-
 /// Returns the samples that read 0 and 0 away from their neighbours.
 std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
-  std::vector<Run> runs = ZeroRuns(record);
-  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
   const Readings x = record.displacement;
-  const double step_of_x = UsualStepWithoutZeros(x, record);
-  const double step_of_force = UsualStepWithoutZeros(record.force, record);
+  const auto is_zero = [&](std::size_t i) { return x[i] == 0 && record.force[i] == 0; };
+  bool has_any = false;
+  for (std::size_t i = 0; i < record.size(); ++i) has_any |= is_zero(i);
+  if (!has_any) return {};  // as nearly always
+  std::vector<Run> runs;
+  std::vector<double> other_x;
+  std::vector<double> other_force;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!is_zero(i)) {
+      other_x.push_back(x[i]);
+      other_force.push_back(record.force[i]);
+      continue;
+    }
+    if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  if (other_x.empty()) return {};
+  const double step_of_x = UsualStep(other_x);
+  const double step_of_force = UsualStep(other_force);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
@@ -402,41 +387,34 @@ Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
   return {values.size(), values.size()};
 }
 
-/// Finds where one channel reads one value, away from what it read before and reads again after.
-void FindFlatDropouts(InterpolatedChannel& channel, const InterpolatedChannel& other,
-                      const GlitchRules& rules) {
-  const std::size_t size = channel.size();
-  Readings values = channel.values();
-  for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
-       run = NextRun(values, run.end, rules.shortest_held)) {
-    const auto& [begin, end] = run;
-    const std::size_t length = end - begin;
-    const double in = values[begin] - values[begin - 1];
-    const double out = values[end] - values[end - 1];
-    // The steps into it and out of it are what is looked at, not what is compared with.
-    const double about =
-        std::max({LargestStep(channel, begin - std::min(begin, length), begin),
-                  LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
-    if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
-        Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
-      channel.LeaveOut(begin, end);
-      values = channel.values();
-    }
-  }
+/// True if the run [begin, end) of equal values lies away from what is read before and after it.
+bool ComesBack(InterpolatedChannel& channel, const Run& run, const GlitchRules& rules) {
+  const auto& [begin, end] = run;
+  if (begin == 0) return false;
+  const Readings values = channel.values();
+  const std::size_t length = end - begin;
+  const double in = values[begin] - values[begin - 1];
+  const double out = values[end] - values[end - 1];
+  // The steps into it and out of it are what is looked at, not what is compared with.
+  const double about =
+      std::max({LargestStep(channel, begin - std::min(begin, length), begin),
+                LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
+  return in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about;
 }
 
-void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other,
+/// Finds where one channel reads one value while the other moves: away from what it read before and
+/// reads again after, or held on its way.
+void FindRuns(InterpolatedChannel& channel, const InterpolatedChannel& other,
               const GlitchRules& rules) {
-  const std::size_t size = channel.size();
-  Readings values = channel.values();
-  for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
-       run = NextRun(values, run.end, rules.shortest_held)) {
+  for (Run run = NextRun(channel.values(), 0, rules.shortest_held); run.end < channel.size();
+       run = NextRun(channel.values(), run.end, rules.shortest_held)) {
     const auto& [begin, end] = run;
-    if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
-        !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
-        channel.Step(end) > rules.held_jump * channel.usual_step()) {
-      channel.LeaveOut(begin + 1, end);
-      values = channel.values();
+    if (!Moves(other, begin + 1, end) || JumpsAtTheEnd(other, begin, end, rules)) continue;
+    if (ComesBack(channel, run, rules)) {
+      channel.LeaveOut(begin, end);
+    } else if (JumpsAtTheEnd(channel, begin, end, rules) && GoesOn(other.values(), begin, end) &&
+               channel.Step(end) > rules.held_jump * channel.usual_step()) {
+      channel.LeaveOut(begin + 1, end);  // the first reading is a good one
     }
   }
 }
@@ -463,10 +441,8 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
       for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
     });
   }
-  take(displacement, [&](auto& in) { FindFlatDropouts(in, force, rules); });
-  take(force, [&](auto& in) { FindFlatDropouts(in, displacement, rules); });
-  take(displacement, [&](auto& in) { FindHeld(in, force, rules); });
-  take(force, [&](auto& in) { FindHeld(in, displacement, rules); });
+  take(displacement, [&](auto& in) { FindRuns(in, force, rules); });
+  take(force, [&](auto& in) { FindRuns(in, displacement, rules); });
   Interpolated interpolated;
   for (InterpolatedChannel* channel : {&displacement, &force}) {
     if (channel->CountGlitches() == 0) continue;
