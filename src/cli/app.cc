@@ -237,7 +237,11 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   // Options of a command that does not run would cost a tenth of a short fit.
   const auto asked = std::ranges::find(kCommands, argc > 1 ? argv[1] : "", &CommandRow::name);
   for (const CommandRow& command : kCommands) {
-    if (asked == kCommands.end() || command.name == asked->name) command.add(app, console);
+    if (asked == kCommands.end() || command.name == asked->name) {
+      command.add(app, console);
+    } else {
+      app.add_subcommand(std::string(command.name));  // a configuration may have its section
+    }
   }
 
   if (const auto unknown = UnknownCommand(app, argc, argv)) {
