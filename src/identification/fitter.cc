@@ -178,6 +178,8 @@ struct Fitter::State {
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation);
+  const std::shared_ptr<const loop::DrawnReadings> drawn =
+      given.preparation.drawn ? given.preparation.drawn : loop::DrawReadings(prepared);
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given);
   AddColumns(given, prepared, /*with_others=*/depth >= Depth::kIntervals, data);
@@ -190,8 +192,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
 
-  const Attempt attempt{
-      given, depth, prepared, data, thin, solver, without_priors ? &*without_priors : nullptr};
+  const Attempt attempt{given, depth, prepared, drawn,
+                        data,  thin,  solver,   without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

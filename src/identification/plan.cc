@@ -139,7 +139,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state)};
   Solution solution = SolutionAt(expected, problem.parameters);
-  const DisplacementErrors errors(prepared, data);
+  const DisplacementErrors errors(loop::DrawReadings(prepared), data);
   Solver solver;
   Noise noise;
   if (errors.any()) {

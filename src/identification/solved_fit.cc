@@ -234,8 +234,8 @@ SolvedFit SolveFit(const Attempt& attempt) {
       // more from all starts, as weighted.
       if (options.loss != Loss::kNone || by_record) {
         ThinnedRecords weighted_thin(data);
-        const Attempt weighted{options, attempt.depth, attempt.prepared,
-                               data,    weighted_thin, solver};
+        const Attempt weighted{options,       attempt.depth, attempt.prepared, attempt.drawn, data,
+                               weighted_thin, solver};
         Candidate again = FitBestState(weighted);
         if (std::isfinite(again.solution.sum_of_squares)) {
           best = std::move(again);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ struct Attempt {
   const FitOptions& options;
   Depth depth;
   const loop::PreparedRecords& prepared;
+  const std::shared_ptr<const loop::DrawnReadings>& drawn;  ///< of these; null where exact
   ScaledRecords& data;
   ThinnedRecords& thin;
   Solver& solver;
@@ -33,7 +35,7 @@ struct Attempt {
 /// Holds the least squares of some records: what every later stage starts from.
 struct SolvedFit {
   SolvedFit(Candidate found, const Attempt& attempt)
-      : best(std::move(found)), displacement_errors(attempt.prepared, attempt.data) {}
+      : best(std::move(found)), displacement_errors(attempt.drawn, attempt.data) {}
 
   Candidate best;  ///< best of the initial states that were tried
   DisplacementErrors displacement_errors;

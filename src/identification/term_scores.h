@@ -50,6 +50,7 @@ class TermScores {
   TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
              std::span<const TermChoice> choices);
 
+  [[nodiscard]] const loop::PreparedRecords& prepared() const { return prepared_; }
   /// Returns the samples that do not count under any of the terms.
   [[nodiscard]] std::vector<std::vector<bool>> LeftOut() const;
 

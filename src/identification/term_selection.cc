@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -242,7 +243,7 @@ class Selection {
   [[nodiscard]] bool IsRefused(const Gain& gain);
   [[nodiscard]] const Gain& Simplest(std::span<const Gain> gains) const;
   Model FitWith(const TermChoice& choice, const std::map<std::string, double>* starts);
-  FitResult FitTo(const FitOptions& options, Depth depth);
+  FitResult FitTo(FitOptions options, Depth depth);
   [[nodiscard]] bool Leaves(const FitResult& fit) const;
   [[nodiscard]] bool Gains(const FitResult& fit) const;
   [[nodiscard]] std::string_view ObstacleTo(const Model& model) const;
@@ -263,7 +264,8 @@ class Selection {
   std::vector<Alternative> alternatives_;
   std::vector<Part> parts_;
   std::vector<std::vector<bool>> held_out_;
-  loop::LoopFacts facts_;  // of the widest record
+  std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
+  loop::LoopFacts facts_;                             // of the widest record
 };
 
 std::optional<std::size_t> Selection::Find(std::string_view name) const {
@@ -295,6 +297,7 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
     scores_.emplace(records_, as_fitted, choices);
   }
   held_out_ = scores_->LeftOut();
+  drawn_ = loop::DrawReadings(scores_->prepared());
   facts_ = law.WidestRecord().facts;
   base_ = {.options = options, .fit = law};
   bool counts_alike = true;
@@ -395,7 +398,8 @@ Selection::Model Selection::FitWith(const TermChoice& choice,
 
 /// Returns a fit without parameters where a term is not identifiable, or the rig softer than the
 /// loop.
-FitResult Selection::FitTo(const FitOptions& options, Depth depth) {
+FitResult Selection::FitTo(FitOptions options, Depth depth) {
+  options.preparation.drawn = drawn_;
   try {
     ++fits_;
     return Fitter(options).Fit(records_, depth);

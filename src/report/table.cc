@@ -62,7 +62,11 @@ void AddCell(std::string& line, const std::string& cell, std::size_t width, bool
 std::string CellText(const Json& value, int digits) {
   if (value.is_null()) return "-";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return fmt::format("{:.{}g}", value.get<double>(), digits);
+  if (value.is_number_float()) {
+    const bool is_exact = digits >= std::numeric_limits<double>::max_digits10;
+    return is_exact ? fmt::format("{}", value.get<double>())
+                    : fmt::format("{:.{}g}", value.get<double>(), digits);
+  }
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +24,14 @@ struct CountRange {
   std::size_t first = 1;
   std::size_t last = 1;
 };
+
+/// A displacement [m] that was read with an error of its noise or its encoder's phase, smoothed and
+/// with its reversals settled as the record's were; empty where the record's is exact.
+struct DrawnReading {
+  std::vector<double> displacement;
+  std::vector<std::size_t> reversals;
+};
+using DrawnReadings = std::vector<std::vector<DrawnReading>>;  ///< of all records each
 
 /// How records are read before any model is asked.
 struct PreparationOptions {
@@ -60,6 +69,9 @@ struct PreparationOptions {
   /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
   /// make history.
   std::vector<std::vector<bool>> held_out{};
+
+  /// DrawReadings() of the same records, for one of many fits of them; null: a fit draws its own.
+  std::shared_ptr<const DrawnReadings> drawn{};
 };
 
 /// One record as every later stage sees it.
@@ -104,6 +116,14 @@ struct PreparedRecords {
   /// Returns the number of samples that count.
   [[nodiscard]] std::size_t counted() const;
 };
+
+/// Draws the readings of inexact displacements again, 20 to 200 times: the effect of their errors.
+///
+/// An error of a turning point goes along with the whole branch that starts there, one of an
+/// encoder with all turning points at that count, and smoothing ties neighbours together: no
+/// variance of a sample represents that; a drawn record has it all.
+/// @returns the same every time; null where all displacements are exact
+std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records);
 
 /// Refuses options that break a rule whatever the records are.
 /// @throws InvalidArgument naming the option, its value and the rule

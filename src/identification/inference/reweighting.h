@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "identification/inference/local.h"
@@ -13,20 +15,17 @@
 
 namespace mindahl::identification {
 
-/// Simulates the effect of errors of the displacement on a model's force: readings of the smoothed
-/// record are drawn, with its noise or its encoder's phase, and smoothed and settled as the record
-/// was.
-///
-/// An error of a turning point goes along with the whole branch that starts there, one of an
-/// encoder with all turning points at that count, and smoothing ties neighbours together: no
-/// variance of a sample represents that; a drawn record has it all.
+/// Simulates the effect of errors of the displacement on a model's force: by readings that were
+/// drawn again (loop/preparation.h).
 class DisplacementErrors {
  public:
-  /// @param data  the prepared records, scaled; must outlive this
-  DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data);
+  /// @param drawn  of the records; null where their displacements are exact
+  /// @param data   the records, scaled; must outlive this
+  DisplacementErrors(std::shared_ptr<const loop::DrawnReadings> drawn, const ScaledRecords& data)
+      : drawn_(std::move(drawn)), data_(data) {}
 
   /// True if the displacement of a record is inexact.
-  [[nodiscard]] bool any() const { return !draws_.empty(); }
+  [[nodiscard]] bool any() const { return drawn_ != nullptr; }
 
   /// T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data: one row a sample,
   /// one column a drawn set of records. The same draws every time. Their mean is not taken off: the
@@ -35,13 +34,8 @@ class DisplacementErrors {
                                             std::span<const double> theta) const;
 
  private:
-  struct Drawn {
-    std::vector<double> displacement;
-    std::vector<std::size_t> reversals;
-  };
-
+  std::shared_ptr<const loop::DrawnReadings> drawn_;
   const ScaledRecords& data_;
-  std::vector<std::vector<Drawn>> draws_;  // of all records each
 };
 
 /// Returns the effect of these errors on a solution's weighted residuals; empty if exact.
