@@ -25,7 +25,7 @@ struct Attempt {
   const FitOptions& options;
   Depth depth;
   const loop::PreparedRecords& prepared;
-  const std::shared_ptr<const loop::DrawnReadings>& drawn;  ///< of these; null where exact
+  const std::shared_ptr<const loop::DrawnReadings>& drawn;  // of these; null where exact
   ScaledRecords& data;
   ThinnedRecords& thin;
   Solver& solver;

@@ -80,7 +80,7 @@ class LinePieces {
   std::string encoding_;
   std::unique_ptr<gzFile_s, CloseGzip> file_;
   std::unique_ptr<void, CloseDecoder> decoder_;  // iconv_t
-  /// What gzread() fills; of a short file the most of it is never touched.
+  // gzread() fills it; of a short file the most of it is never touched.
   std::unique_ptr<char[]> piece_ = std::make_unique_for_overwrite<char[]>(kPiece);
   std::string undecoded_;  // bytes that were read
   std::string text_;

@@ -31,7 +31,7 @@ struct DrawnReading {
   std::vector<double> displacement;
   std::vector<std::size_t> reversals;
 };
-using DrawnReadings = std::vector<std::vector<DrawnReading>>;  ///< of all records each
+using DrawnReadings = std::vector<std::vector<DrawnReading>>;  // of all records each
 
 /// How records are read before any model is asked.
 struct PreparationOptions {
