@@ -15,7 +15,7 @@ using namespace models;
 /// Root mean square of the errors of the drawn displacements over the half range: a Jenkins element
 /// that never slips is a spring, whose force errs in proportion.
 double ErrorOfASpring(Stages& stages) {
-  const DisplacementErrors errors(stages.prepared, stages.data);
+  const DisplacementErrors errors(loop::DrawReadings(stages.prepared), stages.data);
   std::vector<double> theta;
   const Parameters& parameters = stages.problem.parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);

@@ -118,7 +118,7 @@ struct WeightedFit {
 inline WeightedFit FitWeighted(Stages& stages) {
   WeightedFit result;
   result.solution = stages.Solve();
-  const identification::DisplacementErrors errors(stages.prepared, stages.data);
+  const identification::DisplacementErrors errors(loop::DrawReadings(stages.prepared), stages.data);
   EXPECT_TRUE(identification::FitWithWeights(
       stages.problem, stages.data, stages.options, errors, stages.solver,
       identification::SolverOptionsOf(stages.options), result.solution, result.noise));

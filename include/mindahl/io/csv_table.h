@@ -65,10 +65,10 @@ struct CsvTable {
 
 /// Reads a delimited text as a table, from a file that is plain or compressed by gzip.
 ///
-/// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one under which the first 1000 rows
-/// hold the most numbers less broken numbers ("5;2", "12:30"), in that order on a tie. The decimal
-/// mark is a point, or a comma that is not the delimiter; both in one file is an error. Cells may
-/// be quoted (RFC 4180), a trailing delimiter is no cell.
+/// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one that a first line "sep=;" states,
+/// else under which the first 1000 rows hold the most numbers less broken numbers ("5;2", "12:30"),
+/// in that order on a tie. The decimal mark is a point, or a comma that is not the delimiter; both
+/// in one file is an error. Cells may be quoted (RFC 4180), a trailing delimiter is no cell.
 ///
 /// *Data.* A row with data has a number in its first cell, or at least two cells that are or were
 /// meant to be numbers, one of them a number: "sample_rate,200" has none. The number of columns is
@@ -77,10 +77,11 @@ struct CsvTable {
 /// comments, which begin with '#'. Text among the rows is an error, unless it repeats the header.
 ///
 /// *Header.* The row above the data has the names; or, when at least half of its cells are symbols
-/// of units, these, with the names above it; else the nearest row above with words that are known.
-/// What is above the header is skipped, but a row that states units ("Unit;mm;N") and the interval
-/// of a LabVIEW file. A file whose first row is data has the header of a last comment above it, or
-/// none. Anything else above the data is an error.
+/// of units, these, with the names above it. Of several rows of text, one with a name for every
+/// column of numbers and the most words that are known has the names. What is above the header is
+/// skipped, but a row that states units ("Unit;mm;N") and the interval of a LabVIEW file. A file
+/// whose first row is data has the header of a last comment above it, or none. Anything else above
+/// the data is an error.
 ///
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
 /// @param path         kStandardInput reads that, called "standard input" in messages
