@@ -71,6 +71,7 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
           .string();
+  // Once it is renamed there is nothing of that name.
   const auto remove = [](const std::string* temporary) {
     static_cast<void>(std::remove(temporary->c_str()));
   };
@@ -83,7 +84,6 @@ void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_v
   file.Require(NameTemporary(file.file(), name));
   file.Close();
   if (std::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
-  static_cast<void>(temporary.release());
   file.WriteNameToDisk(target);
 }
 
