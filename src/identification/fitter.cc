@@ -199,8 +199,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
   result = Infer(attempt, std::move(solved), std::move(result));
   if (depth < Depth::kFull) return;
+  FitOptions others = given;
+  others.preparation.drawn = drawn;
   result.law_choice =
-      ReportedLaw(CompareLaws(records, given, data, result), result.adequacy.verdict);
+      ReportedLaw(CompareLaws(records, others, data, result), result.adequacy.verdict);
   Append(result.findings, FindOtherLaw(result.law_choice));
 }
 

@@ -425,7 +425,8 @@ Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rul
   constexpr int kPasses = 3;
   InterpolatedChannel displacement(record.displacement);
   InterpolatedChannel force(record.force);
-  // What is common is no glitch.
+  // A finder that marks more than `most` of the samples of a channel has found no glitches: its
+  // marks are taken back.
   const auto take = [&rules](InterpolatedChannel& channel, const auto& find) {
     InterpolatedChannel without = channel;
     find(channel);

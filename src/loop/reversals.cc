@@ -239,10 +239,11 @@ Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
 
 /// @param other  another gate that competes
 ReversalGate Under(Excursions excursions, double gate, std::optional<double> other = {}) {
+  const std::size_t count = CountReversals(excursions, gate);
   return {.gate = gate,
-          .count = CountReversals(excursions, gate),
+          .count = count,
           .certain = !other,
-          .other_count = CountReversals(excursions, other.value_or(gate)),
+          .other_count = other ? CountReversals(excursions, *other) : count,
           .other_gate = other.value_or(gate)};
 }
 

@@ -373,8 +373,8 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
 
 namespace {
 
-/// The column of a linear parameter in a record, or its derivative by the parameter that shapes it
-/// (Term::shapes).
+/// Returns the column of a linear parameter in a record, or its derivative by the parameter that
+/// shapes it (Term::shapes); not of a constant, which AddColumn() adds itself.
 Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size_t r,
                         std::span<const double> theta, bool derivative) {
   const ScaledRecord& record = problem.data->records[r];
@@ -382,8 +382,6 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
   const Regressor kind = of.term->column;
   const ConstArray position = ArrayOf(record.displacement);
   switch (kind) {
-    case Regressor::kOne:
-      return Eigen::ArrayXd::Ones(position.size());
     case Regressor::kDisplacementSquared:
       return position.square();
     case Regressor::kVelocity: {
@@ -408,8 +406,12 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
       const Eigen::ArrayXd phase = rate * (position + shift);
       const bool is_sine = kind == Regressor::kRippleSineUp || kind == Regressor::kRippleSineDown;
       const bool is_up = kind == Regressor::kRippleCosineUp || kind == Regressor::kRippleSineUp;
-      Eigen::ArrayXd wave = phase.sin();
-      if (is_sine == derivative) wave = phase.cos();
+      Eigen::ArrayXd wave(phase.size());
+      if (is_sine == derivative) {
+        wave = phase.cos();
+      } else {
+        wave = phase.sin();
+      }
       if (derivative) wave *= (is_sine ? -1.0 : 1.0) * phase;
       return ((is_up ? 1.0 : -1.0) * ArrayOf(record.direction) > 0).select(wave, 0.0);
     }
