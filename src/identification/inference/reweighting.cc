@@ -111,7 +111,9 @@ class Weighting {
         by_record_(by_record) {
     for (const ScaledRecord& record : data.records) {
       counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
+      last_weight_.insert(last_weight_.end(), record.root_weight.begin(), record.root_weight.end());
     }
+    last_distance_.resize(counts_.size());
     degrees_ = DegreesOfFreedom(data, problem.parameters.free().size());
   }
 
@@ -170,11 +172,20 @@ class Weighting {
   /// Scale of the weighted residuals, for a loss of them over it [units of the data].
   [[nodiscard]] double scale() const { return scale_; }
 
-  /// Moves only a fraction of the distance from the last weights, which become those of now.
-  void GoPartOfTheWay(std::span<double> last, double share) {
+  /// Moves by a fraction of the distance from the last weights, which becomes half of what it was
+  /// whenever that distance turns back: weights and forces that chase each other meet.
+  void GoPartOfTheWay() {
+    constexpr double kTurnsBack = 0.5;
+    double along = 0.0;
+    double square = 0.0;
     ForEachWeight([&](std::size_t i, double& weight) {
-      if (share < 1) weight = last[i] + share * (weight - last[i]);
-      last[i] = weight;
+      along += (weight - last_weight_[i]) * last_distance_[i];
+      square += last_distance_[i] * last_distance_[i];
+      last_distance_[i] = weight - last_weight_[i];
+    });
+    if (along < -kTurnsBack * square) fraction_ /= 2;
+    ForEachWeight([&](std::size_t i, double& weight) {
+      weight = last_weight_[i] += fraction_ * last_distance_[i];
     });
   }
 
@@ -313,7 +324,10 @@ class Weighting {
   std::vector<double> without_loss_;  // root weights
   std::vector<double> variance_of_draws_;
   std::vector<double> drawn_at_;  // forces
-  double noise_ = 0.0;            // of the last weights
+  std::vector<double> last_weight_;
+  std::vector<double> last_distance_;  // to these from those before them
+  double fraction_ = 1.0;
+  double noise_ = 0.0;  // of the last weights
   double scale_ = 1.0;
   double degrees_ = 1.0;
   bool is_lost_ = false;
@@ -358,7 +372,6 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
   std::vector<double> last_force(problem.size());
-  std::vector<double> last_weight(problem.size());
   response.Bind(problem);
   Predict(problem, solution.theta, response, last_force);
   std::vector<double> force(problem.size());
@@ -375,17 +388,19 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
       noise = weighting.Update(loss, solution.theta, response);
       if (weighting.is_lost()) return false;
     } else {
-      // Weights and forces that chase each other meet at the weights' mean.
-      weighting.GoPartOfTheWay(last_weight, 1.0 / std::max(round - kHuberRounds + 2, 1));
+      weighting.GoPartOfTheWay();
       const std::vector<double> start = solution.theta;
       solver.Bind(problem);
       solver.Solve(start, solver_options, solution);
     }
     response.Bind(problem);
     Predict(problem, solution.theta, response, force);
-    change = RmsDifference(force, last_force);
+    const double last_change = std::exchange(change, RmsDifference(force, last_force));
+    // Changes that become less do so by the same factor.
+    const bool is_predicted = round > 0 && change < last_change && solution.converged;
+    const double left = is_predicted ? change * change / last_change : change;
     std::swap(force, last_force);
-    const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
+    const bool settled = left < kSettled * std::max(noise.force, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) {
       FillCost(problem, response, solution);
       return true;
