@@ -163,7 +163,7 @@ void AddSelections(CLI::App& command, FitRequest& request) {
             }
           },
           "fit only cycles=LO:HI or samples=LO:HI, counted from 1, time=LO:HI [s]\nor load=LO:HI "
-          "[N]; repeatable; what is not of the time window still\ncounts as loading history",
+          "[N]; repeatable; what is left out, but by time, still\ncounts as loading history",
           "WHAT=LO:HI")
       ->allow_extra_args(false);
   const OptionGroup hidden(command, "");

@@ -27,6 +27,14 @@ Json FieldsTable() {
   return rows;
 }
 
+/// Returns the first name by which `--terms` adds a term; empty where there is none.
+std::string_view OptionOf(const identification::Term& term) {
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    if (std::ranges::find(group.terms, term.name) != group.terms.end()) return group.name;
+  }
+  return "";
+}
+
 Json TermsTable() {
   Json rows = Json::array();
   const std::array presences = {"always",    "offsets",     "reported",
@@ -39,7 +47,7 @@ Json TermsTable() {
                     {"is_linear", term.column != identification::Regressor::kNone ||
                                       term.id == identification::TermId::kSlipForce},
                     {"presence", presences.at(static_cast<std::size_t>(term.presence))},
-                    {"option", term.group},
+                    {"option", OptionOf(term)},
                     {"needs_time", term.needs_time}});
   }
   return rows;

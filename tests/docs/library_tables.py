@@ -70,13 +70,11 @@ def fields_table(tables, _, __):
 
 def terms_table(tables, _, __):
     presences = {"always": "always", "offsets": "with offsets, else 0", "load_series": "loads that differ",
-                 "never": "`--terms displacement_drift` beside `--noise-in displacement`"}
+                 "never": "`--terms displacement_drift` with `--noise-in displacement`"}
     rows = []
     for term in tables["terms"]:
-        option = code("--terms " + term["option"]) if term["option"] else ""
-        if not option and term["name"].startswith("drag_"):
-            option = "`--terms drag`"
-        fitted = presences.get(term["presence"], option or "with the row above")
+        option = "--terms " + term["option"] if term["option"] else "--covariate COL"
+        fitted = presences.get(term["presence"], code(option))
         if term["presence"] == "reported":
             fitted += ", else 0"
         meaning = term["meaning"] + ("; needs a time column" if term["needs_time"] else "")

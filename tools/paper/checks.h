@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-/// The numbers of docs/theory.md §3 and the errata behind them, each found again from the
+/// The numbers of docs/paper.md and the errata of docs/theory.md §3, each found again from the
 /// equations.
 namespace mindahl::paper {
 
@@ -27,7 +27,7 @@ struct ErrorsByCycle {
   std::vector<double> worst;
 };
 
-/// The table of docs/theory.md §3: Dahl's models against Mindlin's under the sines of fig. 3.
+/// The table of docs/paper.md: Dahl's models against Mindlin's under the sines of fig. 3.
 std::vector<ErrorsByCycle> SineErrors();
 
 /// Under the growing sine of fig. 7: what the paper compares, and what the envelope costs.

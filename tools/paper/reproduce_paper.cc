@@ -1,5 +1,5 @@
 // Makes figures 3-8 of Peyret et al. (2017) with the corrected equations and checks the numbers of
-// docs/theory.md §3. Prints them as markdown; exits with 1 when a check fails.
+// docs/paper.md. Prints them as markdown; exits with 1 when a check fails.
 //   reproduce_paper DIR
 
 #include <fmt/format.h>
