@@ -44,8 +44,7 @@ Json TermsTable() {
                     {"unit", term.unit},
                     {"meaning", term.meaning},
                     {"is_of_record", term.scope == identification::Scope::kRecord},
-                    {"is_linear", term.column != identification::Regressor::kNone ||
-                                      term.id == identification::TermId::kSlipForce},
+                    {"is_linear", term.is_linear || term.id == identification::TermId::kSlipForce},
                     {"presence", presences.at(static_cast<std::size_t>(term.presence))},
                     {"option", OptionOf(term)},
                     {"needs_time", term.needs_time}});

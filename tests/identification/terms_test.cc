@@ -126,25 +126,6 @@ TEST(Parameters, HaveTheUnitsOfTheFile) {
   EXPECT_DOUBLE_EQ(FindTerm("displacement_offset")->reference(kUnits), 2e-6);
 }
 
-TEST(Terms, AreFactorsOfColumnsOfTheRecord) {
-  ScaledRecord record;
-  record.displacement = {0.3};
-  record.time = {-0.7};
-  record.velocity = {4.0};
-  record.covariates.resize(2);
-  record.covariates[1] = {5.0};
-  const auto column_of = [&](const char* name, std::size_t covariate = 0) {
-    return record.ColumnOf(FindTerm(name)->column, covariate);
-  };
-  EXPECT_EQ(column_of("plateau_slope").front(), 0.3);
-  EXPECT_EQ(column_of("force_drift").front(), -0.7);
-  EXPECT_EQ(column_of("viscous").front(), 4.0);
-  EXPECT_EQ(column_of("covariate", 1).front(), 5.0);
-  EXPECT_EQ(FindTerm("force_offset")->column, Regressor::kOne);
-  EXPECT_TRUE(column_of("force_offset").empty());
-  EXPECT_EQ(FindTerm("sigma")->column, Regressor::kNone);
-}
-
 TEST(Parameters, EndsOfTheTheorysOwnAreNoSearchLimits) {
   const auto is_limit = [](std::string_view name, BoundSide side) {
     const Parameter parameter{.term = FindTerm(name)};

@@ -48,23 +48,6 @@ struct TermScale {
   bool of_file = false;  ///< with the force's sign in the file
 };
 
-/// Names the column of which a linear parameter is the factor, sample by sample in those units.
-enum class Regressor {
-  kNone,          ///< it enters through the law or the path, or scales the model's response
-  kOne,           ///< an offset
-  kDisplacement,  ///< δ
-  kDisplacementSquared,
-  kTime,          ///< −1 … 1 over the record
-  kVelocity,      ///< velocity of the displacement, in the first record's time; or a power of it
-  kAcceleration,  ///< likewise
-  // cos and sin of 2πδ/λ in strokes of growing displacement, then of falling displacement:
-  kRippleCosineUp,
-  kRippleSineUp,
-  kRippleCosineDown,
-  kRippleSineDown,
-  kCovariate,  ///< the column of the record that the parameter is called after
-};
-
 /// Says where the contact is at the time of a force.
 enum class ContactMotion {
   kMeasured,   ///< at the displacement, behind a rig's spring
@@ -126,7 +109,8 @@ struct Term {
   /// How far a search may move θ in one step; α by so much of itself, where that is beyond 1.
   double longest_step = 1.5;
   TermScale powers = {};
-  Regressor column = Regressor::kNone;
+  /// The factor of a column (problem/problem.h); others enter through the law or the path.
+  bool is_linear = false;
   bool needs_time = false;
   /// The search may begin at `start`, of a parameter that is not linear.
   bool has_start = false;

@@ -143,7 +143,7 @@ bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
   if (BeginsAtZero(data, options)) {
     Hold(parameter, 0.0);
-  } else if (parameter.term->column == Regressor::kNone) {
+  } else if (!parameter.term->is_linear) {
     parameter.theta = data.excitation().front();
     parameter.fixed = parameter.assumed = true;
   }

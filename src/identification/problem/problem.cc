@@ -78,8 +78,7 @@ Dependence DependenceOn(const Problem& problem, std::size_t parameter) {
     case TermId::kLoadExponent:
       return {parameter, {{.column = TermId::kSigma, .by_log_load = true}}};
     default:
-      if (of.term->column != Regressor::kNone || ShapesColumns(problem, parameter))
-        return {parameter};
+      if (of.term->is_linear || ShapesColumns(problem, parameter)) return {parameter};
       return {parameter, {{.column = id}}};
   }
 }
@@ -374,38 +373,48 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
 namespace {
 
 /// Returns the column of a linear parameter in a record, or its derivative by the parameter that
-/// shapes it (Term::shapes); not of a constant, which AddColumn() adds itself.
+/// shapes it (Term::shapes).
 Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size_t r,
                         std::span<const double> theta, bool derivative) {
   const ScaledRecord& record = problem.data->records[r];
   const Parameter& of = problem.parameters[parameter];
-  const Regressor kind = of.term->column;
+  const TermId id = of.term->id;
   const ConstArray position = ArrayOf(record.displacement);
-  switch (kind) {
-    case Regressor::kDisplacementSquared:
+  switch (id) {
+    case TermId::kPlateauSlope:
+      return position;
+    case TermId::kPlateauCurvature:
       return position.square();
-    case Regressor::kVelocity: {
+    case TermId::kForceDrift:
+    case TermId::kDisplacementDrift:
+      return ArrayOf(record.time);
+    case TermId::kInertia:
+      return ArrayOf(record.acceleration);
+    case TermId::kCovariate:
+      return ArrayOf(record.covariates[of.column]);
+    case TermId::kViscous: {
       // A power of the speed in units of the data, so that C keeps the unit of a viscous force:
       //   φ(v) = v·((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
       // which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
-      if (problem.parameters[RowOf(TermId::kSpeedExponent)].absent) break;
+      if (problem.parameters[RowOf(TermId::kSpeedExponent)].absent) return ArrayOf(record.velocity);
       const double exponent = theta[RowOf(TermId::kSpeedExponent)];
       const Eigen::ArrayXd log_speed = ArrayOf(record.log_speed) + std::log(record.units.speed);
       const Eigen::ArrayXd power = ArrayOf(record.velocity) * ((exponent - 1) * log_speed).exp();
       return derivative ? Eigen::ArrayXd(power * log_speed) : power;
     }
-    case Regressor::kRippleCosineUp:
-    case Regressor::kRippleSineUp:
-    case Regressor::kRippleCosineDown:
-    case Regressor::kRippleSineDown: {
-      // cos or sin of 2πδ/λ, δ from the middle of the first record, and its derivative by ln λ.
+    case TermId::kRippleCosineUp:
+    case TermId::kRippleSineUp:
+    case TermId::kRippleCosineDown:
+    case TermId::kRippleSineDown: {
+      // cos or sin of 2πδ/λ in the strokes of one direction, δ from the middle of the first record,
+      // and its derivative by ln λ.
       const TermUnits& first = problem.data->records.front().units;
       const double shift =
           (record.units.displacement_reference - first.displacement_reference) / first.length;
       const double rate = 2 * std::numbers::pi * std::exp(-theta[RowOf(TermId::kRipplePeriod)]);
       const Eigen::ArrayXd phase = rate * (position + shift);
-      const bool is_sine = kind == Regressor::kRippleSineUp || kind == Regressor::kRippleSineDown;
-      const bool is_up = kind == Regressor::kRippleCosineUp || kind == Regressor::kRippleSineUp;
+      const bool is_sine = id == TermId::kRippleSineUp || id == TermId::kRippleSineDown;
+      const bool is_up = id == TermId::kRippleCosineUp || id == TermId::kRippleSineUp;
       Eigen::ArrayXd wave(phase.size());
       if (is_sine == derivative) {
         wave = phase.cos();
@@ -416,9 +425,8 @@ Eigen::ArrayXd ColumnOf(const Problem& problem, std::size_t parameter, std::size
       return ((is_up ? 1.0 : -1.0) * ArrayOf(record.direction) > 0).select(wave, 0.0);
     }
     default:
-      break;
+      return Eigen::ArrayXd::Ones(position.size());  // an offset
   }
-  return ArrayOf(record.ColumnOf(kind, of.column));
 }
 
 bool IsInRecord(const Parameter& parameter, std::size_t record) {
@@ -432,12 +440,8 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
                std::span<const double> theta, double factor, std::span<double> to) {
   const Parameter& of = problem.parameters[parameter];
   if (!IsInRecord(of, r)) return;
-  Array sum(to.data(), std::ssize(to));
-  if (of.term->column == Regressor::kOne) {
-    sum += factor;
-  } else {
-    sum += factor * ColumnOf(problem, parameter, r, theta, /*derivative=*/false);
-  }
+  Array(to.data(), std::ssize(to)) +=
+      factor * ColumnOf(problem, parameter, r, theta, /*derivative=*/false);
 }
 
 bool ShapesColumns(const Problem& problem, std::size_t parameter) {
@@ -447,12 +451,11 @@ bool ShapesColumns(const Problem& problem, std::size_t parameter) {
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t r,
                             std::span<const double> theta, double factor, std::span<double> to) {
   const Term& term = *problem.parameters[parameter].term;
-  if (term.column != Regressor::kNone) AddColumn(problem, parameter, r, theta, factor, to);
+  if (term.is_linear) AddColumn(problem, parameter, r, theta, factor, to);
   if (term.shapes.empty()) return;
   for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
     const Term& linear = *problem.parameters[q].term;
-    const bool is_shaped =
-        linear.column != Regressor::kNone && linear.name.starts_with(term.shapes);
+    const bool is_shaped = linear.is_linear && linear.name.starts_with(term.shapes);
     if (!is_shaped || !IsInRecord(problem.parameters[q], r)) continue;
     Array(to.data(), std::ssize(to)) +=
         factor * theta[q] * ColumnOf(problem, q, r, theta, /*derivative=*/true);
@@ -467,7 +470,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   for (double& value : predicted) value *= scale;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
-    if (parameter.term->column == Regressor::kNone || theta[p] == 0) continue;
+    if (!parameter.term->is_linear || theta[p] == 0) continue;
     std::size_t begin = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const std::size_t count = problem.data->records[r].size();

@@ -279,23 +279,6 @@ std::size_t ScaledRecords::samples() const {
   return count;
 }
 
-std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t covariate) const {
-  switch (column) {
-    case Regressor::kDisplacement:
-      return displacement;
-    case Regressor::kTime:
-      return time;
-    case Regressor::kVelocity:
-      return velocity;
-    case Regressor::kAcceleration:
-      return acceleration;
-    case Regressor::kCovariate:
-      return covariates[covariate];
-    default:
-      return {};
-  }
-}
-
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
   const double whole = time.empty() ? static_cast<double>(samples) - 1 : time.back() - time.front();
   return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;

@@ -59,9 +59,6 @@ struct ScaledRecord {
     return imposed == loop::Channel::kForce ? displacement : force;
   }
   [[nodiscard]] std::size_t size() const { return force.size(); }
-  /// Returns the column of which a linear term is the factor; empty where 0 or constant.
-  /// @param covariate  its place among the covariates, for a term of one
-  [[nodiscard]] std::span<const double> ColumnOf(Regressor column, std::size_t covariate) const;
 };
 
 /// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller

@@ -46,9 +46,9 @@ constexpr TermScale kLengthUnit{.length = 1};
 constexpr TermScale kStiffnessUnit{.force = 1, .length = -1};
 constexpr TermScale kFileForceUnit{.force = 1, .of_file = true};
 
-/// Makes one of the four factors of a ripple, which differ in their column.
-constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, Regressor column) {
-  return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .column = column};
+/// Makes one of the four factors of a ripple.
+constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning) {
+  return {.name = name, .unit = "N", .meaning = meaning, .powers = kForceUnit, .is_linear = true};
 }
 
 constexpr std::array kTermRows = {
@@ -100,14 +100,14 @@ constexpr std::array kTermRows = {
          .unit = "N/m",
          .meaning = "slope of an additional force slope·δ",
          .powers = kStiffnessUnit,
-         .column = Regressor::kDisplacement,
+         .is_linear = true,
          .is_planned = true,
          .group = "plateau_slope"},
     Term{.name = "viscous",
          .unit = "N s/m",
          .meaning = "C of an additional force C·dδ/dt",
          .powers = {.force = 1, .length = -1, .time = 1},
-         .column = Regressor::kVelocity,
+         .is_linear = true,
          .needs_time = true,
          .is_never_negative = true,
          .is_planned = true,
@@ -129,7 +129,7 @@ constexpr std::array kTermRows = {
          .unit = "kg",
          .meaning = "M of an additional force M·d²δ/dt²",
          .powers = {.force = 1, .length = -1, .time = 2},
-         .column = Regressor::kAcceleration,
+         .is_linear = true,
          .needs_time = true,
          .is_never_negative = true,
          .group = "inertia"},
@@ -203,7 +203,7 @@ constexpr std::array kTermRows = {
          .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
                     "stroke",
          .powers = {.force = 1, .length = -2},
-         .column = Regressor::kDisplacementSquared},
+         .is_linear = true},
     Term{.name = "ripple_period",
          .unit = "m",
          .meaning = "λ of a periodic force A±cos(2πδ/λ + φ±), one phase for each direction",
@@ -218,13 +218,10 @@ constexpr std::array kTermRows = {
          .group = "ripple"},
     FactorOfRipple("ripple_cosine_up",
                    "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
-                   "first record",
-                   Regressor::kRippleCosineUp),
-    FactorOfRipple("ripple_sine_up", "factor of sin(2πδ/λ), likewise", Regressor::kRippleSineUp),
-    FactorOfRipple("ripple_cosine_down", "factor of cos(2πδ/λ) where the displacement falls",
-                   Regressor::kRippleCosineDown),
-    FactorOfRipple("ripple_sine_down", "factor of sin(2πδ/λ), likewise",
-                   Regressor::kRippleSineDown),
+                   "first record"),
+    FactorOfRipple("ripple_sine_up", "factor of sin(2πδ/λ), likewise"),
+    FactorOfRipple("ripple_cosine_down", "factor of cos(2πδ/λ) where the displacement falls"),
+    FactorOfRipple("ripple_sine_down", "factor of sin(2πδ/λ), likewise"),
     Term{.name = "lag",
          .unit = "s",
          .meaning = "delay of the contact's force after the displacement, negative if before it; "
@@ -254,7 +251,7 @@ constexpr std::array kTermRows = {
                     "the header has one. force_offset is then its value in the middle of the "
                     "column's range",
          .powers = kFileForceUnit,
-         .column = Regressor::kCovariate,
+         .is_linear = true,
          .of_column = true,
          .group = "covariate"},
     Term{.name = "force_offset",
@@ -263,7 +260,7 @@ constexpr std::array kTermRows = {
          .scope = Scope::kRecord,
          .presence = Presence::kOffsets,
          .powers = kFileForceUnit,
-         .column = Regressor::kOne},
+         .is_linear = true},
     Term{
         .name = "displacement_offset",
         .unit = "m",
@@ -280,7 +277,7 @@ constexpr std::array kTermRows = {
          .scope = Scope::kRecord,
          .presence = Presence::kReported,
          .powers = {.force = 1, .time = -1, .of_file = true},
-         .column = Regressor::kTime,
+         .is_linear = true,
          .is_planned = true,
          .group = "force_drift"},
     Term{.name = "displacement_drift",
@@ -290,7 +287,7 @@ constexpr std::array kTermRows = {
          .scope = Scope::kRecord,
          .presence = Presence::kNever,
          .powers = {.length = 1, .time = -1},
-         .column = Regressor::kTime,
+         .is_linear = true,
          .unit_by_sample = "m/sample"},
 };
 
@@ -306,10 +303,10 @@ constexpr auto kTermsOfDisplacement = [] {
   auto terms = kTerms;
   for (Term& term : terms) {
     if (term.id == TermId::kForceOffset) {
-      term.column = Regressor::kNone;
+      term.is_linear = false;
       term.longest_step = 0.5;
     } else if (term.id == TermId::kDisplacementOffset) {
-      term.column = Regressor::kOne;
+      term.is_linear = true;
       term.longest_step = 1.5;
     } else if (term.id == TermId::kDisplacementDrift) {
       term.presence = Presence::kReported;

@@ -17,7 +17,7 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
     std::vector<std::size_t> members;
     for (const std::size_t p : parameters.free()) {
       const Parameter& parameter = parameters[p];
-      if (parameter.term->column == Regressor::kNone || held[p] != 0) continue;
+      if (!parameter.term->is_linear || held[p] != 0) continue;
       if (belongs(parameter)) members.push_back(p);
     }
     return members;

@@ -65,8 +65,6 @@ double LeastLogSlipForce(const Problem& problem) {
   return std::log(largest) + kShortOfSlip;  // −∞ where none is steady
 }
 
-bool IsLinear(const Parameter& parameter) { return parameter.term->column != Regressor::kNone; }
-
 /// A column as the problem's functions write it.
 std::span<double> Writable(Eigen::VectorXd& column) {
   return {column.data(), static_cast<std::size_t>(column.size())};
@@ -90,7 +88,7 @@ void ProjectedResidual::Bind(const Problem& problem, Response& response) {
 }
 
 bool ProjectedResidual::MovesColumns(std::size_t parameter) const {
-  return ShapesColumns(*problem_, parameter) || IsLinear(problem_->parameters[parameter]);
+  return ShapesColumns(*problem_, parameter) || problem_->parameters[parameter].term->is_linear;
 }
 
 void ProjectedResidual::ChooseSearched() {
@@ -137,7 +135,7 @@ void ProjectedResidual::ChooseSearched() {
   }
   for (const std::size_t p : parameters.free()) {
     const bool is_searched = p == kShape || p >= kLoadExponent;
-    if (!is_searched || (IsLinear(parameters[p]) && !parameters[p].has_prior())) continue;
+    if (!is_searched || (parameters[p].term->is_linear && !parameters[p].has_prior())) continue;
     search(p, parameters[p].lower, parameters[p].upper);
   }
 }
@@ -154,7 +152,8 @@ void ProjectedResidual::FactoriseColumns() {
     const std::span<double> rows = Writable(measured_).subspan(row, record.size());
     for (std::size_t p = 0; p < theta_.size(); ++p) {
       const Parameter& parameter = problem_->parameters[p];
-      if (!IsLinear(parameter) || theta_[p] == 0 || (!parameter.fixed && held_[p] == 0)) continue;
+      if (!parameter.term->is_linear || theta_[p] == 0 || (!parameter.fixed && held_[p] == 0))
+        continue;
       AddColumn(*problem_, p, r, theta_, -theta_[p], rows);
     }
     row += record.size();

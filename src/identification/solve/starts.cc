@@ -121,7 +121,7 @@ class Plane {
     if (!std::isfinite(look.cost)) return;
     for (const std::size_t p : parameters.free()) {
       // Columns far beyond their bounds make a straight line of any loop.
-      const bool is_column = parameters[p].term->column != Regressor::kNone;
+      const bool is_column = parameters[p].term->is_linear;
       if (is_column && (theta_[p] < parameters[p].lower || theta_[p] > parameters[p].upper)) {
         look.cost = std::numeric_limits<double>::infinity();
         return;
@@ -301,7 +301,7 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
     const Term& term = *parameters[p].term;
-    const bool is_searched = term.column == Regressor::kNone && !term.has_start;
+    const bool is_searched = !term.is_linear && !term.has_start;
     if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
     if (is_searched) return std::nullopt;
   }
