@@ -1,18 +1,10 @@
-#include <fmt/format.h>
-
 #include "cli/command_line.h"
-#include "io/temporary_directory.h"
 #include "mindahl/models/variable_load.h"
-#include "support/prelude.h"
 
 // fit: one file under several constant loads.
 namespace mindahl::cli::load_steps_test {
 namespace {
 
-using nlohmann::json;
-using Words = std::vector<std::string>;
-
-constexpr double kSigma = 4e7;  // at 50 N
 constexpr double kFriction = 0.4;
 constexpr double kAmplitude = 6e-7;  // slips grossly at 20 N, partly at 50 and 100 N
 constexpr std::size_t kCycle = 100;  // samples
@@ -20,42 +12,36 @@ constexpr std::size_t kCycle = 100;  // samples
 /// origin, and σ, α and p are correlated by 0.99, which costs two digits each.
 constexpr double kNoiseFree = 1e-5;
 
-class LoadStepsOfFit : public ::testing::Test {
+class LoadStepsOfFit : public CommandTest {
  protected:
-  /// The exact response of elements in parallel, so that the contact keeps what it has of each
-  /// load.
-  std::string Simulate(std::size_t cycles, const std::function<double(double)>& load_at) {
+  /// Fifteen cycles: the exact response of elements in parallel, so that the contact keeps what it
+  /// has of each load.
+  std::string Series(const std::function<double(double)>& load_at) {
     models::LoadedContactState contact(
-        {.friction_coefficient = kFriction, .reference_load = 50, .reference_stiffness = kSigma},
+        {.friction_coefficient = kFriction, .reference_load = 50, .reference_stiffness = 4e7},
         {.normal_load = load_at(0)});
     std::string rows = "displacement [m],force [N],normal load [N]\n";
-    for (std::size_t i = 0; i <= cycles * kCycle; ++i) {
+    for (std::size_t i = 0; i <= 15 * kCycle; ++i) {
       const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
       const double displacement = kAmplitude * std::sin(2 * std::numbers::pi * cycle);
       rows += fmt::format("{},{},{}\n", displacement, contact.Move(displacement, load_at(cycle)),
                           load_at(cycle));
     }
-    return directory_.Write("series.csv", rows).string();
+    return Write("series.csv", rows);
   }
 
-  static json Fit(Words files, const Words& more = {}) {
-    Words words = {"fit"};
-    words.insert(words.end(), files.begin(), files.end());
-    words.insert(words.end(), more.begin(), more.end());
-    words.insert(words.end(), {"--json", "-"});
-    const Outcome outcome = RunCommand(words);
-    EXPECT_EQ(outcome.status, kDone) << outcome.err;
-    return outcome.Json();
+  static void ExpectOneRecord(const Words& fit) {
+    const json followed = JsonOf(fit);
+    EXPECT_EQ(followed["input"]["files"].size(), 1U);
+    EXPECT_FALSE(followed["parameters"].contains("load_exponent"));
   }
-
-  TemporaryDirectory directory_;
 };
 
 double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
 
 TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {
-  const std::string file = Simulate(15, Staircase);
-  const json fit = Fit({file});
+  const std::string file = Series(Staircase);
+  const json fit = JsonOf("fit " + file);
   EXPECT_NEAR(Value(fit, "load_exponent"), 1.0 / 3, kNoiseFree);
   EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, kNoiseFree);
   EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kFriction, kNoiseFree);
@@ -64,31 +50,21 @@ TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {
   EXPECT_EQ(fit["input"]["files"][1], file + ":577-1001");
   EXPECT_EQ(fit["input"]["left_out"][0]["samples"], 2 * (3 * kCycle / 4));
   EXPECT_EQ(fit["input"]["left_out"][0]["why"], "another load");
-
-  const Outcome text = RunCommand({"fit", file});
-  EXPECT_THAT(text.out, HasSubstr("150 samples (another load)"));
+  EXPECT_THAT(Done("fit " + file).out, HasSubstr("150 samples (another load)"));
 }
 
-TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadWindow) {
-  const std::string file = Simulate(15, Staircase);
-  for (const Words& more : {Words{"--normal-load", "56.6"}, Words{"--samples", "1:1200"},
-                            Words{"--load-window", "15:105"}}) {
-    const json fit = Fit({file}, more);
-    EXPECT_EQ(fit["input"]["files"].size(), 1U) << more[0];
-    EXPECT_FALSE(fit["parameters"].contains("load_exponent")) << more[0];
+TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadOrWindow) {
+  const std::string fit = "fit " + Series(Staircase);
+  for (const char* more : {" --normal-load 56.6", " --samples 1:1200", " --load-window 15:105"}) {
+    ExpectOneRecord(fit + more);
   }
 }
 
 TEST_F(LoadStepsOfFit, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
-  for (const auto& load_at :
-       {std::function<double(double)>([](double cycle) { return 20 + 80 * cycle / 15; }),
-        std::function<double(double)>([](double cycle) {
-          return 50 * (1 + 0.3 * std::sin(2 * std::numbers::pi * cycle / 7));
-        })}) {
-    const json fit = Fit({Simulate(15, load_at)});
-    EXPECT_EQ(fit["input"]["files"].size(), 1U);
-    EXPECT_FALSE(fit["parameters"].contains("load_exponent"));
-  }
+  ExpectOneRecord("fit " + Series([](double cycle) { return 20 + 80 * cycle / 15; }));
+  ExpectOneRecord("fit " + Series([](double cycle) {
+                    return 50 * (1 + 0.3 * std::sin(2 * std::numbers::pi * cycle / 7));
+                  }));
 }
 
 }  // namespace
