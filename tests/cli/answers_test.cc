@@ -14,7 +14,6 @@ struct Answer {
   Words words;
   std::vector<std::string> says;
   std::vector<std::string> never = {};
-  int status = kDone;
 
   friend void PrintTo(const Answer& answer, std::ostream* out) { *out << answer.name; }
 };
@@ -52,26 +51,15 @@ const std::vector<Answer> kAnswers = {
     {"ColumnsAreNamedAndTheFrictionTorqueIsTheTorque",
      "fit data/joint.csv",
      {"torque 'friction torque [N m]' (3)"}},
-    {"MicrometresLabelledMillimetresAreDoubted",
-     Words("fit @um_as_mm.csv --radius-1 50mm") + kMaterials,
-     {"check         the contact radius", "1000 times smaller than Hertz's", "displacement, mm"}},
-    {"ABallOfFiftyMetresIsDoubted",
-     Words("fit data/mindlin_sphere_on_plane.csv --radius-1 50") + kMaterials,
-     {"check         --radius-1 50 is 50 m: in mm it would be 50 mm"}},
     {"AKnownRigCountsOnceInAPlan",
      "plan --record data/raw_rig_record.csv --rig-stiffness 80e6",
      {"sigma = 4.81", "noise 0.069"},
      {"sigma = 3.2"}},
-    {"FilesOfDifferentLoadsAreAskedAbout",
-     "fit data/load_series_20N.csv data/load_series_120N.csv",
-     {"different loads? --normal-load N1,N2", "mindahl batch"},
-     {"viscous", "next"}},
     {"OneCycleFromPeakToPeakIsSteady",
      "fit @peak.csv",
      {"Tc 14.99", "like noise"},
      {"virgin", "not determined"}},
     {"NoiseIsNoLoop", "fit @noise.csv", {"no loop is seen"}, {"Tc ", "adequate", "sliding"}},
-    {"ThreeRowsAreTooFew", "fit @three.csv", {}, {"σ"}, kBadInput},
     {"AnErrorOfAConversionStandsWithItsNumbers",
      "convert --sigma 5e7 --slip-force 15 --amplitude 3e-7 --to mujoco-joint --input-lines -",
      {"<!-- at 3e-07 m the force is within 109 %", "frictionloss"}},
@@ -93,22 +81,12 @@ class MisleadingAnswer : public CommandTest, public ::testing::WithParamInterfac
     std::string peak = loop[0] + "\n";
     for (std::size_t i = 251; i <= 451; ++i) peak += loop[i] + "\n";  // from a peak to the next
     Write("peak.csv", peak);
-    const std::string sphere = Done(
-                                   "simulate --sigma 4.81e7 --slip-force 15 --lambda 1.2 "
-                                   "--cycles 3 --noise-force 0.05")
-                                   .out;
-    std::string shrunk = "time [s],displacement [mm],force [N]\n";
-    for (const auto& cells : testing::Rows(sphere.substr(sphere.find('\n') + 1))) {
-      shrunk += fmt::format("{},{},{}\n", cells[0], std::stod(cells[1]) * 1e6, cells[2]);
-    }
-    Write("um_as_mm.csv", shrunk);
     Generator generator(1);
     std::string noise = "x [um],F [N]\n";
     for (int i = 0; i < 400; ++i) {
       noise += fmt::format("{},{}\n", testing::Normal(generator), testing::Normal(generator));
     }
     Write("noise.csv", noise);
-    Write("three.csv", "x [um],F [N]\n0,0\n1,2\n0,1\n");
     // Friction of 2 N m, which builds up over some mrad, and a load of 6 N m that is lifted.
     std::string gravity = "time [s],angle [rad],torque [N m]\n";
     double friction = 0.0;
@@ -140,8 +118,7 @@ TEST_P(MisleadingAnswer, IsGivenNoMore) {
   Words words;
   for (const std::string& word : answer.words) words.push_back(PathOf(word));
   if (std::ranges::count(words, "") > 0) GTEST_SKIP() << "no measured record";
-  const Outcome outcome = RunCommand(words);
-  EXPECT_EQ(outcome.status, answer.status) << outcome.err;
+  const Outcome outcome = Done(words);
   // Lines are broken between words.
   std::string text;
   for (const std::string& line : Lines(outcome.out)) {

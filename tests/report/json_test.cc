@@ -90,8 +90,7 @@ TEST(Json, NamesTheColumnsThatWereRead) {
 TEST(Json, HasTheNextStepThatWasTried) {
   ReportInput input = MadeInput();
   EXPECT_TRUE(Document(input)["next"].is_null());
-  input.next = {
-      .text = "a lag", .options = "--terms lag", .misfit_before = 0.05, .misfit_after = 0.045};
+  input.next = testing::MadeStep("--terms lag");
   EXPECT_EQ(Document(input)["next"]["options"], "--terms lag");
 }
 

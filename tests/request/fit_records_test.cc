@@ -119,13 +119,11 @@ TEST(FitRecords, JoinsPiecesOfOneRecord) {
   const io::RecordFile whole = LoopFile();
   io::RecordFile first = whole;
   io::RecordFile second = whole;
-  const auto cut = [](std::vector<double>& column, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    column = std::vector<double>(column.begin() + begin, column.begin() + end);
-  };
-  cut(first.record.displacement, 0, 41);
-  cut(first.record.force, 0, 41);
-  cut(second.record.displacement, 41, 101);
-  cut(second.record.force, 41, 101);
+  for (const auto column : {&loop::Record::displacement, &loop::Record::force}) {
+    (first.record.*column).resize(41);
+    (second.record.*column)
+        .erase((second.record.*column).begin(), (second.record.*column).begin() + 41);
+  }
   FitRequest request;
   request.files = {"a.csv", "b.csv"};
   request.join = true;

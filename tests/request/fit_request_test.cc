@@ -89,65 +89,64 @@ std::string RefusalOf(const FitRequest& request) {
   return MessageOf<std::exception>([&] { MakeFitOptions(request); });
 }
 
-TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
-  const auto start = [](const char* name, const auto& change) {
+using Change = std::function<void(FitRequest&)>;
+
+TEST(FitRequest, RefusesAStartOfWhatIsNotFittedWithItsReason) {
+  const Change as_it_is = [](FitRequest&) {};
+  const Change forced = [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; };
+  const Change steady = [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; };
+  for (const auto& [name, change, reason] :
+       std::vector<std::tuple<std::string, Change, std::string>>{
+           {"alpha", as_it_is, ""},
+           {"alpha", [](FitRequest& r) { r.fit.fixed["alpha"] = 0.25; },
+            "it is held at a value that is given"},
+           {"alpha", [](FitRequest& r) { r.fit.model = models::FindFrictionModel("mindlin"); },
+            "--model mindlin prescribes it"},
+           {"force_offset", as_it_is, ""},
+           {"force_offset", [](FitRequest& r) { r.fit.offsets = false; },
+            "--offsets off holds it at 0"},
+           {"force_offset", steady, ""},
+           {"force_offset",
+            [&](FitRequest& r) {
+              steady(r);
+              forced(r);
+            },
+            "that of a steady loop is its centre"},
+           {"displacement_offset", as_it_is, ""},
+           {"displacement_offset", steady, "that of a steady loop is its centre"},
+           {"viscous", as_it_is, "add --terms viscous"},
+           {"viscous", [](FitRequest& r) { r.terms = {"viscous"}; }, ""},
+           {"rig_stiffness", as_it_is, "add --rig-stiffness fit"},
+           {"displacement_drift", forced, "add --terms displacement_drift"}}) {
     FitRequest request;
     request.fit.start[name] = 0.25;
     change(request);
-    return RefusalOf(request);
-  };
-  const auto as_it_is = [](FitRequest&) {};
-  EXPECT_EQ(start("alpha", as_it_is), "");
-  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.fit.fixed["alpha"] = 0.25; }),
-              HasSubstr("it is held at a value that is given"));
-  EXPECT_THAT(
-      start("alpha", [](FitRequest& r) { r.fit.model = models::FindFrictionModel("mindlin"); }),
-      HasSubstr("--model mindlin prescribes it"));
-  EXPECT_EQ(start("force_offset", as_it_is), "");
-  EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.fit.offsets = false; }),
-              HasSubstr("--offsets off holds it at 0"));
-  EXPECT_EQ(start("displacement_offset", as_it_is), "");
-  EXPECT_THAT(start("displacement_offset",
-                    [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
-              HasSubstr("that of a steady loop is its centre"));
-  EXPECT_EQ(start("force_offset",
-                  [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
-            "");
-  EXPECT_THAT(start("force_offset",
-                    [](FitRequest& r) {
-                      r.fit.initial_state = models::InitialState::kSteady;
-                      r.fit.preparation.excitation = loop::Channel::kForce;
-                    }),
-              HasSubstr("that of a steady loop is its centre"));
-  EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --terms viscous"));
-  EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms = {"viscous"}; }), "");
-  EXPECT_THAT(start("rig_stiffness", as_it_is), HasSubstr("add --rig-stiffness fit"));
-  EXPECT_THAT(start("displacement_drift",
-                    [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }),
-              EndsWith("add --terms displacement_drift"));
+    EXPECT_THAT(RefusalOf(request), HasSubstr(reason)) << name;
+    EXPECT_EQ(RefusalOf(request).empty(), reason.empty()) << name;
+  }
 }
 
 TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
-  const auto made = [](std::vector<std::string> terms) {
+  const auto with = [](std::vector<std::string> terms) {
     FitRequest request;
     request.terms = std::move(terms);
-    return MakeFitOptions(request);
+    return request;
   };
-  EXPECT_THAT(made({}).terms, IsEmpty());
-  EXPECT_THAT(made({"none"}).terms, IsEmpty());
-  EXPECT_THAT(made({"auto"}).terms, IsEmpty());
-  EXPECT_THAT(made({"viscous", "slip_position"}).terms,
+  EXPECT_THAT(MakeFitOptions(with({})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"none"})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"auto"})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"viscous", "slip_position"})).terms,
               ElementsAre("viscous", "slip_slope", "plateau_slope"));
-  EXPECT_THAT(made({"lag", "oil pressure"}).covariates, ElementsAre("oil pressure"));
-  const auto refusal = [](std::vector<std::string> terms) {
-    FitRequest request;
-    request.terms = std::move(terms);
-    return RefusalOf(request);
-  };
-  EXPECT_THAT(refusal({"viscous", "viscous"}), HasSubstr("--terms: 'viscous' is given twice"));
-  EXPECT_THAT(refusal({"viscous", "auto"}), HasSubstr("'auto' stands alone"));
-  EXPECT_THAT(refusal({"viscos"}), HasSubstr("'viscos' is no term: did you mean 'viscous'?"));
-  EXPECT_THAT(refusal({"displacement_drift"}), HasSubstr("has no place in a fit of the force"));
+  EXPECT_THAT(MakeFitOptions(with({"lag", "oil pressure"})).covariates,
+              ElementsAre("oil pressure"));
+  for (const auto& [terms, said] :
+       {std::pair<std::vector<std::string>, const char*>({"viscous", "viscous"},
+                                                         "'viscous' is given twice"),
+        {{"viscous", "auto"}, "'auto' stands alone"},
+        {{"viscos"}, "'viscos' is no term: did you mean 'viscous'?"},
+        {{"displacement_drift"}, "has no place in a fit of the force"}}) {
+    EXPECT_THAT(RefusalOf(with(terms)), HasSubstr(said));
+  }
 }
 
 TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
@@ -165,7 +164,7 @@ TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
 }
 
 TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
-  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+  const std::vector<std::pair<const char*, Change>> refused = {
       {"rig_stiffness has no place", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
       {"a covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
       {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
@@ -188,7 +187,7 @@ TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
 }
 
 TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
-  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+  const std::vector<std::pair<const char*, Change>> refused = {
       {"--noise-in displacement",
        [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }},
       {"--terms asymmetry", [](FitRequest& r) { r.terms = {"asymmetry"}; }},
@@ -211,6 +210,40 @@ TEST(FitRequest, TakesARangeWithBothItsEnds) {
       counted.fit.preparation.*range = loop::CountRange{first, last};
       EXPECT_EQ(RefusalOf(counted).empty(), is_fine) << first << " " << last;
     }
+  }
+}
+
+// --- what is established
+
+TEST(Established, IsWhatConvergedAndWhereStrictIsKnownByAModelThatDescribesIt) {
+  using identification::AdequacyVerdict;
+  using identification::Identifiability;
+  struct Row {
+    AdequacyVerdict verdict;
+    Identifiability identifiability;
+    bool doubtful, adequate;  // whether it is established so strictly
+  };
+  for (const Row& row :
+       {Row{AdequacyVerdict::kAdequate, Identifiability::kIdentifiable, true, true},
+        {AdequacyVerdict::kAdequate, Identifiability::kBoundedBelow, false, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kIdentifiable, true, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kEffective, true, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kBoundedBelow, false, false},
+        {AdequacyVerdict::kInadequate, Identifiability::kIdentifiable, false, false}}) {
+    identification::FitResult fit;
+    fit.converged = true;
+    fit.adequacy.verdict = row.verdict;
+    identification::ParameterEstimate& sigma = fit.parameters.emplace_back();
+    sigma.status = identification::ParameterStatus::kFree;
+    sigma.identifiability = row.identifiability;
+    EXPECT_TRUE(Established(fit, Strictness::kNone));
+    EXPECT_EQ(Established(fit, Strictness::kDoubtful), row.doubtful);
+    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.adequate);
+    sigma.status = identification::ParameterStatus::kFixed;
+    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.verdict == AdequacyVerdict::kAdequate)
+        << "one that is held";
+    fit.converged = false;
+    EXPECT_FALSE(Established(fit, Strictness::kNone));
   }
 }
 
