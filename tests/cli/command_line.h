@@ -54,13 +54,20 @@ inline std::vector<std::vector<std::string>> Rows(const std::string& text) {
   return rows;
 }
 
-/// Returns the numbers of a column, counted from 0, below its header.
-inline std::vector<double> Column(const std::string& text, std::size_t column) {
-  const std::vector<std::string> lines = Lines(text);
-  std::vector<double> values;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    values.push_back(std::stod(Cells(lines[i]).at(column)));
+/// Returns the numbers of a table of CSV by rows, without its header.
+inline std::vector<std::vector<double>> Numbers(const std::string& text) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& cells : Rows(text.substr(text.find('\n') + 1))) {
+    std::vector<double>& row = rows.emplace_back();
+    for (const std::string& cell : cells) row.push_back(std::stod(cell));
   }
+  return rows;
+}
+
+/// Returns the numbers of a column, counted from 0.
+inline std::vector<double> Column(const std::string& text, std::size_t column) {
+  std::vector<double> values;
+  for (const std::vector<double>& row : Numbers(text)) values.push_back(row.at(column));
   return values;
 }
 

@@ -59,54 +59,17 @@ TEST_F(FitCommand, OfAFileNameThatIsNoUtf8StillGivesValidJson) {
   EXPECT_TRUE(json::accept(Done({"fit", Copy("caf\xe9.csv"), "--json", "-"}).out));
 }
 
-class SimulatedFile : public CommandTest {
- protected:
-  /// A column of a loop that `simulate` writes, in another unit and with 17 digits.
-  static std::vector<std::string> Written(std::size_t column, double unit) {
-    std::vector<std::string> written;
-    for (const double value :
-         Column(Done("simulate" + kMindlinOptions + "--lambda 1.3 --cycles 2").out, column)) {
-      written.push_back(fmt::format("{:.17g}", value / unit));
-    }
-    return written;
-  }
-
-  /// Expects what a fit without noise promises.
-  static void ExpectRecovered(const Words& fit) { ExpectMindlin(JsonOf(fit), 1e-8); }
-
-  std::vector<std::string> seconds_ = Written(0, 1);
-};
-
-TEST_F(SimulatedFile, IsRecoveredAsItIsWritten) {
-  ExpectRecovered("fit " + Simulated("--lambda 1.3 --cycles 2"));
-}
-
-TEST_F(SimulatedFile, IsRecoveredFromMicrometresAndMillinewtonsOfTheHeader) {
-  const auto x = Written(1, 1e-6);
-  const auto force = Written(2, 1e-3);
-  std::string text = "Fx (mN),x [um]\n";
-  for (std::size_t i = 0; i < x.size(); ++i) text += force[i] + "," + x[i] + "\n";
-  ExpectRecovered("fit " + Write("loop.csv", text) + " --force 1");
-}
-
-TEST_F(SimulatedFile, IsRecoveredFromSemicolonsAndDecimalCommas) {
-  const auto x = Written(1, 1e-3);
-  const auto force = Written(2, 1e3);
-  std::string text = "Zeit [s];disp_mm;F [kN]\r\n";
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    text += seconds_[i] + ";" + x[i] + ";" + force[i] + "\r\n";
-  }
-  std::ranges::replace(text, '.', ',');
-  ExpectRecovered("fit " + Write("loop.csv", text));
-}
-
-TEST_F(SimulatedFile, IsRecoveredWithUnitsAndColumnsFromTheOptions) {
-  const auto x = Written(1, 0.0254);
-  const auto force = Written(2, 4.4482216152605);
+TEST_F(FitCommand, RecoversTheContactOfALoopInTheUnitsAndColumnsOfTheOptions) {
+  const std::string loop = Simulated("--lambda 1.3 --cycles 2");
+  constexpr double kRoundTrip = 1e-8;  // the promise of a fit without noise
+  ExpectMindlin(JsonOf("fit " + loop), kRoundTrip);
   std::string text;
-  for (std::size_t i = 0; i < x.size(); ++i) text += "1\t" + force[i] + "\t" + x[i] + "\n";
-  ExpectRecovered(
-      {"fit", Write("loop.txt", text), "--displacement", "3 [in]", "--force", "2 [lbf]"});
+  for (const auto& row : testing::Numbers(FileContent(loop))) {
+    text += fmt::format("1\t{}\t{}\n", row[2] / 4.4482216152605, row[1] / 0.0254);
+  }
+  ExpectMindlin(
+      JsonOf({"fit", Write("loop.txt", text), "--displacement", "3 [in]", "--force", "2 [lbf]"}),
+      kRoundTrip);
 }
 
 TEST_F(FitCommand, ListsEverySampleWithMeasuredAndFittedAmongTheResiduals) {

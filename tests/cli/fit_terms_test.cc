@@ -21,13 +21,10 @@ class FitTerms : public CommandTest {
  protected:
   /// Cycles of 200 samples to 1.3 δc.
   static std::vector<Sample> Simulate(const std::string& cycles = "2") {
-    const std::string text =
-        Done("simulate" + kMindlinOptions + ("--lambda 1.3 --cycles " + cycles)).out;
-    const std::vector<double> displacement = Column(text, 1);
-    const std::vector<double> force = Column(text, 2);
     std::vector<Sample> loop;
-    for (const double time : Column(text, 0)) {
-      loop.push_back({time, displacement[loop.size()], force[loop.size()]});
+    for (const auto& row : testing::Numbers(
+             Done("simulate" + kMindlinOptions + ("--lambda 1.3 --cycles " + cycles)).out)) {
+      loop.push_back({row[0], row[1], row[2]});
     }
     return loop;
   }

@@ -32,11 +32,9 @@ TEST_F(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
 TEST_F(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
   const std::string clean = Simulated("--lambda 2 --cycles 3 --noise-force 0.05", "clean.csv");
   // The same in µm and mN, behind another column, without a header.
-  const std::vector<double> displacement = Column(FileContent(clean), 1);
   std::string text;
-  for (const double force : Column(FileContent(clean), 2)) {
-    const auto row = static_cast<std::size_t>(std::ranges::count(text, '\n'));
-    text += fmt::format("7,{},{}\n", 1e3 * force, 1e6 * displacement[row]);
+  for (const auto& row : testing::Numbers(FileContent(clean))) {
+    text += fmt::format("7,{},{}\n", 1e3 * row[2], 1e6 * row[1]);
   }
   const std::string file = Write("columns.csv", text);
   const auto slip_force = [](const Words& plan) {

@@ -78,15 +78,6 @@ double HalfWidth(const json& quantity) {
   return std::log(Number(quantity["ci95"][1]) / Number(quantity["value"]));
 }
 
-TEST(UncertainInput, OfAFitAddsItsIntervalInQuadrature) {
-  const json exact = ContactOf("--normal-load 50")["friction_coefficient"];
-  const json friction = ContactOf("--normal-load 50±1%")["friction_coefficient"];
-  EXPECT_EQ(friction["value"], exact["value"]);
-  constexpr double kNormalQuantile = 1.959963984540054;  // Φ⁻¹(0.975), any table
-  EXPECT_NEAR(HalfWidth(friction) / std::hypot(HalfWidth(exact), 0.01 * kNormalQuantile), 1,
-              kDifferences);
-}
-
 TEST(Fit, ComparesWithHertzAndItsUncertainty) {
   const json ratio = ContactOf(
       "--normal-load 50±3% --youngs-modulus-1 210e9 --youngs-modulus-2 210e9 "

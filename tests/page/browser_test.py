@@ -191,8 +191,6 @@ def check(browser, page, figures, scratch, looks):
     require("<script" not in text, f"{page.name}: has a script")
     require(not re.search(r'(?:src|href)="(?!data:|[\w.%-]+\.html")', text),
             f"{page.name}: loads something")
-    _, log = chromium(browser, scratch, *flags_of(1366, False), "--dump-dom", page.as_uri())
-    require(not console_messages(log), f"{page.name}: {console_messages(log)}")
     grounds = set()
     for width in WIDTHS:
         for dark in (False, True):
