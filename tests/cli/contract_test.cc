@@ -1,6 +1,7 @@
-#include "support/contract.h"
+#include <map>
 
 #include "cli/command_line.h"
+#include "support/text.h"
 
 // docs/contract.md against the program: it names every option and exit status, and none besides.
 namespace mindahl::cli::contract_test {
@@ -11,6 +12,17 @@ const Words kCommands = "fit simulate validate contact convert tradeoff plan bat
 const Words kLikeFit = "batch track";
 const char* const kCommonSection = "What is known of the contact";
 const char* const kOption = "(--[a-z][a-z0-9-]*)";
+
+/// The contract by its headings, "mindahl fit"; what stands before the first has the heading "".
+std::map<std::string, std::string> ContractSections() {
+  std::map<std::string, std::string> sections;
+  std::string heading;
+  for (const std::string& line : Lines(FileContent(MINDAHL_SOURCE_DIR "/docs/contract.md"))) {
+    if (line.starts_with("## ")) heading = line.substr(3);
+    sections[heading] += line + "\n";
+  }
+  return sections;
+}
 
 std::set<std::string> Difference(const std::set<std::string>& all,
                                  const std::set<std::string>& less) {

@@ -17,14 +17,6 @@ const std::string kUnit = "simulate --sigma 1 --slip-force 1 ";
 std::vector<double> Displacements(const Words& words) { return Column(Done(words).out, 1); }
 std::vector<double> Forces(const Words& words) { return Column(Done(words).out, 2); }
 
-double LargestDifference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = std::abs(static_cast<double>(a.size()) - static_cast<double>(b.size()));
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  }
-  return largest;
-}
-
 TEST_F(Simulate, WritesTimeDisplacementAndForceWithUnitsToAFileAsToStdout) {
   const std::string command =
       "simulate --sigma 2 --slip-force 3 --lambda 1 --samples-per-cycle 8 --frequency 4";
@@ -94,21 +86,14 @@ TEST_F(Simulate, AddsNoiseOfTheDeviationsThatAreAsked) {
   EXPECT_NE(Forces(noisy + "--seed 2"), Forces(noisy));
 }
 
-TEST_F(Simulate, GivesTheLoopOfAContactsParameters) {
-  // σ = 8a/G* = 8·1e-3/4e-11 = 2e8, Tc = μN = 30.
-  const auto by_contact = Forces(
-      "simulate --friction 0.3 --normal-load 100 --contact-radius 1e-3 "
-      "--compliance 4e-11 --amplitude 3e-7");
-  const auto by_parameters = Forces("simulate --sigma 2e8 --slip-force 30 --amplitude 3e-7");
-  EXPECT_LE(LargestDifference(by_contact, by_parameters), 30 * kRounding);
-}
-
 TEST_F(Simulate, ComesNearTheClosedFormByEveryMethod) {
   const std::vector<double> exact = Forces(kUnit + "--amplitude 1.2");
+  EXPECT_EQ(Forces(kUnit + "--amplitude 1.2 --method exact"), exact);
   constexpr double kNear = 0.02;  // of Tc, at the methods' default resolution
-  for (const char* method : {"exact", "dopri5", "iwan", "table"}) {
+  for (const char* method : {"dopri5", "iwan", "table"}) {
     const auto forces = Forces(kUnit + "--amplitude 1.2 --method " + method);
-    EXPECT_LT(LargestDifference(forces, exact), kNear) << method;
+    EXPECT_NE(forces, exact) << method;
+    EXPECT_THAT(forces, ::testing::Pointwise(::testing::DoubleNear(kNear), exact)) << method;
   }
 }
 
@@ -155,11 +140,6 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
   EXPECT_EQ(report["failures"], 0);
   EXPECT_EQ(report["cases"], 14);
   EXPECT_EQ(report["fits"], 2 * 14 * 4) << "two laws, four noise levels";
-  for (const char* rows : {"rows", "dahl_rows"}) {
-    int fits = 0;
-    for (const json& row : report[rows]) fits += row["cases"].get<int>();
-    EXPECT_EQ(fits, 14 * 4) << rows;
-  }
   ASSERT_EQ(report["coverage"].size(), 2U * 3U) << "two laws, three parameters";
   for (const json& verdict : report["coverage"]) {
     EXPECT_EQ(verdict["passed"], true) << verdict;

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "io/drawing.h"
-#include "support/contract.h"
 #include "support/prelude.h"
+#include "support/text.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::plot_test {

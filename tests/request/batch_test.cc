@@ -8,7 +8,6 @@
 #include "mindahl/core/version.h"
 #include "support/histories.h"
 #include "support/prelude.h"
-#include "support/text.h"
 
 namespace mindahl::request::batch_test {
 namespace {

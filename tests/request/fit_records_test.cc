@@ -32,22 +32,20 @@ std::string RefusalOf(const std::vector<io::RecordFile>& files, FitRequest reque
   return MessageOf<InputError>([&] { FitRecords(request, files); });
 }
 
-TEST(FitRecords, RefusesADisplacementThatNeverChanges) {
-  io::RecordFile file = LoopFile();
-  file.record.displacement.assign(101, 0.5);
-  EXPECT_THAT(RefusalOf({LoopFile(), file}),
-              StartsWith("b.csv:3:2: the displacement never changes, it is 0.5 m in every row"));
-  file.is_torsional = true;
-  EXPECT_THAT(RefusalOf({file}), HasSubstr("it is 0.5 rad in every row"));
-}
-
-TEST(FitRecords, RefusesAForceThatNeverChangesInAnyFile) {
-  io::RecordFile file = LoopFile();
-  file.record.force.assign(101, -7.0);
-  EXPECT_THAT(RefusalOf({file}), StartsWith("a.csv:3:4: the force never changes, it is -7 N"));
-  EXPECT_THAT(RefusalOf({file, file}), StartsWith("a.csv:3:4"));
+TEST(FitRecords, RefusesADisplacementThatNeverChangesAndAForceThatDoesInNoFile) {
+  io::RecordFile still = LoopFile();
+  still.record.displacement.assign(101, 0.5);
+  still.is_torsional = true;
+  EXPECT_THAT(RefusalOf({still}),
+              StartsWith("a.csv:3:2: the displacement never changes, it is 0.5 rad in every row"));
+  still.is_torsional = false;
+  EXPECT_THAT(RefusalOf({LoopFile(), still}), StartsWith("b.csv:3:2: the displacement never"));
+  io::RecordFile slack = LoopFile();
+  slack.record.force.assign(101, -7.0);
+  EXPECT_THAT(RefusalOf({slack, slack}),
+              StartsWith("a.csv:3:4: the force never changes, it is -7 N"));
   // A file at rest beside one that is loaded is one of the contact's.
-  EXPECT_THAT(RefusalOf({LoopFile(), file}), Not(HasSubstr("never changes")));
+  EXPECT_THAT(RefusalOf({LoopFile(), slack}), Not(HasSubstr("never changes")));
 }
 
 TEST(FitRecords, RefusesUnitsBeyondAnyAtTheWidestValue) {
