@@ -120,7 +120,12 @@ std::vector<Cycle> Partial(double share, std::size_t cycles, double noise) {
 }
 
 TEST(CycleFitter, SaysWhatACycleLeavesOpen) {
-  EXPECT_TRUE(HasFlag(CycleFitter({}).Fit(Partial(0.1, 2, 0.05).front()), "slip_force_open"));
+  identification::FitOptions options;
+  options.normal_loads = {80.0};
+  const CycleFit fit = CycleFitter(options).Fit(Partial(0.1, 2, 0.05).front());
+  EXPECT_TRUE(HasFlag(fit, "slip_force_open"));
+  EXPECT_EQ(fit.normal_load, 80.0);
+  EXPECT_FALSE(fit.friction_coefficient);
 }
 
 // Far from slip the parabola of the likelihood is wrong about Tc: no cycle may pass for one that

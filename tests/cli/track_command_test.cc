@@ -1,11 +1,6 @@
-#include <sys/resource.h>
-
-#include <csignal>
-
 #include "campaign/test_record.h"
 #include "cli/command_line.h"
 #include "cli/standard_input.h"
-#include "mindahl/campaign/tracker.h"
 
 // mindahl track: a table that nothing ends half-way.
 namespace mindahl::track_command_test {
@@ -159,23 +154,6 @@ TEST_F(TrackCommand, RefusesToGoOnWhereAnEarlyRowOfTheRecordWasChanged) {
   }
 }
 
-TEST_F(TrackCommand, GivesNoFrictionOfASlipForceThatIsOpen) {
-  Done({"track", MINDAHL_SOURCE_DIR "/data/far_from_slip.csv", "--output", Path("far.csv"),
-        "--normal-load", "80"});
-  const Table rows = Rows(ContentOf("far.csv"));
-  const auto place = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find(rows[0], name) - rows[0].begin());
-  };
-  std::size_t open = 0;
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    if (rows[k][place("flags")].find("slip_force_open") == std::string::npos) continue;
-    ++open;
-    EXPECT_EQ(rows[k][place("friction_coefficient")], "");
-    EXPECT_EQ(rows[k][place("normal_load [N]")], "80");
-  }
-  EXPECT_GT(open, 0U);
-}
-
 TEST_F(TrackCommand, RefusesToJoinPiecesOfWhichOneHasNoTime) {
   const std::string untimed = Write("untimed.csv", "displacement [m],force [N]\n0,0\n1e-6,2\n");
   ExpectRefused(Track("joined.csv") + Words{untimed, "--join"},
@@ -209,41 +187,6 @@ TEST_F(TrackCommand, KeepsFinishedCyclesIfARowIsBrokenAndSkipsItWhereAsked) {
               Contains(HasSubstr("broken.csv: 1 broken row")));
   Write("broken.csv", text_);
   ExpectCompleted(part, whole, "broken.csv");
-}
-
-/// Lets no file grow beyond a size while it lives, as a full disk does.
-class FullDisk {
- public:
-  explicit FullDisk(std::size_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
-
-TEST_F(TrackCommand, KeepsWholeRowsOnAFullDisk) {
-  const std::string whole = Whole();
-  {
-    const FullDisk full(whole.size() / 2);
-    ExpectRefused(Track("full.csv"), "cannot write");
-  }
-  const std::string part = ContentOf("full.csv");
-  EXPECT_EQ(part, whole.substr(0, part.size()));
-  EXPECT_EQ(part.back(), '\n');
-  EXPECT_EQ((Lines(part).size() - 1) % campaign::kBatch, 0U);
-  ExpectCompleted(part, whole);
 }
 
 TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
