@@ -75,26 +75,6 @@ TEST_F(TrackCommand, WritesARowACycle) {
   }
 }
 
-TEST_F(TrackCommand, SaysOfACycleWhatFitSaysOfItsRows) {
-  constexpr double kSolverTolerance = 1e-2;  // standard errors
-  const Table rows = Rows(Whole());
-  const std::vector<std::string> lines = Lines(text_);
-  for (const std::size_t cycle : {1U, 2U, 65U, 121U, 200U}) {
-    const std::vector<std::string>& cells = rows[cycle];
-    const std::size_t first = std::stoul(cells[1]);
-    std::string text = lines[0] + "\n";
-    for (std::size_t i = 0; i < std::stoul(cells[2]); ++i) text += lines[first - 1 + i] + "\n";
-    const json fit =
-        JsonOf("fit " + Write("cycle.csv", text) + " --initial-state steady --force-sign same");
-    for (const auto& [name, column] : {std::pair("slip_force", 16U), {"sigma", 12U}}) {
-      EXPECT_NEAR(std::stod(cells[column]), Value(fit, name),
-                  kSolverTolerance * fit["parameters"][name]["standard_error"].get<double>());
-    }
-    EXPECT_NEAR(std::stod(cells[8]), fit["measured"]["energy_per_cycle"].get<double>(),
-                1e-9 * std::stod(cells[8]));
-  }
-}
-
 TEST_F(TrackCommand, WritesTheSameBytesWithAnyNumberOfThreadsAndOfStandardInput) {
   const std::string whole = Whole();
   for (const char* threads : {"1", "2", "5"}) {
@@ -187,16 +167,6 @@ TEST_F(TrackCommand, KeepsFinishedCyclesIfARowIsBrokenAndSkipsItWhereAsked) {
               Contains(HasSubstr("broken.csv: 1 broken row")));
   Write("broken.csv", text_);
   ExpectCompleted(part, whole, "broken.csv");
-}
-
-TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
-  const json summary = JsonOf(Track("t.csv"));
-  EXPECT_EQ(summary["schema"], "mindahl.track/1");
-  const json slip_force = summary["quantities"]["slip_force"];
-  ASSERT_EQ(slip_force["steps"].size(), 1U);
-  EXPECT_NEAR(slip_force["steps"][0]["cycle"].get<double>(), 120.5, 2);
-  EXPECT_TRUE(summary["quantities"]["sigma"]["steps"].empty());
-  EXPECT_THAT(Done(Track("u.csv")).out, AllOf(StartsWith("Tc "), HasSubstr("a step")));
 }
 
 TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {

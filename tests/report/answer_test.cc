@@ -169,8 +169,11 @@ TEST(Answer, PutsWhatCannotBeFirst) {
   input.known = kSphereOnPlane;
   input.known.body_1.radius = 50.0;
   EXPECT_EQ(LineOf(input, "check"), "--radius-1 50 is 50 m: in mm it would be 50 mm");
-  input.known = {.normal_load = 50.0, .contact_radius = 1e-8};
+  // 3N/(2πa²) is 239 GPa, and a quarter of it at twice the radius.
+  input.known = {.normal_load = 50.0, .contact_radius = 1e-5};
   EXPECT_THAT(LineOf(input, "check"), HasSubstr("more than any solid bears"));
+  input.known.contact_radius = 2e-5;
+  EXPECT_EQ(LineOf(input, "check"), "");
   input.known = kSphereOnPlane;
   input.fit.law.tangential_stiffness *= 1e-3;  // µm read as mm
   input.fit.parameters[0].value *= 1e-3;

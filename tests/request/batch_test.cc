@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "mindahl/core/version.h"
+#include "report/made_report.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 
@@ -127,15 +128,7 @@ TEST(Repeats, ScatterByTheErrorOfRepeatsAndNotByThatOfTheModel) {
 }
 
 TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
-  identification::ParameterEstimate sigma;
-  sigma.name = "sigma";
-  sigma.unit = "N/m";
-  sigma.value = 4e7;
-  sigma.standard_error = 4e5;
-  sigma.lower95 = 3.92e7;
-  sigma.upper95 = 4.08e7;
-  sigma.status = identification::ParameterStatus::kFree;
-  sigma.identifiability = identification::Identifiability::kIdentifiable;
+  const identification::ParameterEstimate sigma = testing::MadeParameter("sigma", "N/m", 4e7, 4e5);
   identification::ParameterEstimate open = sigma;
   open.value = 7.777e7;
   open.identifiability = identification::Identifiability::kNotIdentifiable;

@@ -11,10 +11,9 @@ namespace {
 /// A loop in 2.5 cycles of 40 samples, in a file whose rows begin with the third line.
 io::RecordFile LoopFile() {
   io::RecordFile file;
-  for (std::size_t i = 0; i <= 100; ++i) {
-    file.record.displacement.push_back(
-        2e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 40));
-    file.lines.push_back(i + 3);
+  for (const double sine : testing::Sine(2.5, 40)) {
+    file.record.displacement.push_back(2e-6 * sine);
+    file.lines.push_back(file.lines.size() + 3);
   }
   file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
                                        file.record.displacement);

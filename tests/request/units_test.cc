@@ -68,16 +68,13 @@ std::map<std::string, Leaf> LeavesOf(const report::Report& report, bool is_force
   return leaves;
 }
 
-constexpr std::size_t kCycle = 64;  // samples
-
 /// A loop beyond gross slip from rest, with noise, a normal load and a time in steps of 2⁻⁷ s.
 loop::Record MeasuredLoop(std::uint64_t seed, double load = 1.0) {
   Generator generator(seed);
   loop::Record record;
-  for (std::size_t i = 0; i <= 5 * kCycle / 2; ++i) {
-    const double phase = static_cast<double>(i) / static_cast<double>(kCycle);
-    record.displacement.push_back(2.4e-6 * std::sin(2 * std::numbers::pi * phase));
-    record.time.push_back(std::ldexp(static_cast<double>(i), -7));
+  for (const double sine : testing::Sine(2.5, 64)) {
+    record.displacement.push_back(2.4e-6 * sine);
+    record.time.push_back(std::ldexp(static_cast<double>(record.time.size()), -7));
   }
   record.force =
       testing::Respond(testing::Model("mindlin-dahl"),
