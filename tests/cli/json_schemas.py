@@ -224,6 +224,9 @@ def null_faults(fit):
         yield f"{path}: is null, and nulls does not say why"
     for path in (listed - found):
         yield f"nulls: {path} is not null"
+    for null in fit["nulls"]:
+        if null["why"] in ("", "not a finite number"):
+            yield f"nulls: {null['path']}: '{null['why']}' is no reason"
 
 
 def check_outputs(program):

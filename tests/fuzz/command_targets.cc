@@ -115,14 +115,6 @@ std::vector<std::unique_ptr<MemoryFile>> FilesOf(const std::string& text) {
   return files;
 }
 
-/// Returns a command and its files, before options that take any number of values.
-Words NamesAfter(const std::string& command,
-                 const std::vector<std::unique_ptr<MemoryFile>>& files) {
-  Words words = {command};
-  for (const auto& file : files) words.push_back(file->name());
-  return words;
-}
-
 std::vector<std::string> LinesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -190,7 +182,8 @@ void JoinRecords(Input input) {
   if (is_track) Append(options, {"--output", output.name(), "--overwrite", "--threads", "1"});
   AddOptions(options, is_track ? kOptionsOfTrack : kOptionsOfFit, bytes);
   const auto files = FilesOf(bytes.Text());
-  Words words = NamesAfter(is_track ? "track" : "fit", files);
+  Words words = {is_track ? "track" : "fit"};  // then files, before options that take any number
+  for (const auto& file : files) words.push_back(file->name());
   Append(words, options);
   const Outcome outcome = Run(words);
   RequireFiniteCells(output.Content());
