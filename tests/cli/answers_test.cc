@@ -133,16 +133,18 @@ TEST_P(MisleadingAnswer, IsGivenNoMore) {
 INSTANTIATE_TEST_SUITE_P(Text, MisleadingAnswer, ::testing::ValuesIn(kAnswers),
                          [](const auto& row) { return row.param.name; });
 
+using DefaultText = CommandTest;
+
 // Words of the default text, notes included: 150 of a clean loop, 200 of a doubtful one, 120 of one
 // that the law does not describe.
-TEST(DefaultText, IsShort) {
+TEST_F(DefaultText, IsShort) {
   std::vector<Words> fits = {"fit --radius-1 50mm " + SampleRecord() + kMaterials};
   for (const auto& entry : std::filesystem::directory_iterator(MINDAHL_SOURCE_DIR "/data")) {
     if (entry.path().extension() == ".csv") fits.push_back("fit " + entry.path().string());
   }
   for (const Words& fit : fits) {
-    const std::string verdict = JsonOf(fit)["adequacy"]["verdict"];
-    const Outcome outcome = Done(fit);
+    const Outcome outcome = Done(fit + Words{"--json", Path("fit.json")});
+    const std::string verdict = json::parse(FileContent(Path("fit.json")))["adequacy"]["verdict"];
     EXPECT_THAT(outcome.err, IsEmpty());
     EXPECT_LE(Words(outcome.out).size(), verdict == "adequate"   ? 150U
                                          : verdict == "doubtful" ? 200U
