@@ -1,6 +1,7 @@
 #include "mindahl/campaign/cycle_splitter.h"
 
 #include "campaign/test_record.h"
+#include "io/temporary_directory.h"
 #include "support/prelude.h"
 
 namespace mindahl::campaign::cycle_splitter_test {
@@ -41,13 +42,11 @@ TEST(CycleSplitter, BeginsAndEndsCyclesAtEverySecondTurningPoint) {
 TEST(CycleSplitter, ChecksumsSayWhatCameBefore) {
   const loop::Record record = TestRecord(6);
   const std::vector<Cycle> cycles = Split(record);
-  const auto last_of = [&](const loop::Record& other, const std::vector<std::size_t>& lines) {
+  const auto last_of = [](const loop::Record& other, const std::vector<std::size_t>& lines) {
     std::vector<Cycle> of_other;
-    CycleSplitter splitter(0.0);
-    splitter.Add(other, lines, of_other);
+    CycleSplitter(0.0).Add(other, lines, of_other);
     return of_other.back().checksum;
   };
-  EXPECT_EQ(last_of(record, LinesOf(record)), cycles.back().checksum);
   constexpr std::size_t kEarly = 3;  // before the first cycle
   for (std::vector<double> loop::Record::*channel :
        {&loop::Record::displacement, &loop::Record::force, &loop::Record::time}) {
@@ -113,15 +112,11 @@ TEST(CycleSplitter, DoesNotMindHowTheSamplesArrive) {
 }
 
 TEST(CycleSplitter, KeepsSeveralCyclesTogether) {
-  const loop::Record record = TestRecord(9);  // 8 whole ones
-  CycleSplitter splitter(0.0, 3);
-  std::vector<Cycle> cycles;
-  splitter.Add(record, LinesOf(record), cycles);
+  const std::vector<Cycle> cycles = Split(TestRecord(9), CycleSplitter(0.0, 3));  // 8 whole ones
   ASSERT_EQ(cycles.size(), 2U);
   EXPECT_EQ(cycles[0].number, 1U);
   EXPECT_EQ(cycles[1].number, 4U);
   EXPECT_EQ(cycles[1].record.size(), 3 * kCycleSamples + 1);
-  EXPECT_EQ(splitter.cycles(), 6U);
 }
 
 TEST(CycleSplitter, TakesNoNoiseForATurningPoint) {
@@ -155,6 +150,34 @@ TEST(CycleSplitter, FindsNoCycleInAStroke) {
     record.force.push_back(i);
   }
   EXPECT_TRUE(Split(record).empty());
+}
+
+TEST(ChooseGate, ChoosesTheForceSignTooForAllCyclesAndKeepsAGateThatIsGiven) {
+  identification::FitOptions fit;
+  const loop::ReversalGate gate = ChooseGate(TestRecord(3, 1, 0.0), fit);
+  EXPECT_TRUE(fit.preparation.reversal_gate.has_value());
+  EXPECT_EQ(fit.preparation.force_sense, 1);
+  EXPECT_EQ(gate.count, 5U);
+  EXPECT_TRUE(gate.certain);
+  fit.preparation.reversal_gate = 1e-7;
+  EXPECT_EQ(ChooseGate(TestRecord(3, 1, 0.0), fit).gate, 1e-7);
+  EXPECT_EQ(*fit.preparation.reversal_gate, 1e-7);
+}
+
+TEST(ReadHead, GoesOnUntilTheMotionHasTurnedEightTimes) {
+  // Cycles of 60,000 rows of 13 bytes, a hundred of which are alike: pieces of 128 KiB and then of
+  // 1 MiB have less than two each.
+  std::string rows = "x [m],F [N]\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double phase = 2 * std::numbers::pi * i / 600;
+    const std::string row = std::to_string(std::sin(phase)).substr(0, 7) + "," +
+                            std::to_string(std::sin(phase + 0.3)).substr(0, 4) + "\n";
+    for (int k = 0; k < 100; ++k) rows += row;
+  }
+  const TemporaryDirectory directory;
+  io::RecordStream stream(directory.Write("long.csv", rows));
+  const io::Samples head = ReadHead(stream);
+  EXPECT_GE(loop::ChooseReversalGate(head.displacement).count, 8U);
 }
 
 TEST(CycleSplitter, RefusesWhatNothingCanBeSplitBy) {

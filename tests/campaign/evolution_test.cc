@@ -166,7 +166,6 @@ TEST(TrackedCourses, HoldEachQuantityOfACycleUnlessItIsOpen) {
                                           "alpha 2.5 16",
                                           "energy 6.5 0.25",
                                           "energy_ratio 7.5 0.25"};
-  EXPECT_EQ(held({}), whole);
   EXPECT_EQ(held({"glitches"}), whole);
   EXPECT_THAT(held({"not_converged"}), IsEmpty());
   EXPECT_THAT(held({"sigma_open"}), AllOf(SizeIs(6), Not(Contains(whole[3]))));

@@ -50,7 +50,7 @@ TEST(Tracker, BeginsAtALaterBatchWithItsRows) {
   }
 }
 
-TEST(Tracker, FitsOneCycleOfSoMany) {
+TEST(Tracker, FitsOneOfSoManyCyclesOrCyclesTogether) {
   TrackOptions options;
   options.every = 10;
   const std::vector<std::string> rows = Rows(options);
@@ -58,31 +58,24 @@ TEST(Tracker, FitsOneCycleOfSoMany) {
   EXPECT_TRUE(rows[0].starts_with("1,"));
   EXPECT_TRUE(rows[1].starts_with("11,"));
   EXPECT_TRUE(rows.back().starts_with("141,"));
-}
-
-TEST(Tracker, FitsCyclesTogether) {
-  TrackOptions options;
   options.together = 5;
   options.every = 2;
-  const std::vector<std::string> rows = Rows(options);
-  ASSERT_EQ(rows.size(), kCycles / 10);
-  EXPECT_TRUE(rows[1].starts_with("11,"));
+  const std::vector<std::string> together = Rows(options);
+  ASSERT_EQ(together.size(), kCycles / 10);
+  EXPECT_TRUE(together[1].starts_with("11,"));
 }
 
 TEST(Tracker, RefusesOptionsBeforeItBegins) {
-  const auto make = [](TrackOptions options) { Tracker(std::move(options), {}); };
-  TrackOptions options;
-  options.every = 0;
-  EXPECT_THROW(make(options), InvalidArgument);
-  options = {};
-  options.threads = 0;
-  EXPECT_THROW(make(options), InvalidArgument);
-  options = {};
-  options.skipped = kBatch + 1;
-  EXPECT_THROW(make(options), InvalidArgument);
-  options = {};
-  options.fit.max_iterations = 0;
-  EXPECT_THROW(make(options), InvalidArgument);
+  using Change = std::function<void(TrackOptions&)>;
+  for (const Change& change :
+       {Change([](TrackOptions& options) { options.every = 0; }),
+        Change([](TrackOptions& options) { options.threads = 0; }),
+        Change([](TrackOptions& options) { options.skipped = kBatch + 1; }),
+        Change([](TrackOptions& options) { options.fit.max_iterations = 0; })}) {
+    TrackOptions options;
+    change(options);
+    EXPECT_THROW(Tracker(options, {}), InvalidArgument);
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 The rules: every option is described; an option that takes a physical quantity states its unit in
 brackets; no line is wider than a page; every option that the documentation names exists. The
-options are read by command_help.py from `--help-all`.
+options are those of `--help-all`.
 """
 
 import argparse
@@ -17,8 +17,6 @@ import subprocess
 import sys
 import tempfile
 
-import command_help
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 WIDTH = 100
@@ -28,28 +26,19 @@ WIDE_LINES_LEFT = {"fit": 4, "simulate": 2, "contact": 1, "tradeoff": 2, "conver
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
-# And these, each with the reason.
+# And these of some commands, each with the reason.
 EXEMPT = {
-    ("fit", "--start"): "in the unit of the parameter, which --fix lists",
-    ("fit", "--bound"): "likewise",
-    ("fit", "--select"): "of what it selects",
-    ("simulate", "--steps"): "a count",
-    ("tradeoff", "--tolerance"): "relative, and says so",
-    ("plan", "--cycles"): "a count",
-    ("track", "--threads"): "a count",
-    ("fit", "--terms"): "names",
-    ("track", "--terms"): "names",
-    ("batch", "--terms"): "names",
-    ("batch", "--threads"): "a count",
-    ("batch", "--start"): "in the unit of the parameter, which --fix lists",
-    ("batch", "--bound"): "likewise",
-    ("batch", "--select"): "of what it selects",
-    ("track", "--start"): "in the unit of the parameter, which --fix lists",
-    ("track", "--bound"): "likewise",
-    ("plan", "--with"): "names",
-    ("plan", "--want"): "in the unit of the parameter, or in percent",
-    ("convert", "--tolerance"): "relative, and says so",
-    ("convert", "--beta"): "a share, and says so",
+    "--start": ("fit track batch", "in the unit of the parameter, which --fix lists"),
+    "--bound": ("fit track batch", "in the unit of the parameter, which --fix lists"),
+    "--select": ("fit batch", "of what it selects"),
+    "--terms": ("fit track batch", "names"),
+    "--threads": ("track batch", "a count"),
+    "--steps": ("simulate", "a count"),
+    "--cycles": ("plan", "a count"),
+    "--with": ("plan", "names"),
+    "--want": ("plan", "in the unit of the parameter, or in percent"),
+    "--tolerance": ("tradeoff convert", "relative, and says so"),
+    "--beta": ("convert", "a share, and says so"),
 }
 
 # Options of other programs in the documentation.
@@ -64,16 +53,60 @@ OF_OTHERS = {
 }
 
 
+COLUMN = 30  # where descriptions begin
+
+
+def option_of(line):
+    """Name, what it takes and the description so far of the option that a line begins, or None."""
+    match = re.match(r"  (?:-\w,)?(--[a-z][a-z0-9-]*) ?(.*)", line)
+    if not match:
+        return None
+    name, rest = match.groups()
+    # A head that is too long for its column has the description on the next lines.
+    related = re.search(r" ?\b(Excludes|Needs):( --[a-z0-9-]+)+", rest)
+    if related:
+        words = re.sub(r"^( ?(Excludes|Needs):( --[a-z0-9-]+)+)+", "", rest[related.start():])
+        return [name, rest[:related.start()].strip(), words.strip()]
+    if len(line) > COLUMN and line[COLUMN - 1] == " " != line[COLUMN]:
+        return [name, line[:COLUMN].strip().partition(" ")[2], line[COLUMN:]]
+    return [name, rest.strip(), ""]
+
+
+def parse(text):
+    """The options, the commands and the examples of a help."""
+    options, commands, examples = [], [], []
+    title = None
+    for line in text[text.index("Usage: "):].splitlines()[1:]:
+        heading = re.fullmatch(r"([A-Z][^:]*):", line)
+        if heading:
+            title = heading.group(1)
+        elif line and not line.startswith(" "):
+            title = None
+        elif title == "Subcommands" and line and line[2] != " ":
+            commands.append(line.split()[0])
+        elif title == "Examples" and line.startswith("  mindahl"):
+            examples.append(line.strip())
+        elif title == "Examples" and line:
+            examples[-1] = examples[-1].removesuffix("\\") + line.strip()
+        elif title not in (None, "Positionals", "Subcommands"):
+            option = option_of(line)
+            if option:
+                options.append(option)
+            elif line.startswith(" " * COLUMN) and options:
+                options[-1][2] += " " + line.strip()
+    return options, commands, examples
+
+
 def helps(program):
     """The help of mindahl itself and of every command it lists."""
-    return {command or "mindahl": text
-            for command, text in command_help.texts_of(program).items()}
+    def run(*words):
+        return subprocess.run([program, *words], check=True, capture_output=True, encoding="utf-8").stdout
+    own = run("--help")
+    return {"mindahl": own, **{command: run(command, "--help-all") for command in parse(own)[1]}}
 
 
 def check_rules(texts):
-    options = {command: [(option.name, option.taken, option.text)
-                         for option in command_help.parse(command, text).options]
-               for command, text in texts.items()}
+    options = {command: parse(text)[0] for command, text in texts.items()}
     for command, text in texts.items():
         wide = [line for line in text.splitlines() if len(line) > WIDTH]
         left = WIDE_LINES_LEFT.get(command, 0)
@@ -84,14 +117,14 @@ def check_rules(texts):
             print(f"{command}: only {len(wide)} lines are wide now: lower WIDE_LINES_LEFT")
         if not options[command]:
             yield f"{command}: no options found: has the form of the help changed?"
+        exempt = [name for name, (commands, _) in EXEMPT.items() if command in commands.split()]
         for name, taken, description in options[command]:
             if not description:
                 yield f"{command} {name}: no description"
             elif (not WITHOUT_UNIT.match(taken) and not re.search(r"\[[^\]]+\]", description)
-                  and (command, name) not in EXEMPT):
+                  and name not in exempt):
                 yield f"{command} {name} {taken}: no unit in brackets: {description}"
-    for command, name in EXEMPT:
-        if name not in [option for option, _, _ in options.get(command, [])]:
+        for name in set(exempt) - {option for option, _, _ in options[command]}:
             yield f"{command} {name}: exempt, but there is no such option"
 
     known = {name for listed in options.values() for name, _, _ in listed} | OF_OTHERS
@@ -133,7 +166,7 @@ def check_examples(program, texts):
         path.write_text("displacement\n" + "".join(f"{x}\n" for x in (0, 0.5, 1, 0.5, -0.5, -1, 0, 1)))
         number = 0
         for command, text in texts.items():
-            examples = command_help.parse(command, text).examples
+            examples = parse(text)[2]
             if command != "mindahl" and len(examples) not in (2, 3):
                 yield f"{command}: {len(examples)} examples"
             for example in examples:

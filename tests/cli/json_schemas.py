@@ -2,7 +2,7 @@
 """Checks what mindahl writes as JSON against docs/schema, and docs/schema against what it must refuse.
 
     json_schemas.py --program build/dev/src/mindahl outputs    runs a table of commands
-    json_schemas.py refusals                                   each a document that is not valid
+    json_schemas.py --program build/dev/src/mindahl refusals   alters a document
 """
 
 import argparse
@@ -46,6 +46,7 @@ STEEL = ("--radius-1 0.05 --radius-2 inf --youngs-modulus-1 210e9±1% --poisson-
          "--youngs-modulus-2 210e9±1% --poisson-2 0.3")
 BALL = "data/mindlin_sphere_on_plane.csv"
 SERIES = "data/load_series_20N.csv data/load_series_50N.csv data/load_series_120N.csv"
+ANY_CONTACT = "contact --friction 0.3 --normal-load 50 --contact-radius 3e-4 --compliance 4.2e-11"
 COMMANDS = [
     (f"fit {BALL}", 0),
     (f"fit {BALL} --normal-load 50±0.5 {STEEL}", 0),
@@ -87,7 +88,7 @@ COMMANDS = [
     ("fit quarter.csv", 0),
     (f"fit {BALL} loop.csv --normal-load 50", None),
     ("contact --friction 0.3 --normal-load 50±1% " + STEEL, 0),
-    ("contact --friction 0.3 --normal-load 50 --contact-radius 3e-4 --compliance 4.2e-11", 0),
+    (ANY_CONTACT, 0),
     *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {law}", 0)
       for law in ("masing", "dahl", "lugre", "bouc-wen", "iwan")],
     ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to lammps --normal-load 50 "
@@ -169,10 +170,6 @@ def faults(document):
         yield from null_faults(file["fit"]) if file["fit"] else []
 
 
-# Optional keys of a shared definition that this place never has, and why.
-NEVER = {}
-
-
 def resolved(schema, root):
     """What a reference in the same schema stands for, or null; empty of another's."""
     while "$ref" in schema or "anyOf" in schema:
@@ -227,6 +224,9 @@ def null_faults(fit):
         yield f"{path}: is null, and nulls does not say why"
     for path in (listed - found):
         yield f"nulls: {path} is not null"
+    for null in fit["nulls"]:
+        if null["why"] in ("", "not a finite number"):
+            yield f"nulls: {null['path']}: '{null['why']}' is no reason"
 
 
 def check_outputs(program):
@@ -264,40 +264,25 @@ def check_outputs(program):
         if not seen[schema_of(name)]:
             problems.append(f"{name}.json: no command of the table writes it")
         for key in sorted(set(optional_keys(SCHEMAS[name], SCHEMAS[name])) - keys[name]):
-            if f"{name}: {key[1:]}" not in NEVER:
-                problems.append(f"{name}.json: no command of the table writes {key[1:]}")
+            problems.append(f"{name}.json: no command of the table writes {key[1:]}")
     print(f"{sum(seen.values())} documents of {len(seen)} schemas")
     return problems
 
 
 # --- documents that the schemas must refuse ----------------------------------------------------
 
-CONTACT = {
-    "schema": "mindahl.contact/1", "version": "0.1.0", "compliance_definition": "G*",
-    "compliance_unit": "1/Pa",
-    "parameters": {name: {"value": 1.0, "standard_error": 0.0, "unit": "N", "meaning": "a"}
-                   for name in ("sigma", "alpha", "slip_force")},
-    "contact": {name: {"value": 1.0, "standard_error": 0.0, "unit": "m", "meaning": "a"}
-                for name in ("friction_coefficient", "normal_load", "compliance", "contact_radius",
-                             "gross_slip_displacement")},
-}
-
-
-def without(document, *path):
-    changed = copy.deepcopy(document)
-    place = changed
-    for key in path[:-1]:
-        place = place[key]
-    del place[path[-1]]
-    return changed
-
+ABSENT = object()
 
 def altered(document, value, *path):
+    """A copy with another value at a path; without it where the value is ABSENT."""
     changed = copy.deepcopy(document)
     place = changed
     for key in path[:-1]:
         place = place[key]
-    place[path[-1]] = value
+    if value is ABSENT:
+        del place[path[-1]]
+    else:
+        place[path[-1]] = value
     return changed
 
 
@@ -320,24 +305,26 @@ def undocumented_keys():
             yield f"{name}.json: {key} is not in docs/contract.md"
 
 
-def check_refusals():
+def check_refusals(program):
     """A schema that lets anything pass is worth nothing."""
+    contact = json.loads(subprocess.run([program, *shlex.split(ANY_CONTACT), "--json", "-"], check=True,
+                                        capture_output=True, encoding="utf-8").stdout)
     for name, schema in SCHEMAS.items():
         jsonschema.Draft202012Validator.check_schema(schema)
         if validator(name).is_valid({"schema": schema_of(name), "version": "0.1.0"}):
             yield f"{name}.json lets a document pass that has nothing else than its name"
     yield from undocumented_keys()
     check = validator("contact")
-    if not check.is_valid(CONTACT):
+    if not check.is_valid(contact):
         yield "contact.json refuses a document as it should be"
     for why, document in [
-            ("a missing key", without(CONTACT, "version")),
-            ("a missing parameter", without(CONTACT, "parameters", "alpha")),
-            ("another schema", altered(CONTACT, "mindahl.fit/2", "schema")),
-            ("a text for a number", altered(CONTACT, "1.0", "parameters", "sigma", "value")),
-            ("a null", altered(CONTACT, None, "contact", "compliance", "value")),
-            ("a negative error", altered(CONTACT, -1, "contact", "compliance", "standard_error")),
-            ("a key that it does not know", altered(CONTACT, 1, "temperature")),
+            ("a missing key", altered(contact, ABSENT, "version")),
+            ("a missing parameter", altered(contact, ABSENT, "parameters", "alpha")),
+            ("another schema", altered(contact, "mindahl.fit/2", "schema")),
+            ("a text for a number", altered(contact, "1.0", "parameters", "sigma", "value")),
+            ("a null", altered(contact, None, "contact", "compliance", "value")),
+            ("a negative error", altered(contact, -1, "contact", "compliance", "standard_error")),
+            ("a key that it does not know", altered(contact, 1, "temperature")),
     ]:
         if check.is_valid(document):
             yield f"contact.json does not refuse {why}"
@@ -354,10 +341,8 @@ def main():
     parser.add_argument("what", choices=["outputs", "refusals"])
     parser.add_argument("--program", type=pathlib.Path)
     arguments = parser.parse_args()
-    if arguments.what == "outputs":
-        problems = check_outputs(arguments.program.resolve())
-    else:
-        problems = list(check_refusals())
+    check = {"outputs": check_outputs, "refusals": check_refusals}[arguments.what]
+    problems = list(check(arguments.program.resolve()))
     for problem in problems:
         print(problem)
     return 1 if problems else 0

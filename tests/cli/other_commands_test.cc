@@ -1,187 +1,145 @@
-
+#include <filesystem>
 
 #include "cli/command_line.h"
-#include "io/temporary_directory.h"
-#include "support/prelude.h"
 
-// simulate, contact and validate.
+// simulate, contact, validate and tradeoff.
 namespace mindahl::cli::other_commands_test {
 namespace {
 
-using nlohmann::json;
-using Words = std::vector<std::string>;
-
-/// Columns of simulate's output, without the header.
-struct Columns {
-  std::vector<double> time, displacement, force;
-};
-
-Columns Parse(const std::string& text) {
-  Columns columns;
-  const Words lines = Lines(text);
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    const Words cells = Cells(lines[i]);
-    columns.time.push_back(std::stod(cells.at(0)));
-    columns.displacement.push_back(std::stod(cells.at(1)));
-    columns.force.push_back(std::stod(cells.at(2)));
-  }
-  return columns;
-}
-
-Columns Simulate(Words words) {
-  words.insert(words.begin(), "simulate");
-  const Outcome outcome = RunCommand(words);
-  EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
-  return Parse(outcome.out);
-}
+using Simulate = CommandTest;
+using Tradeoff = CommandTest;
 
 // Closed forms below are evaluated in double from numbers of order one.
 constexpr double kRounding = 1e-14;
+const std::string kUnit = "simulate --sigma 1 --slip-force 1 ";
 
-TEST(Simulate, WritesTimeDisplacementAndForceWithUnits) {
-  const Outcome outcome = RunCommand({"simulate", "--sigma", "2", "--slip-force", "3", "--lambda",
-                                      "1", "--samples-per-cycle", "8", "--frequency", "4"});
-  EXPECT_EQ(outcome.status, cli::kDone);
+/// Columns of simulate's output.
+std::vector<double> Displacements(const Words& words) { return Column(Done(words).out, 1); }
+std::vector<double> Forces(const Words& words) { return Column(Done(words).out, 2); }
+
+TEST_F(Simulate, WritesTimeDisplacementAndForceWithUnitsToAFileAsToStdout) {
+  const std::string command =
+      "simulate --sigma 2 --slip-force 3 --lambda 1 --samples-per-cycle 8 --frequency 4";
+  const Outcome outcome = Done(command);
   EXPECT_THAT(outcome.err, IsEmpty());
-  const Words lines = Lines(outcome.out);
+  const auto lines = Lines(outcome.out);
   ASSERT_THAT(lines, SizeIs(10));
   EXPECT_EQ(lines[0], "time [s],displacement [m],force [N]");
   EXPECT_EQ(lines[1], "0,0,0");
-  const Columns columns = Parse(outcome.out);
   // A quarter period on: δc = 3Tc/(2σ) = 2.25 m, where the force is Tc.
-  EXPECT_DOUBLE_EQ(columns.time[2], 1.0 / 16);
-  EXPECT_DOUBLE_EQ(columns.displacement[2], 2.25);
-  EXPECT_DOUBLE_EQ(columns.force[2], 3.0);
+  EXPECT_DOUBLE_EQ(Column(outcome.out, 0)[2], 1.0 / 16);
+  EXPECT_DOUBLE_EQ(Column(outcome.out, 1)[2], 2.25);
+  EXPECT_DOUBLE_EQ(Column(outcome.out, 2)[2], 3.0);
+  EXPECT_THAT(Done(command + " -o " + Path("loop.csv")).out, IsEmpty());
+  EXPECT_EQ(FileContent(Path("loop.csv")), outcome.out);
 }
 
-TEST(Simulate, PathGivesOneRowAnInputRowInOrderWithEveryDigit) {
-  const TemporaryDirectory directory;
-  const Words inputs = {"0.30000000000000004", "-1.1234567890123457e-05", "0.7", "0.7", "-0.1",
-                        "12345.678901234567"};
-  std::string text;
-  for (const std::string& input : inputs) text += input + "\n";
-  const std::string path = directory.Write("path.csv", text).string();
-  const Outcome outcome =
-      RunCommand({"simulate", "--sigma", "2", "--slip-force", "1", "--path", path});
-  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
-  const Columns columns = Parse(outcome.out);
-  ASSERT_THAT(columns.displacement, SizeIs(inputs.size()));
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    EXPECT_EQ(columns.displacement[i], std::stod(inputs[i])) << "row " << i;
-  }
-  EXPECT_THAT(outcome.out, HasSubstr(",0.30000000000000004,"));
+TEST_F(Simulate, GivesOneRowARowOfItsPathInOrderWithEveryDigit) {
+  const std::string path =
+      Write("path.csv", "0.30000000000000004\n-1.1234567890123457e-05\n0.7\n0.7\n-0.1\n");
+  EXPECT_THAT(Displacements(kUnit + "--path " + path),
+              ElementsAre(0.30000000000000004, -1.1234567890123457e-05, 0.7, 0.7, -0.1));
 }
 
-TEST(Simulate, FirstRowThatIsNotZeroIsTheFirstLoadingStep) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("path.csv", "0.4\n-0.1\n0.4\n5\n").string();
-  const Columns columns = Simulate({"--sigma", "1", "--slip-force", "1", "--path", path});
+TEST_F(Simulate, TakesAFirstRowThatIsNotZeroForTheFirstLoadingStep) {
+  const std::string path = Write("path.csv", "0.4\n-0.1\n0.4\n5\n");
+  const std::vector<double> force = Forces(kUnit + "--path " + path);
   // T₀(δ) = 1 − (1 − 2δ/3)^{3/2}; from 0.4 down to −0.1 the branch is T₀(0.4) − 2T₀(0.25).
   const auto virgin = [](double x) { return 1 - std::pow(1 - 2 * x / 3, 1.5); };
-  EXPECT_NEAR(columns.force[0], virgin(0.4), kRounding);
-  EXPECT_NEAR(columns.force[1], virgin(0.4) - 2 * virgin(0.25), kRounding);
-  EXPECT_NEAR(columns.force[2], virgin(0.4), kRounding) << "return-point memory";
-  EXPECT_EQ(columns.force[3], 1.0);
+  EXPECT_NEAR(force[0], virgin(0.4), kRounding);
+  EXPECT_NEAR(force[1], virgin(0.4) - 2 * virgin(0.25), kRounding);
+  EXPECT_NEAR(force[2], virgin(0.4), kRounding) << "return-point memory";
+  EXPECT_EQ(force[3], 1.0);
 }
 
-TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
-  const TemporaryDirectory directory;
-  const std::string path = directory.Write("path.csv", "x [mm];other\n400;7\n-100;8\n").string();
-  EXPECT_THAT(Simulate({"--sigma", "1", "--slip-force", "1", "--path", path}).displacement,
-              ElementsAre(0.4, -0.1));
-  const std::string bare = directory.Write("bare.csv", "4\n-1\n").string();
-  EXPECT_THAT(
-      Simulate({"--sigma", "1", "--slip-force", "1", "--path", bare, "--displacement", "[mm]"})
-          .displacement,
-      ElementsAre(0.004, -0.001));
+TEST_F(Simulate, TakesAPathWithAHeaderAUnitAndFurtherColumns) {
+  const std::string path = Write("path.csv", "x [mm];other\n400;7\n-100;8\n");
+  EXPECT_THAT(Displacements(kUnit + "--path " + path), ElementsAre(0.4, -0.1));
+  const std::string bare = Write("bare.csv", "4\n-1\n");
+  EXPECT_THAT(Displacements(kUnit + "--displacement [mm] --path " + bare),
+              ElementsAre(0.004, -0.001));
 }
 
-TEST(Simulate, RandomWaveformIsThatOfItsSeed) {
-  const auto with_seed = [](const char* seed) {
-    return Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "2", "--waveform",
-                     "random", "--cycles", "9", "--seed", seed})
-        .displacement;
-  };
-  const std::vector<double> drawn = with_seed("5");
-  EXPECT_EQ(drawn, with_seed("5"));
-  EXPECT_NE(drawn, with_seed("6"));
+TEST_F(Simulate, DrawsTheRandomWaveformOfItsSeed) {
+  const std::string random = kUnit + "--amplitude 2 --waveform random --cycles 9 --seed ";
+  const std::vector<double> drawn = Displacements(random + "5");
+  EXPECT_EQ(drawn, Displacements(random + "5"));
+  EXPECT_NE(drawn, Displacements(random + "6"));
   const auto [least, greatest] = std::ranges::minmax(drawn);
   EXPECT_EQ(std::max(-least, greatest), 2.0);
 }
 
-TEST(Simulate, ContactGivesTheSameLoopAsItsParameters) {
-  // σ = 8a/G* = 8·1e-3/4e-11 = 2e8, Tc = μN = 30.
-  const Columns by_contact =
-      Simulate({"--friction", "0.3", "--normal-load", "100", "--contact-radius", "1e-3",
-                "--compliance", "4e-11", "--amplitude", "3e-7"});
-  const Columns by_parameters =
-      Simulate({"--sigma", "2e8", "--slip-force", "30", "--amplitude", "3e-7"});
-  ASSERT_EQ(by_contact.force.size(), by_parameters.force.size());
-  for (std::size_t i = 0; i < by_contact.force.size(); ++i) {
-    EXPECT_NEAR(by_contact.force[i], by_parameters.force[i], 30 * kRounding);
+TEST_F(Simulate, AddsNoiseOfTheDeviationsThatAreAsked) {
+  std::string rows = "x [um]\n";
+  for (int i = 0; i < 4000; ++i) rows += i % 2 == 0 ? "0\n" : "1\n";
+  const Words clean = ("simulate --path " + Write("path.csv", rows)) + kMindlinOptions;
+  const Words noisy = clean + "--noise-force 0.5 --noise-displacement 2e-8";
+  const auto deviation = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(squares / static_cast<double>(a.size()));
+  };
+  // A deviation of 4000 is known to 1/√8000; five of that.
+  constexpr double kScatter = 5 * 0.0112;
+  EXPECT_NEAR(deviation(Forces(noisy), Forces(clean)) / 0.5, 1.0, kScatter);
+  EXPECT_NEAR(deviation(Displacements(noisy), Displacements(clean)) / 2e-8, 1.0, kScatter);
+  EXPECT_NE(Forces(noisy + "--seed 2"), Forces(noisy));
+}
+
+TEST_F(Simulate, ComesNearTheClosedFormByEveryMethod) {
+  const std::vector<double> exact = Forces(kUnit + "--amplitude 1.2");
+  EXPECT_EQ(Forces(kUnit + "--amplitude 1.2 --method exact"), exact);
+  constexpr double kNear = 0.02;  // of Tc, at the methods' default resolution
+  for (const char* method : {"dopri5", "iwan", "table"}) {
+    const auto forces = Forces(kUnit + "--amplitude 1.2 --method " + method);
+    EXPECT_NE(forces, exact) << method;
+    EXPECT_THAT(forces, ::testing::Pointwise(::testing::DoubleNear(kNear), exact)) << method;
   }
 }
 
-TEST(Simulate, WritesTheSameToAFileAsToStdout) {
-  const TemporaryDirectory directory;
-  const std::string path = (directory.path() / "loop.csv").string();
-  const Words words = {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1"};
-  Words to_file = words;
-  to_file.insert(to_file.end(), {"-o", path});
-  const Outcome outcome = RunCommand(to_file);
-  EXPECT_EQ(outcome.status, cli::kDone);
-  EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_EQ(FileContent(path), RunCommand(words).out);
-}
-
-double Value(const json& contact, const char* section, const char* name) {
-  return contact.at(section).at(name).at("value");
+TEST_F(Simulate, KnowsSpringAndCoulombAsModels) {
+  const std::string command = kUnit + "--amplitude 1.2 --samples-per-cycle 4 --model ";
+  const std::vector<double> spring = Forces(command + "spring");
+  ASSERT_THAT(spring, SizeIs(5));
+  EXPECT_EQ(spring[1], 1.2);
+  EXPECT_EQ(spring[3], -1.2);
+  EXPECT_THAT(Forces(command + "coulomb"), ElementsAre(0, 1, -1, -1, 1));
 }
 
 TEST(Contact, OfMaterialsAndRadiiFollowsHertzAndMindlin) {
-  const Outcome outcome =
-      RunCommand({"contact", "--friction", "0.4", "--normal-load", "25", "--youngs-modulus-1",
-                  "210e9", "--poisson-1", "0.3", "--radius-1", "0.01", "--youngs-modulus-2", "70e9",
-                  "--poisson-2", "0.34", "--radius-2", "-0.03", "--json", "-"});
-  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
-  const json contact = outcome.Json();
+  const json contact = JsonOf(
+      "contact --friction 0.4 --normal-load 25 --youngs-modulus-1 210e9 --poisson-1 0.3 "
+      "--radius-1 0.01 --youngs-modulus-2 70e9 --poisson-2 0.34 --radius-2 -0.03");
   const double effective_modulus = 1 / ((1 - 0.09) / 210e9 + (1 - 0.34 * 0.34) / 70e9);
   const double equivalent_radius = 1 / (1 / 0.01 - 1 / 0.03);
   const double radius = std::cbrt(3 * 25 * equivalent_radius / (4 * effective_modulus));
   const double compliance = 1.7 * 2 * 1.3 / 210e9 + 1.66 * 2 * 1.34 / 70e9;  // (2−ν)/G, G=E/2(1+ν)
-  EXPECT_NEAR(Value(contact, "contact", "effective_modulus") / effective_modulus, 1, kRounding);
-  EXPECT_NEAR(Value(contact, "contact", "equivalent_radius") / equivalent_radius, 1, kRounding);
-  EXPECT_NEAR(Value(contact, "contact", "contact_radius") / radius, 1, kRounding);
-  EXPECT_NEAR(Value(contact, "contact", "compliance") / compliance, 1, kRounding);
-  EXPECT_NEAR(Value(contact, "contact", "approach") / (radius * radius / equivalent_radius), 1,
-              kRounding);
-  EXPECT_NEAR(Value(contact, "parameters", "sigma") / (8 * radius / compliance), 1, kRounding);
-  EXPECT_NEAR(Value(contact, "parameters", "slip_force") / 10, 1, kRounding);
+  for (const auto& [name, expected] : {std::pair("effective_modulus", effective_modulus),
+                                       {"equivalent_radius", equivalent_radius},
+                                       {"contact_radius", radius},
+                                       {"compliance", compliance},
+                                       {"approach", radius * radius / equivalent_radius}}) {
+    EXPECT_NEAR(contact["contact"][name]["value"].get<double>() / expected, 1, kRounding) << name;
+  }
+  EXPECT_NEAR(Value(contact, "sigma") / (8 * radius / compliance), 1, kRounding);
+  EXPECT_NEAR(Value(contact, "slip_force") / 10, 1, kRounding);
 }
 
 TEST(Contact, PrintsEveryQuantityWithItsUnitAndDefinition) {
-  const Outcome outcome = RunCommand({"contact", "--friction", "0.3", "--normal-load", "100",
-                                      "--contact-radius", "1e-3", "--compliance", "4e-11"});
-  EXPECT_EQ(outcome.status, cli::kDone);
-  for (const char* text : {"sigma", "N/m", "8a/G*", "a compliance", "1/Pa", "Tc = mu N"}) {
-    EXPECT_THAT(outcome.out, HasSubstr(text));
+  const std::string text =
+      Done("contact --friction 0.3 --normal-load 100 --contact-radius 1e-3 --compliance 4e-11").out;
+  for (const char* part : {"sigma", "N/m", "8a/G*", "a compliance", "1/Pa", "Tc = mu N"}) {
+    EXPECT_THAT(text, HasSubstr(part));
   }
 }
 
 TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
-  const Outcome outcome = RunCommand({"validate", "--cases", "14", "--json", "-"});
-  EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
-  const json report = outcome.Json();
+  const json report = JsonOf("validate --cases 14");
   EXPECT_EQ(report["schema"], "mindahl.validate/1");
   EXPECT_EQ(report["passed"], true);
   EXPECT_EQ(report["failures"], 0);
   EXPECT_EQ(report["cases"], 14);
   EXPECT_EQ(report["fits"], 2 * 14 * 4) << "two laws, four noise levels";
-  for (const char* rows : {"rows", "dahl_rows"}) {
-    int fits = 0;
-    for (const json& row : report[rows]) fits += row["cases"].get<int>();
-    EXPECT_EQ(fits, 14 * 4) << rows;
-  }
   ASSERT_EQ(report["coverage"].size(), 2U * 3U) << "two laws, three parameters";
   for (const json& verdict : report["coverage"]) {
     EXPECT_EQ(verdict["passed"], true) << verdict;
@@ -191,12 +149,41 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
 }
 
 TEST(Validate, PrintsATableAndTheVerdict) {
-  const Outcome outcome = RunCommand({"validate", "--cases", "1", "--seed", "9"});
-  EXPECT_EQ(outcome.status, cli::kDone);
+  const Outcome outcome = Done("validate --cases 1 --seed 9");
   EXPECT_THAT(outcome.out, HasSubstr("seed 9"));
   EXPECT_THAT(outcome.out, HasSubstr("by Dahl's own law, and translated"));
   EXPECT_THAT(outcome.out, HasSubstr("passed: every case within its tolerance"));
   EXPECT_EQ(outcome.err, "") << "no terminal that progress is shown on";
+}
+
+TEST_F(Tradeoff, WritesTableCsvAndPlot) {
+  const std::string text = Done("tradeoff --excitation micro --csv " + Path("points.csv") +
+                                " --plot " + Path("points.svg"))
+                               .out;
+  EXPECT_THAT(text,
+              AllOf(HasSubstr(": mindlin by exact, "), HasSubstr("\n  simplified-dahl  exact ")));
+  EXPECT_THAT(Lines(FileContent(Path("points.csv"))), SizeIs(1 + 6 + 15));
+  EXPECT_THAT(FileContent(Path("points.svg")), HasSubstr("<svg"));
+}
+
+TEST_F(Tradeoff, NamesTheCheapestAlongAPath) {
+  const auto cheapest = [&](const std::string& lambda) {
+    // The column is found by its name, whichever it is.
+    std::string path;
+    for (const auto& cells : testing::Rows(Done(kUnit + "--cycles 3 --lambda " + lambda).out)) {
+      path += cells[2] + "," + cells[1] + "\n";
+    }
+    return Lines(
+        Done("tradeoff --sigma 1 --slip-force 1 --tolerance 1% --path " + Write("path.csv", path))
+            .out);
+  };
+  EXPECT_THAT(cheapest("1e-3"),
+              AllOf(Contains(StartsWith("cheapest within 1 % of the peak force: spring, 1.5 ns")),
+                    Contains(StartsWith("and of the dissipated energy: mindlin by exact"))));
+  EXPECT_THAT(cheapest("1e6"),
+              Contains(StartsWith("cheapest within 1 % of the peak force: coulomb")));
+  EXPECT_THAT(cheapest("0.8"),
+              Contains(HasSubstr("mindlin by exact, 8.2 ns/sample: nothing cheaper")));
 }
 
 }  // namespace

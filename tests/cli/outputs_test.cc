@@ -1,125 +1,115 @@
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "cli/command_line.h"
-#include "io/temporary_directory.h"
-#include "support/prelude.h"
+#include "cli/output.h"
+#include "io/source.h"
+#include "support/text.h"
 
-// Where results go: no output replaces an input or another output, and what cannot be written is an
-// error that is said.
+// Where results go: no output replaces an input or another output, what cannot be written is an
+// error that is said, and --report writes pages for people.
 namespace mindahl::cli::outputs_test {
 namespace {
 
-using Words = std::vector<std::string>;
+using Outputs = CommandTest;
+using ReportPage = CommandTest;
 
-class Outputs : public ::testing::Test {
- protected:
-  std::string At(const char* name) const { return (directory_.path() / name).string(); }
-
-  std::string Copy(const char* name) const {
-    return directory_.Write(name, FileContent(SampleRecord())).string();
-  }
-
-  static void ExpectRefused(const Words& words, const std::string& message) {
-    const Outcome outcome = RunCommand(words);
-    EXPECT_EQ(outcome.status, cli::kBadInput) << message;
-    EXPECT_THAT(outcome.out, IsEmpty());
-    ASSERT_THAT(outcome.Errors(), SizeIs(1)) << outcome.err;
-    EXPECT_THAT(outcome.Errors().front(), HasSubstr(message));
-  }
-
-  TemporaryDirectory directory_;
-};
-
-TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
+TEST_F(Outputs, AreNotWrittenOverWhatIsReadUnderAnyName) {
   const std::string record = Copy("loop.csv");
   const std::string content = FileContent(record);
-  std::filesystem::create_symlink(record, At("link.csv"));
-  std::filesystem::create_hard_link(record, At("hard.csv"));
-  for (const char* option : {"--json", "--residuals"}) {
-    for (const std::string& path : {record, At("./loop.csv"), At("link.csv"), At("hard.csv")}) {
-      ExpectRefused({"fit", record, option, path}, "which it would replace");
+  std::filesystem::create_symlink(record, Path("link.csv"));
+  std::filesystem::create_hard_link(record, Path("hard.csv"));
+  for (const std::string& fit : {"fit " + record + " --json ", "fit " + record + " --residuals "}) {
+    for (const char* name : {"loop.csv", "./loop.csv", "link.csv", "hard.csv"}) {
+      ExpectRefused(fit + Path(name), "which it would replace");
     }
   }
+  ExpectRefused("batch " + record + " --output " + record, "");
   EXPECT_EQ(FileContent(record), content);
-}
+  ExpectRefused("fit " + record + " " + record, "are one file");
+  ExpectRefused("fit " + record + " " + Path("link.csv"), "are one file");
 
-TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
-  const std::string path = directory_.Write("path.csv", "x [m]\n0\n1e-6\n0\n").string();
-  const Words law = {"--sigma", "4e7", "--slip-force", "40", "--path", path};
-  for (const Words& words :
-       std::vector<Words>{{"simulate", "-o", path}, {"tradeoff", "--csv", path}}) {
-    Words all = words;
-    all.insert(all.end(), law.begin(), law.end());
-    ExpectRefused(all, "which it would replace");
+  const std::string path = Write("path.csv", "x [m]\n0\n1e-6\n0\n");
+  for (const char* command : {"simulate -o ", "tradeoff --csv "}) {
+    ExpectRefused((command + path + " --path " + path) + kMindlinOptions, "which it would replace");
   }
-  const std::string config = directory_.Write("fit.toml", "model = \"mindlin\"\n").string();
-  ExpectRefused({"fit", SampleRecord(), "--config", config, "--json", config},
+  const std::string config = Write("fit.toml", "model = \"mindlin\"\n");
+  ExpectRefused("fit " + SampleRecord() + " --config " + config + " --json " + config,
                 "which it would replace");
   EXPECT_EQ(FileContent(config), "model = \"mindlin\"\n");
 }
 
 TEST_F(Outputs, AreNotWrittenOverEachOther) {
-  ExpectRefused({"fit", SampleRecord(), "--json", At("out"), "--residuals", At("./out")},
-                "--json and --residuals both write to");
-  ExpectRefused({"tradeoff", "--csv", At("out.svg"), "--plot", At("out.svg")},
+  ExpectRefused(
+      "fit " + SampleRecord() + " --json " + Path("out") + " --residuals " + Path("./out"),
+      "--json and --residuals both write to");
+  ExpectRefused("tradeoff --csv " + Path("out.svg") + " --plot " + Path("out.svg"),
                 "--csv and --plot both write to");
   EXPECT_EQ(directory_.FileCount(), 0u);
+  Done("fit " + SampleRecord() + " --json /dev/null --residuals /dev/null");
 }
 
-TEST_F(Outputs, MayShareTheNullDevice) {
-  const Outcome outcome =
-      RunCommand({"fit", SampleRecord(), "--json", "/dev/null", "--residuals", "/dev/null"});
-  EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
-}
-
-TEST_F(Outputs, AreNotMadeOfOneFileGivenTwice) {
-  const std::string record = Copy("loop.csv");
-  std::filesystem::create_symlink(record, At("link.csv"));
-  ExpectRefused({"fit", record, record}, "are one file");
-  ExpectRefused({"fit", record, At("link.csv")}, "are one file");
-}
-
-/// The status of a command whose standard output takes nothing, with its messages.
-Outcome RunInto(std::ostream& out, Words words) {
-  words.insert(words.begin(), "mindahl");
-  std::vector<const char*> argv;
-  for (const std::string& word : words) argv.push_back(word.c_str());
-  std::ostringstream err;
-  Outcome outcome;
-  outcome.status = cli::Run(static_cast<int>(argv.size()), argv.data(), out, err);
-  outcome.err = err.str();
-  return outcome;
-}
-
-TEST_F(Outputs, OnStandardOutputThatIsFullOrClosedAreAnError) {
-  const std::vector<Words> commands = {
-      {"--help"},
-      {"--version"},
-      {"fit", "--help"},
-      {"fit", SampleRecord()},
-      {"fit", SampleRecord(), "--json", "-"},
-      {"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1"},
-      {"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1", "--cycles", "500"},
-      {"contact", "--friction", "0.3", "--normal-load", "1", "--contact-radius", "1e-4",
-       "--compliance", "4e-11"}};
-  for (const Words& words : commands) {
-    SCOPED_TRACE(::testing::PrintToString(words));
+TEST(StandardOutput, ThatIsFullOrClosedIsAnError) {
+  for (const std::string command : {"--help", "--version", "fit --help",
+                                    "contact --friction 0.3 --normal-load 1 "
+                                    "--contact-radius 1e-4 --compliance 4e-11"}) {
+    SCOPED_TRACE(command);
     std::ofstream full("/dev/full");
     ASSERT_TRUE(full.is_open());
-    const Outcome on_full_disk = RunInto(full, words);
-    EXPECT_EQ(on_full_disk.status, cli::kBadInput);
+    const Outcome on_full_disk = RunCommand(command, &full);
+    EXPECT_EQ(on_full_disk.status, kBadInput);
     EXPECT_THAT(on_full_disk.err, HasSubstr("cannot write to standard output: No space left"));
     std::ofstream closed;
-    const Outcome on_closed = RunInto(closed, words);
-    EXPECT_EQ(on_closed.status, cli::kBadInput);
+    const Outcome on_closed = RunCommand(command, &closed);
+    EXPECT_EQ(on_closed.status, kBadInput);
     EXPECT_THAT(on_closed.err, HasSubstr("cannot write to standard output"));
   }
-  const Outcome to_file = RunCommand({"fit", SampleRecord(), "--json", "/dev/full"});
-  EXPECT_EQ(to_file.status, cli::kBadInput) << "or the two differ";
+  for (const Words& words :
+       {Words("fit " + SampleRecord()), Words("fit --json - " + SampleRecord()),
+        "simulate --lambda 1" + kMindlinOptions,
+        "simulate --lambda 1 --cycles 500" + kMindlinOptions}) {
+    std::ofstream full("/dev/full");
+    EXPECT_EQ(RunCommand(words, &full).status, kBadInput) << ::testing::PrintToString(words);
+  }
+  EXPECT_EQ(RunCommand("fit " + SampleRecord() + " --json /dev/full").status, kBadInput);
+}
+
+TEST_F(ReportPage, OfAFitSaysTheVerdictAndWhatItWasMadeFrom) {
+  const std::string record = Copy("it's <loop>.csv");
+  const std::string config = Write("fit.toml", "terms = \"force_drift\"\n");
+  Done({"--config", config, "fit", record, "--normal-load", "50", "--report", Path("out.html")});
+  const std::string page = testing::Unbroken(FileContent(Path("out.html")));
+  EXPECT_THAT(page, HasSubstr("<h1>it&#39;s &lt;loop&gt;.csv: adequate</h1>"));
+  EXPECT_THAT(page, Not(HasSubstr("<loop>")));
+  EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(record)));
+  EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(config)));
+  EXPECT_THAT(page, HasSubstr("--normal-load 50 --report"));
+  EXPECT_THAT(page,
+              HasSubstr("<th scope=\"row\">--terms</th><td class=\"words\">force_drift</td>"));
+}
+
+TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
+  std::filesystem::create_directory(Path("a"));
+  std::filesystem::create_directory(Path("b"));
+  const std::string broken = Write("index.csv", "x,F\n1,none\n");
+  const Outcome outcome =
+      RunCommand({"batch", Copy("a/loop.csv"), Copy("b/loop.csv"), broken, "--model", "mindlin",
+                  "--output", Path("table.csv"), "--report", Path("pages")});
+  EXPECT_EQ(outcome.status, kNotEstablished) << outcome.err;
+  const std::string index = FileContent(Path("pages/index.html"));
+  EXPECT_THAT(index, HasSubstr("<h1>2 of 3 files fitted</h1>"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"loop.html\">"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"loop-2.html\">"));
+  EXPECT_THAT(index, HasSubstr("(column 2) holds no numbers"));
+  EXPECT_FALSE(std::filesystem::exists(Path("pages/index-2.html")));
+}
+
+TEST(ShellWord, IsQuotedWhereAShellWouldTakeItApart) {
+  EXPECT_EQ(ShellWord("loop_1.csv"), "loop_1.csv");
+  EXPECT_EQ(ShellWord("my loop.csv"), "'my loop.csv'");
+  EXPECT_EQ(ShellWord("it's"), "'it'\\''s'");
+  EXPECT_EQ(ShellWord(""), "''");
+  EXPECT_EQ(ShellWord("$(rm)"), "'$(rm)'");
 }
 
 }  // namespace

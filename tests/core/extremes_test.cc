@@ -21,11 +21,5 @@ TEST(Extremes, AreFoundWhereverTheyLie) {
   }
 }
 
-TEST(Extremes, OfOneValueAreThatValue) {
-  const std::vector<double> values = {-0.25};
-  EXPECT_EQ(ExtremesOf(values).least, -0.25);
-  EXPECT_EQ(ExtremesOf(values).greatest, -0.25);
-}
-
 }  // namespace
 }  // namespace mindahl::extremes_test

@@ -5,64 +5,66 @@
 namespace mindahl::units_test {
 namespace {
 
-TEST(Units, ReadTheSymbolsOfTheCommandLine) {
-  EXPECT_EQ(LengthUnit("m")->ToSi(2.5), 2.5);
-  EXPECT_EQ(LengthUnit("mm")->ToSi(2.5), 2.5e-3);
-  EXPECT_EQ(LengthUnit("um")->ToSi(2.5), 2.5e-6);
-  EXPECT_EQ(LengthUnit("nm")->ToSi(2.5), 2.5e-9);
-  EXPECT_EQ(LengthUnit("in")->ToSi(1.0), 0.0254);
-  EXPECT_EQ(ForceUnit("N")->ToSi(3.0), 3.0);
-  EXPECT_EQ(ForceUnit("kN")->ToSi(3.0), 3e3);
-  EXPECT_EQ(ForceUnit("lbf")->ToSi(1.0), 4.4482216152605);
-  EXPECT_EQ(ForceUnit("kgf")->ToSi(1.0), 9.80665);
-  EXPECT_EQ(TimeUnit("ms")->ToSi(4.0), 4e-3);
-}
+using Lookup = std::optional<Unit> (*)(std::string_view);
 
-TEST(Units, CaseDistinguishesMilliFromMega) {
-  EXPECT_EQ(ForceUnit("mN")->ToSi(1.0), 1e-3);
-  EXPECT_EQ(ForceUnit("MN")->ToSi(1.0), 1e6);
-  EXPECT_FALSE(ForceUnit("n"));
-}
-
-TEST(Units, AMicronIsAMicrometre) {
-  for (const char* name : {"micron", "microns"}) {
-    EXPECT_EQ(LengthUnit(name)->ToSi(2.5), 2.5e-6);
-    EXPECT_EQ(LengthUnit(name)->symbol, "um");
+TEST(Units, AreFoundByTheirNamesAndConverted) {
+  struct Row {
+    Lookup unit_of;
+    std::string name;
+    double number, in_si;
+    std::string symbol = {};  // where it is not the name
+  };
+  constexpr double kPi = std::numbers::pi;
+  for (const Row& row : std::vector<Row>{{LengthUnit, "m", 2.5, 2.5},
+                                         {LengthUnit, "mm", 2.5, 2.5e-3},
+                                         {LengthUnit, "nm", 2.5, 2.5e-9},
+                                         {LengthUnit, "in", 1.0, 0.0254},
+                                         // Rounded once, by an exact million: 2.3 * 1e-6 misses it.
+                                         {LengthUnit, "um", 2.3, 2.3e-6},
+                                         {LengthUnit, "micron", 2.5, 2.5e-6, "um"},
+                                         {LengthUnit, "microns", 2.5, 2.5e-6, "um"},
+                                         {LengthUnit, "\u00b5m", 1.0, 1e-6, "um"},
+                                         {LengthUnit, "\u03bcm", 1.0, 1e-6, "um"},
+                                         {ForceUnit, "N", 3.0, 3.0},
+                                         {ForceUnit, "kN", 3.0, 3e3},
+                                         {ForceUnit, "mN", 1.0, 1e-3},
+                                         {ForceUnit, "MN", 1.0, 1e6},
+                                         {ForceUnit, "\u00b5N", 1.0, 1e-6, "uN"},
+                                         {ForceUnit, "lbf", 1.0, 4.4482216152605},
+                                         {ForceUnit, "kip", 1.0, 4448.2216152605},
+                                         {ForceUnit, "kgf", 1.0, 9.80665},
+                                         {TimeUnit, "ms", 4.0, 4e-3},
+                                         {AngleUnit, "rad", 2.0, 2.0},
+                                         {AngleUnit, "deg", 180.0, kPi},
+                                         {AngleUnit, "°", 180.0, kPi, "deg"},
+                                         {AngleUnit, "rev", 1.0, 2 * kPi},
+                                         {TorqueUnit, "N m", 3.0, 3.0},
+                                         {TorqueUnit, "Nm", 3.0, 3.0, "N m"},
+                                         {TorqueUnit, "N·m", 3.0, 3.0, "N m"},
+                                         {TorqueUnit, "N*m", 3.0, 3.0, "N m"},
+                                         {TorqueUnit, "N-m", 3.0, 3.0, "N m"},
+                                         {TorqueUnit, "Nmm", 3.0, 3e-3, "N mm"},
+                                         {TorqueUnit, "mNm", 3.0, 3e-3, "mN m"},
+                                         {TorqueUnit, "\u00b5N m", 3.0, 3e-6, "uN m"}}) {
+    const std::optional<Unit> unit = row.unit_of(row.name);
+    ASSERT_TRUE(unit) << row.name;
+    EXPECT_EQ(unit->ToSi(row.number), row.in_si) << row.name;
+    EXPECT_EQ(unit->symbol, row.symbol.empty() ? row.name : row.symbol);
   }
-  EXPECT_FALSE(ForceUnit("micron"));
 }
 
-TEST(Units, BothMicroSignsAreMicro) {
-  EXPECT_EQ(LengthUnit("\u00b5m")->ToSi(1.0), 1e-6);
-  EXPECT_EQ(LengthUnit("\u03bcm")->ToSi(1.0), 1e-6);
-  EXPECT_EQ(ForceUnit("\u00b5N")->ToSi(1.0), 1e-6);
-}
-
-TEST(Units, MicrometresDivideByAnExactMillion) {
-  // The quotient is rounded once; multiplying by the inexact 1e-6 misses it.
-  EXPECT_EQ(LengthUnit("um")->ToSi(2.3), 2.3e-6);
-  EXPECT_NE(2.3 * 1e-6, 2.3e-6);
-}
-
-TEST(Units, AnglesAndTorquesAreRecognised) {
-  EXPECT_EQ(AngleUnit("rad")->ToSi(2.0), 2.0);
-  EXPECT_EQ(AngleUnit("deg")->ToSi(180.0), std::numbers::pi);
-  EXPECT_EQ(AngleUnit("°")->ToSi(180.0), std::numbers::pi);
-  EXPECT_EQ(AngleUnit("rev")->ToSi(1.0), 2 * std::numbers::pi);
-  EXPECT_FALSE(AngleUnit("m"));
-  for (const char* symbol : {"N m", "Nm", "N·m", "N*m", "N-m"}) {
-    ASSERT_TRUE(TorqueUnit(symbol)) << symbol;
-    EXPECT_EQ(TorqueUnit(symbol)->symbol, "N m");
-    EXPECT_EQ(TorqueUnit(symbol)->ToSi(3.0), 3.0);
+TEST(Units, AreNotThoseOfAnotherKind) {
+  for (const auto& [unit_of, name] : {std::pair<Lookup, const char*>(LengthUnit, "furlong"),
+                                      {LengthUnit, "N"},
+                                      {ForceUnit, "n"},
+                                      {ForceUnit, "Nm"},
+                                      {ForceUnit, "micron"},
+                                      {AngleUnit, "m"},
+                                      {TorqueUnit, "N"},
+                                      {TorqueUnit, "m"},
+                                      {TimeUnit, ""}}) {
+    EXPECT_FALSE(unit_of(name)) << name;
   }
-  EXPECT_EQ(TorqueUnit("Nmm")->ToSi(3.0), 3e-3);
-  EXPECT_EQ(TorqueUnit("mNm")->ToSi(3.0), 3e-3);
-  EXPECT_EQ(TorqueUnit("\u00b5N m")->ToSi(3.0), 3e-6);
-  EXPECT_FALSE(TorqueUnit("N"));
-  EXPECT_FALSE(TorqueUnit("m"));
-}
-
-TEST(Units, PressuresAreRecognisedAsNoForce) {
   for (const char* symbol : {"bar", "mbar", "Pa", "hPa", "kPa", "MPa", "GPa", "psi"}) {
     EXPECT_TRUE(IsPressureUnit(symbol)) << symbol;
     EXPECT_FALSE(ForceUnit(symbol)) << symbol;
@@ -88,17 +90,6 @@ TEST(ParseQuantity, TakesANumberOrAUnitOfItsKind) {
                                    {"5 N N", "N"}}) {
     EXPECT_FALSE(ParseQuantity(text, unit)) << text;
   }
-}
-
-TEST(Units, AKipIsAThousandPounds) {
-  EXPECT_DOUBLE_EQ(ForceUnit("kip")->ToSi(1.0), 1000 * ForceUnit("lbf")->ToSi(1.0));
-}
-
-TEST(Units, UnknownSymbolsAreNoUnit) {
-  EXPECT_FALSE(LengthUnit("furlong"));
-  EXPECT_FALSE(LengthUnit("N"));
-  EXPECT_FALSE(ForceUnit("Nm"));
-  EXPECT_FALSE(TimeUnit(""));
 }
 
 TEST(Units, ListTheirSymbolsForMessages) {

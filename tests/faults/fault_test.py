@@ -28,23 +28,22 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
 OLD = b"what was there before\n"
 CONTACT = ["--sigma", "5e7", "--slip-force", "60", "--amplitude", "2.5e-6", "--noise-force", "0.5"]
 
 
-class Command:
+class Command(NamedTuple):
     """A command of which `whole` outputs appear whole or not at all, and `table` grows by rows.
 
     Of `parts` files one may fail and the others go on: status 3, and what is written says so.
     """
-
-    def __init__(self, name, words, whole, table=None, parts=0):
-        self.name = name
-        self.words = words
-        self.whole = whole
-        self.table = table
-        self.parts = parts
+    name: str
+    words: list
+    whole: list
+    table: str | None = None
+    parts: int = 0
 
 
 COMMANDS = [
@@ -135,13 +134,10 @@ class Harness:
         for name in command.whole:
             known |= {name, name.split("/")[0]}
             content = (path / name).read_bytes() if (path / name).exists() else None
-            if content == files[name] or (content == OLD and old and done.returncode != 0):
-                continue
-            if content is None and done.returncode != 0:
-                continue
             # Where one of several files fails, the others go on and what is written says so.
-            if command.parts and done.returncode != 0 and content and self.is_whole(
-                    command, name, content):
+            if content == files[name] or done.returncode != 0 and (
+                    content is None or content == OLD and old
+                    or command.parts and content and self.is_whole(command, name, content)):
                 continue
             wrong.append(f"{name} is " + ("absent" if content is None else
                                           f"neither old nor whole, {len(content)} bytes"))

@@ -1,79 +1,54 @@
-#include "fuzz/command_targets.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/app.h"
+#include "core/text.h"
 #include "fuzz/bytes.h"
 #include "fuzz/memory_file.h"
-#include "mindahl/loop/reversals.h"
-#include "mindahl/models/response.h"
+#include "support/histories.h"
 
 namespace mindahl::fuzz {
 namespace {
 
 using Words = std::vector<std::string>;
 
-const std::vector<Words> kOptionsOfBoth = {{},
-                                           {"--model", "mindlin"},
-                                           {"--model", "dahl"},
-                                           {"--model", "jenkins"},
-                                           {"--offsets", "off"},
-                                           {"--terms", "force_drift"},
-                                           {"--rig-stiffness", "1e9"},
-                                           {"--terms", "viscous"},
-                                           {"--terms", "lag"},
-                                           {"--loss", "huber"},
-                                           {"--loss", "tukey"},
-                                           {"--terms", "plateau_slope"},
-                                           {"--initial-state", "virgin"},
-                                           {"--force-sign", "same"},
-                                           {"--force-sign", "opposite"},
-                                           {"--reversal-gate", "0"},
-                                           {"--fix", "alpha=0.5"},
-                                           {"--terms", "auto"},
-                                           {"--force-noise", "0.1"}};
-const std::vector<Words> kOptionsOfFit = {{"--compare"},
-                                          {"--rig-stiffness", "fit"},
-                                          {"--terms", "asymmetry"},
-                                          {"--trim", "off"},
-                                          {"--noise-in", "displacement"},
-                                          {"--initial-state", "steady"},
-                                          {"--normal-load", "20"},
-                                          {"--terms", "slip_position_quadratic"},
-                                          {"--terms", "slip_speed"},
-                                          {"--terms", "ripple"},
-                                          {"--terms", "inertia"},
-                                          {"--fix", "speed_exponent=0.5"},
-                                          {"--covariate", "3=fit"},
-                                          {"--select", "cycles=2:3"},
-                                          {"--terms", "backlash"},
-                                          {"--fix", "backlash=2e-7"},
-                                          {"--rig-stiffness", "1e8+-3%"},
-                                          {"--rig-stiffness", "1e8+-1e7"},
-                                          {"--terms", "slip_trend"},
-                                          {"--terms", "backlash,slip_trend"},
-                                          {"--encoding", "utf-16le"}};
-const std::vector<Words> kOptionsOfTrack = {
-    {"--average", "2"},        {"--every", "3"},           {"--compliance", "4e-11"},
-    {"--broken-rows", "skip"}, {"--fix", "backlash=2e-7"}, {"--rig-stiffness", "1e8+-3%"},
-    {"--terms", "slip_trend"}, {"--encoding", "latin1"}};
+// Options that a run may have, parted by strokes.
+constexpr std::string_view kOptionsOfBoth =
+    " | --model mindlin | --model dahl | --model jenkins | --offsets off"
+    " | --terms force_drift | --rig-stiffness 1e9 | --terms viscous | --terms lag"
+    " | --loss huber | --loss tukey | --terms plateau_slope | --initial-state virgin"
+    " | --force-sign same | --force-sign opposite | --reversal-gate 0 | --fix alpha=0.5"
+    " | --terms auto | --force-noise 0.1";
+constexpr std::string_view kOptionsOfFit =
+    "--compare | --rig-stiffness fit | --terms asymmetry | --trim off"
+    " | --noise-in displacement | --initial-state steady | --normal-load 20"
+    " | --terms slip_position_quadratic | --terms slip_speed | --terms ripple"
+    " | --terms inertia | --fix speed_exponent=0.5 | --covariate 3=fit"
+    " | --select cycles=2:3 | --terms backlash | --fix backlash=2e-7"
+    " | --rig-stiffness 1e8+-3% | --rig-stiffness 1e8+-1e7 | --terms slip_trend"
+    " | --terms backlash,slip_trend | --encoding utf-16le";
+constexpr std::string_view kOptionsOfTrack =
+    "--average 2 | --every 3 | --compliance 4e-11 | --broken-rows skip"
+    " | --fix backlash=2e-7 | --rig-stiffness 1e8+-3% | --terms slip_trend"
+    " | --encoding latin1";
+
+void Append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
 
 /// Appends the options that a byte stands for.
-void AddOptions(Words& words, const std::vector<Words>& more, Bytes& bytes) {
-  const std::size_t chosen = bytes.Byte() % (kOptionsOfBoth.size() + more.size());
-  const Words& options = chosen < kOptionsOfBoth.size() ? kOptionsOfBoth[chosen]
-                                                        : more[chosen - kOptionsOfBoth.size()];
-  words.insert(words.end(), options.begin(), options.end());
+void AddOptions(Words& words, std::string_view more, Bytes& bytes) {
+  std::vector<std::string_view> choices = PartsOf(kOptionsOfBoth, '|');
+  for (const std::string_view options : PartsOf(more, '|')) choices.push_back(options);
+  std::istringstream chosen(std::string(choices[bytes.Byte() % choices.size()]));
+  for (std::string word; chosen >> word;) words.push_back(word);
 }
 
 struct Outcome {
@@ -113,17 +88,11 @@ void RequireFiniteCells(const std::string& table) {
 
 /// Returns the text of a contact's record in m and N, ten samples a cycle, with a noise of 0.05 N.
 std::string RecordOfCycles(int cycles) {
-  constexpr int kSamples = 10;
-  std::vector<double> displacement;
-  for (int i = 0; i < kSamples * cycles; ++i) {
-    displacement.push_back(2e-6 * std::sin(2 * std::numbers::pi * i / kSamples + 0.1));
-  }
-  std::vector<double> force(displacement.size());
-  const models::FrictionModel& model = *models::FindFrictionModel("mindlin");
-  const auto reversals = loop::FindReversals(displacement, 0.0);
-  models::EvaluateForce(
-      model, {.tangential_stiffness = 5e7, .shape_exponent = 1.0 / 3.0, .slip_force = 60},
-      models::MakeLoadingPath(displacement, reversals, model.memory, {}), displacement, force);
+  std::vector<double> displacement = testing::Sine(cycles, 10, 0.1);
+  displacement.pop_back();
+  for (double& value : displacement) value *= 2e-6;
+  const std::vector<double> force =
+      testing::Respond(testing::Model("mindlin"), {5e7, 1.0 / 3.0, 60.0}, displacement);
   std::string text = "displacement [m],force [N]\n";
   for (std::size_t i = 0; i < force.size(); ++i) {
     text += fmt::format("{},{}\n", displacement[i],
@@ -144,18 +113,6 @@ std::vector<std::unique_ptr<MemoryFile>> FilesOf(const std::string& text) {
     begin = end + 1;
   }
   return files;
-}
-
-void Append(Words& words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-}
-
-/// Returns a command and its files, before options that take any number of values.
-Words NamesAfter(const std::string& command,
-                 const std::vector<std::unique_ptr<MemoryFile>>& files) {
-  Words words = {command};
-  for (const auto& file : files) words.push_back(file->name());
-  return words;
 }
 
 std::vector<std::string> LinesOf(const std::string& text) {
@@ -225,7 +182,8 @@ void JoinRecords(Input input) {
   if (is_track) Append(options, {"--output", output.name(), "--overwrite", "--threads", "1"});
   AddOptions(options, is_track ? kOptionsOfTrack : kOptionsOfFit, bytes);
   const auto files = FilesOf(bytes.Text());
-  Words words = NamesAfter(is_track ? "track" : "fit", files);
+  Words words = {is_track ? "track" : "fit"};  // then files, before options that take any number
+  for (const auto& file : files) words.push_back(file->name());
   Append(words, options);
   const Outcome outcome = Run(words);
   RequireFiniteCells(output.Content());

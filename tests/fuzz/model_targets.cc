@@ -1,5 +1,3 @@
-#include "fuzz/model_targets.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -24,6 +24,27 @@ std::span<const Target> Targets();
 /// Returns nullptr where there is none of that name.
 const Target* FindTarget(std::string_view name);
 
+/// Reads a record whole and as a stream, which must agree.
+void ReadRecords(Input input);
+/// Reads a record in an encoding that is given or found; one of ASCII is the same in UTF-16.
+void ReadEncodedRecords(Input input);
+/// Looks up units by any symbol.
+void LookUpUnits(Input input);
+/// Finds reversals under any gate, in one pass and sample by sample, and chooses a gate.
+void FindTurns(Input input);
+/// Evaluates every model of any parameters along any path.
+void EvaluateModels(Input input);
+/// Moves a contact step by step, as EvaluateForce has it.
+void MoveContacts(Input input);
+/// Runs `fit` on any record with some options.
+void FitRecords(Input input);
+/// Runs `track` on any record with some options.
+void TrackRecords(Input input);
+/// Runs `track --resume` on any table: it is completed to the undisturbed one, or left alone.
+void ResumeTables(Input input);
+/// Runs `fit --join` or `track --join` on pieces of a record.
+void JoinRecords(Input input);
+
 /// Ends the program where a property does not hold.
 inline void Require(bool holds, std::string_view property) {
   if (holds) return;

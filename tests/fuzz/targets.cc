@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "fuzz/command_targets.h"
-#include "fuzz/model_targets.h"
 #include "fuzz/target.h"
-#include "fuzz/text_targets.h"
 
 namespace mindahl::fuzz {
 namespace {

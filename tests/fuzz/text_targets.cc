@@ -1,5 +1,3 @@
-#include "fuzz/text_targets.h"
-
 #include <array>
 #include <cmath>
 #include <optional>

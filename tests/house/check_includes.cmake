@@ -48,6 +48,27 @@ foreach(module core contact loop models methods tradeoff convert identification 
         endif()
       endforeach()
     endif()
+    # Each file declares only its module's namespace, mindahl::MODULE or deeper, and core's alone declare
+    # mindahl itself; no file opens another's namespace wide. cli/app.h names a class of CLI11 instead of
+    # including it.
+    set(own "mindahl::${module}(::[a-z_]+)* ")
+    if(module STREQUAL "core")
+      set(own "mindahl ")
+    endif()
+    file(STRINGS ${file} opened REGEX "^ *(inline +)?namespace[^=;]*{")
+    foreach(line IN LISTS opened)
+      if(NOT line MATCHES "^namespace (${own})?{$" AND
+         NOT (line STREQUAL "namespace CLI {" AND file MATCHES "/src/cli/app.h$"))
+        list(APPEND errors "${file}: ${module} must not declare: ${line}")
+      endif()
+    endforeach()
+    if(NOT opened AND NOT file STREQUAL "${SOURCE_DIR}/src/cli/main.cc")
+      list(APPEND errors "${file}: declares no namespace")
+    endif()
+    file(STRINGS ${file} directives REGEX "^ *using namespace ")
+    foreach(line IN LISTS directives)
+      list(APPEND errors "${file}: no using-directive: ${line}")
+    endforeach()
     # A public header that included it would make it every user's.
     file(STRINGS ${file} json REGEX "^#include <nlohmann/")
     if(json AND file MATCHES "/include/mindahl/")

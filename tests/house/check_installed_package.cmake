@@ -115,15 +115,9 @@ endfunction()
 
 # A record with a column of its load, too.
 set(loaded ${user}/loaded.csv)
-file(STRINGS ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv lines)
-set(text "")
-foreach(line IN LISTS lines)
-  if(text STREQUAL "")
-    string(APPEND text "${line},normal load [N]\n")
-  else()
-    string(APPEND text "${line},50.5\n")
-  endif()
-endforeach()
+file(READ ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv text)
+string(REPLACE "\n" ",50.5\n" text "${text}")
+string(REPLACE "force [N],50.5" "force [N],normal load [N]" text "${text}")
 file(WRITE ${loaded} "${text}")
 
 expect_same_json(${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)

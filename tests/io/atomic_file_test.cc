@@ -1,7 +1,5 @@
-#include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <thread>
 
 #include "core/platform.h"
@@ -71,15 +69,6 @@ TEST(AtomicFile, WritesThroughSymbolicLink) {
   EXPECT_EQ(FileContent(path), "new");
 }
 
-TEST(AtomicFile, WritesToNameInWorkingDirectory) {
-  const TemporaryDirectory directory;
-  const auto old_directory = std::filesystem::current_path();
-  std::filesystem::current_path(directory.path());
-  WriteFileAtomically("out", "x");
-  std::filesystem::current_path(old_directory);
-  EXPECT_EQ(FileContent(directory.path() / "out"), "x");
-}
-
 TEST(AtomicFile, WritesStraightToPipeAndDevice) {
   const TemporaryDirectory directory;
   const auto path = directory.path() / "pipe";
@@ -114,24 +103,6 @@ TEST(AtomicFile, SaysWhyItCannotWrite) {
             "cannot write '" + directory.path().string() + "': Is a directory");
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   EXPECT_EQ(refusal("/dev/full"), "cannot write '/dev/full': No space left on device");
-}
-
-TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {
-  const TemporaryDirectory directory;
-  const auto path = directory.Write("out", "old");
-  // A limit on the size of files makes write() fail half-way.
-  rlimit old_limit{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit limit{1000, old_limit.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-  const std::string message =
-      MessageOf<InputError>([&] { WriteFileAtomically(path, std::string(5000, 'x')); });
-  ::setrlimit(RLIMIT_FSIZE, &old_limit);
-  std::signal(SIGXFSZ, old_handler);
-  EXPECT_EQ(message, "cannot write '" + path.string() + "': File too large");
-  EXPECT_EQ(FileContent(path), "old");
-  EXPECT_EQ(directory.FileCount(), 1u);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "mindahl/io/plot.h"
 
 #include <cstdlib>
-#include <set>
 #include <stdexcept>
 
 #include "io/drawing.h"
 #include "support/prelude.h"
+#include "support/text.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::plot_test {
@@ -49,6 +49,15 @@ std::string PathOf(const std::string& svg, const std::string& name) {
   if (at == std::string::npos) return "";
   const std::size_t begin = svg.find(" d=\"", at) + 4;
   return svg.substr(begin, svg.find('"', begin) - begin);
+}
+
+/// Returns the numbers that follow a letter or a blank of a path.
+std::vector<double> NumbersAfter(const std::string& path, char sign) {
+  std::vector<double> numbers;
+  for (std::size_t at = path.find(sign); at != std::string::npos; at = path.find(sign, at + 1)) {
+    numbers.push_back(std::stod(path.substr(at + 1)));
+  }
+  return numbers;
 }
 
 /// Dots that are drawn, each a line of no length.
@@ -121,11 +130,7 @@ TEST(Plot, DrawsAConstantAndAPointAlone) {
 TEST(Plot, PlacesPointsWhereTheirTicsSay) {
   // The point at 5 lies midway between the tics at 0 and 10, by the pixels of the drawing.
   const std::string svg = Svg(OnePanel({"", {0, 5, 10}, {-2, 5, 9}, PlotStyle::kPoints}));
-  const std::string dots = PathOf(svg, "dots");
-  std::vector<double> places;
-  for (std::size_t at = dots.find('M'); at != std::string::npos; at = dots.find('M', at + 1)) {
-    places.push_back(std::stod(dots.substr(at + 1)));
-  }
+  const std::vector<double> places = NumbersAfter(PathOf(svg, "dots"), 'M');
   ASSERT_EQ(places.size(), 3U);
   constexpr double kTenthOfPixel = 0.1;
   EXPECT_NEAR(places[1], (places[0] + places[2]) / 2, kTenthOfPixel);
@@ -133,11 +138,8 @@ TEST(Plot, PlacesPointsWhereTheirTicsSay) {
   // No tic is outside the axes, "M<left> <top>V<bottom>H<right>".
   const std::string axis = PathOf(svg, "axis");
   const std::string grid = PathOf(svg, "grid");
-  for (std::size_t at = 0; at != std::string::npos; at = grid.find('M', at + 1)) {
-    EXPECT_GE(std::stod(grid.substr(at + 1)), std::stod(axis.substr(1)));
-    EXPECT_LE(std::stod(grid.substr(grid.find(' ', at) + 1)),
-              std::stod(axis.substr(axis.find('V') + 1)));
-  }
+  EXPECT_THAT(NumbersAfter(grid, 'M'), Each(::testing::Ge(NumbersAfter(axis, 'M')[0])));
+  EXPECT_THAT(NumbersAfter(grid, ' '), Each(::testing::Le(NumbersAfter(axis, 'V')[0])));
 }
 
 TEST(Plot, PutsLabelsOfMarksWhereTheyHaveRoom) {
@@ -195,13 +197,8 @@ TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
     plot.panels.front().series.push_back(
         {std::to_string(series), {0}, {1.0 * series}, PlotStyle::kMarkers});
   }
-  const std::string svg = Svg(plot);
-  std::set<std::string> looks;  // colour and filling
-  for (std::size_t at = svg.find("class=\"marker"); at != std::string::npos;
-       at = svg.find("class=\"marker", at + 1)) {
-    looks.insert(svg.substr(at, svg.find('"', at + 7) - at));
-  }
-  EXPECT_EQ(looks.size(), 12u);
+  EXPECT_THAT(testing::Matches(Svg(plot), "class=\"marker([^\"]*)\""), SizeIs(12))
+      << "colours and fillings";
 
   PlotPanel shades{"", "", {{"line", {0, 1}, {0, 1}}, {"", {0, 1}, {0, 1}}}};
   for (const double shade : {0.0, 0.5, 1.0}) {
@@ -218,15 +215,8 @@ TEST(Plot, DistinguishesTwelveSeriesAndShadesByPlace) {
 
 TEST(Plot, PutsALongLegendInFurtherRows) {
   Plot plot = OnePanel({"curve 1", {0, 1}, {0, 1}});
-  const auto rows = [&] {
-    const std::string svg = Svg(plot);
-    std::set<std::string> places;  // of groups from the top, that of the axes among them
-    for (std::size_t at = svg.find("<g transform"); at != std::string::npos;
-         at = svg.find("<g transform", at + 1)) {
-      const std::size_t comma = svg.find(',', at);
-      places.insert(svg.substr(comma, svg.find(')', at) - comma));
-    }
-    return places.size();
+  const auto rows = [&] {  // of groups from the top, that of the axes among them
+    return testing::Matches(Svg(plot), "<g transform=\"[^,]*,([^)]*)\\)").size();
   };
   const std::size_t with_one = rows();
   for (int k = 2; k < 20; ++k) {
@@ -246,13 +236,8 @@ TEST(Plot, ThinsLongSeriesAndKeepsTheirPeaks) {
     const std::string drawn = DrawPanel(OnePanel(series).panels.front(), 560, 280, 6000);
     EXPECT_LT(drawn.size(), 250'000u) << "6000 points of some 15 bytes, twice of a band";
     // Under a margin of 5 % the least and greatest are 280/1.1 px apart.
-    double highest = 1e9;
-    double lowest = 0;
-    const std::string path = PathOf(drawn, kind);
-    for (std::size_t at = path.find(' '); at != std::string::npos; at = path.find(' ', at + 1)) {
-      highest = std::min(highest, std::stod(path.substr(at)));
-      lowest = std::max(lowest, std::stod(path.substr(at)));
-    }
+    const std::vector<double> heights = NumbersAfter(PathOf(drawn, kind), ' ');
+    const auto [highest, lowest] = std::ranges::minmax(heights);
     EXPECT_NEAR(lowest - highest, 280 / 1.1, 0.2);
   }
 }

@@ -76,12 +76,8 @@ inline RecordFile Read(const std::string& text, const RecordColumns& columns = {
   return ReadBothWays(directory.Write("loop.csv", text), columns);
 }
 
-inline std::string WithoutDirectory(std::string text, const TemporaryDirectory& directory) {
-  const std::string prefix = directory.path().string() + "/";
-  for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
-    text.erase(at, prefix.size());
-  }
-  return text;
+inline std::string WithoutDirectory(const std::string& text, const TemporaryDirectory& directory) {
+  return Replaced(text, directory.path().string() + "/", "");
 }
 
 /// Returns what is said of a file called loop.csv that is refused, in both ways.

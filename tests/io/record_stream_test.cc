@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "reading.h"
 
 // A stream reads a record in pieces; that it gives what reading whole gives is tested elsewhere.
@@ -31,8 +33,17 @@ TEST(RecordStream, ReadsALongFileInPieces) {
 }
 
 TEST(RecordStream, RefusesAsReadingWholeDoes) {
-  for (const char* row : {"1,2x", "1", "1,", "1,2,3", "1,nan", "1,1e999", "1,0x10"}) {
-    Refusal(fmt::format("x,F\n0,.5\n1.5,3e-3\n{}\n-2,1E5\n3,4\n", row));
+  const auto refusal_of_row = [](const std::string& row) {
+    return Refusal(fmt::format("x,F\n0,.5\n1.5,3e-3\n{}\n-2,1E5\n3,4\n", row));
+  };
+  for (const char* row : {"1", "1,", "1,2,3"}) EXPECT_THAT(refusal_of_row(row), HasSubstr(":4:"));
+  for (const std::string cell :
+       {"2x",         "text", "nan",   "inf", "-inf",  "1e999", "0x10", "0x1p3",
+        "1e",         "--1",  "1.2.3", "1 2", "#N/A",  "#REF!", "null", "1:30",
+        "2024-01-01", "=1+1", "1e5e5", "+-1", "1_000", "\x01"}) {
+    EXPECT_THAT(refusal_of_row("1," + cell), StartsWith("loop.csv:4:2: ")) << cell;
+    if (cell[0] == '#') continue;  // a comment
+    EXPECT_THAT(refusal_of_row(cell + ",1"), StartsWith("loop.csv:4:1: ")) << cell;
   }
   for (const char* text : {"", "x,F\n", "words alone\n", "x\n1\n2\n", "x;F\n0;0.5\n1;3\n2;1,5\n"}) {
     Refusal(text);
@@ -62,32 +73,23 @@ TEST(RecordStream, SkipsBrokenRowsAndCountsThem) {
 
 TEST(RecordStream, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotAllow) {
   constexpr std::size_t kRows = 20'000;  // 300 kB, more than the columns are judged by
-  struct Case {
-    const char* header;
-    const char* row;  // with the displacement in it
-    const char* broken;
-    const char* fault;
-  };
-  for (const Case& at :
-       {Case{"time,x,F", "12:00:00.5,{0},1", "noon,1,2", ":1: 'noon' is not a number"},
-        Case{"x;F", "{0};0,500000000000", "1;1.5", ":2: '1.5' has the decimal mark '.'"},
-        Case{"x [um],F [kN]", "{0},0.500000000000", "1,1e307",
-             ":2: force = 1e+307 kN is too large"}}) {
-    std::string text = fmt::format("{}\n", at.header);
-    for (std::size_t i = 0; i < kRows; ++i) {
-      text += fmt::format(fmt::runtime(at.row), i % 7) + '\n';
-    }
+  // A header, a row with the displacement in it, a broken one, and what is said of that.
+  for (const auto& [header, row, broken, fault] :
+       {std::tuple("time,x,F\n", "12:00:00.5,{},1\n", "noon,1,2\n", ":1: 'noon' is not a number"),
+        {"x;F\n", "{};0,500000000000\n", "1;1.5\n", ":2: '1.5' has the decimal mark '.'"},
+        {"x [um],F [kN]\n", "{},0.500000000000\n", "1,1e307\n",
+         ":2: force = 1e+307 kN is too large"}}) {
+    std::string text = header;
+    for (std::size_t i = 0; i < kRows; ++i) text += fmt::format(fmt::runtime(row), i % 7);
+    text += broken + fmt::format(fmt::runtime(row), 3);
     const TemporaryDirectory directory;
-    const std::filesystem::path path =
-        directory.Write("loop.csv", text + at.broken + '\n' + fmt::format(fmt::runtime(at.row), 3));
-    RecordStream stream(path, kSkipping);
+    RecordStream stream(directory.Write("loop.csv", text), kSkipping);
     Samples samples;
     std::size_t rows = 0;
     while (stream.Next(samples)) rows += samples.size();
-    EXPECT_EQ(rows, kRows + 1) << at.header;
+    EXPECT_EQ(rows, kRows + 1) << header;
     EXPECT_EQ(stream.left_out().count, 1u);
-    EXPECT_THAT(stream.left_out().fault,
-                ::testing::HasSubstr(fmt::format("{}:{}{}", path.string(), kRows + 2, at.fault)));
+    EXPECT_THAT(stream.left_out().fault, HasSubstr(fmt::format("loop.csv:{}{}", kRows + 2, fault)));
   }
 }
 

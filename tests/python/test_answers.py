@@ -81,11 +81,27 @@ def test_validate_is_the_program_s():
     assert list(result.to_pandas("coverage")["parameter"][:3]) == ["sigma", "alpha", "slip_force"]
 
 
-def test_contact_and_convert_are_the_program_s():
-    same_document(mindahl.contact(**CONTACT), "contact", *CONTACT_OPTIONS)
-    for to in ("dahl", "iwan"):
-        converted = mindahl.convert(**LAW, amplitude=1.2e-6, to=to)
-        same_document(converted, "convert", *LAW_OPTIONS, "--amplitude", "1.2e-6", "--to", to)
+@pytest.mark.parametrize("keywords, options", [
+    (CONTACT, CONTACT_OPTIONS),
+    ({"friction": 0.3, "normal_load": 50, "youngs_modulus_1": 2.1e11, "poisson_1": 0.3, "radius_1": 0.01,
+      "youngs_modulus_2": 7e10, "poisson_2": 0.34, "radius_2": float("inf")},
+     ["--friction", "0.3", "--normal-load", "50", "--youngs-modulus-1", "2.1e11", "--poisson-1", "0.3",
+      "--radius-1", "0.01", "--youngs-modulus-2", "7e10", "--poisson-2", "0.34", "--radius-2", "inf"]),
+])
+def test_contact_is_the_program_s(keywords, options):
+    result = mindahl.contact(**keywords)
+    same_document(result, "contact", *options)
+    assert result.parameters.slip_force.value == pytest.approx(15.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "mujoco", "mujoco-joint", "urdf", "sdf"])
+def test_convert_is_the_program_s_and_has_its_lines(to):
+    load = {"normal_load": 100} if to == "lammps" else {}
+    options = [*LAW_OPTIONS, "--amplitude", "1.2e-6", "--to", to, *(["--normal-load", 100] if load else [])]
+    result = mindahl.convert(**LAW, amplitude=1.2e-6, to=to, **load)
+    same_document(result, "convert", *options)
+    assert "\n".join(result.input_lines) + "\n" == program("convert", *options, "--input-lines", "-")
 
 
 BATCH = [SPHERE, DATA / "partial_slip.csv", FAR, DATA / "not_there.csv", DATA / "load_series_20N.csv",
@@ -143,26 +159,6 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
     assert set(table["friction_coefficient"]) == {expected.contact.friction_coefficient.value}
     strict = mindahl.batch([FAR], strict=True, terms="none")
     assert "not established" in strict.faults[str(FAR)]
-
-
-@pytest.mark.parametrize("call, message", [
-    (lambda: mindahl.plan(**LAW), "force_noise missing"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "want: 'alpa' is no parameter"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), "want: 'alpha=much' is no precision"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, initial_state="old"), "initial_state: 'old'"),
-    (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
-    (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' is unknown"),
-    (lambda: mindahl.command("tradeoff", excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
-    (lambda: mindahl.command("validate", cases=0), "cases: '0' is invalid: must be a whole number from 1"),
-    (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
-    (lambda: mindahl.batch([SPHERE], strict="very"), "strict = 'very' is invalid"),
-    (lambda: mindahl.batch([SPHERE], executor=3), "executor: a int has neither"),
-    (lambda: mindahl.command("validate", cases=2).to_pandas("lines"), "table = 'lines' is invalid"),
-])
-def test_what_breaks_a_rule_is_refused_in_one_line(call, message):
-    with pytest.raises(ValueError, match=message) as refused:
-        call()
-    assert "\n" not in str(refused.value)
 
 
 def test_a_keyword_that_fit_has_not_is_refused():

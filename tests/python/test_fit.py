@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import matplotlib
 import numpy as np
@@ -55,6 +56,8 @@ def arrays_of(path):
      ["--rig-stiffness", "1e9", "--terms", "force_drift", "--select", "cycles=1:2"]),
     ({"fix": {"slip_trend": 0.01, "inertia": 0.001, "viscous": 5.0}},
      ["--fix", "slip_trend=0.01", "--fix", "inertia=0.001", "--fix", "viscous=5"]),
+    ({"terms": "asymmetry", "initial_state": "steady", "fix": {"force_offset": 0}},
+     ["--terms", "asymmetry", "--initial-state", "steady", "--fix", "force_offset=0"]),
     ({"time_window": (0.2, 2.5), "loss": "huber", "samples": (1, 400)},
      ["--select", "time=0.2:2.5", "--loss", "huber", "--select", "samples=1:400"]),
 ])
@@ -72,29 +75,22 @@ def test_a_fit_of_a_file_prints_the_program_s_text():
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
-def test_a_load_series_is_one_joint_fit_of_lists_of_arrays():
-    displacement, force, seconds = zip(*(arrays_of(path) for path in SERIES))
-    result = mindahl.fit([{"displacement [m]": x, "force [N]": f, "time [s]": t}
-                          for x, f, t in zip(displacement, force, seconds)], normal_load=LOADS)
-    pairs = mindahl.fit(list(zip(displacement, force)), normal_load=LOADS)
-    assert pairs.sigma.value == result.sigma.value
-    expected = program_json("fit", *SERIES, "--normal-load", ",".join(map(str, LOADS)))
-    assert without_files(result.to_dict()) == without_files(expected)
-    assert result.load_exponent.identifiability == "identifiable"
-    assert [len(residual) for residual in result.residual] == [len(x) for x in displacement]
-    for measured, fitted, residual in zip(force, result.fitted_force, result.residual):
-        # A rounding of the difference, and one of each of its two terms' own storage.
-        rounding = 4 * np.finfo(float).eps * np.abs(measured).max()
-        np.testing.assert_allclose(fitted - measured, residual, rtol=0, atol=rounding)
-
-
-@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
-def test_a_load_series_of_frames_files_and_records_is_the_same():
-    expected = without_files(mindahl.fit(SERIES, normal_load=LOADS).to_dict())
+def test_a_load_series_is_one_joint_fit_of_whatever_holds_its_columns():
+    arrays = [arrays_of(path) for path in SERIES]
+    columns = [{"displacement [m]": x, "force [N]": f, "time [s]": t} for x, f, t in arrays]
     records = [mindahl.read_csv(path) for path in SERIES]
     frames = [pandas.read_csv(path, float_precision="round_trip") for path in SERIES]
-    for sources in (records, frames):
-        assert without_files(mindahl.fit(sources, normal_load=LOADS).to_dict()) == expected
+    expected = without_files(program_json("fit", *SERIES, "--normal-load", ",".join(map(str, LOADS))))
+    for sources in (columns, SERIES, records, frames):
+        result = mindahl.fit(sources, normal_load=LOADS)
+        assert without_files(result.to_dict()) == expected
+    pairs = mindahl.fit([(x, f) for x, f, _ in arrays], normal_load=LOADS)
+    assert pairs.sigma.value == result.sigma.value
+    assert result.load_exponent.identifiability == "identifiable"
+    for (_, force, _), fitted, residual in zip(arrays, result.fitted_force, result.residual, strict=True):
+        # A rounding of the difference, and one of each of its two terms' own storage.
+        rounding = 4 * np.finfo(float).eps * np.abs(force).max()
+        np.testing.assert_allclose(fitted - force, residual, rtol=0, atol=rounding)
 
 
 def test_a_frame_is_read_by_the_names_and_units_of_its_columns(sphere):
@@ -128,26 +124,18 @@ def test_units_that_a_frame_does_not_name_are_warned_of_once(sphere):
         mindahl.fit(displacement, force, time=seconds)
 
 
-def test_columns_that_no_name_tells_are_asked_for_in_keywords():
-    frame = pandas.DataFrame({"a": [0.0, 1.0], "b": [1.0, 2.0], "c": [3.0, 4.0]})
-    with pytest.raises(mindahl.InputError, match="with displacement and that of the force with force, by name or number"):
-        mindahl.fit(frame)
-
-
-def test_a_time_that_runs_backwards_is_refused(sphere):
-    seconds, displacement, force = sphere
-    backwards = seconds.copy()
-    backwards[300:] -= 1.0
-    with pytest.raises(mindahl.InputError, match="time = .* s is before the .* s of the row above"):
-        mindahl.fit(displacement, force, time=backwards)
-
-
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
 def test_what_is_not_known_has_no_number_where_it_is_printed():
     far = mindahl.fit(DATA / "far_from_slip.csv")
     assert not far.alpha.is_known and not far.slip_force.is_known and far.sigma.is_known
     assert repr(far.alpha) == "<mindahl.Parameter alpha: not identifiable>"
     assert str(far.slip_force).startswith("slip_force > 3.2") and "bounded below" in str(far.slip_force)
     assert str(far.sigma).endswith(" N/m, identifiable") and " ± " in str(far.sigma)
+    for said in ("alpha: not identifiable", "slip_force > 3.2", "bounded below", "sigma = 4.84"):
+        assert said in repr(far)
+    assert float(far.sigma) == far.sigma.value
+    with pytest.raises(ValueError, match="alpha: not identifiable: the record determines no value"):
+        float(far.alpha)
     held = mindahl.fit(DATA / "far_from_slip.csv", fix={"alpha": 0.25})
     assert held.alpha.is_known and str(held.alpha) == "alpha = 0.25, held"
 
@@ -174,40 +162,21 @@ def test_what_arrays_are_made_of_does_not_matter(sphere):
         assert mindahl.fit(x, f).to_dict() == expected
 
 
-def test_units_of_arrays_can_be_said(sphere):
-    _, displacement, force = sphere
-    micrometres = mindahl.fit(displacement * 1e6, force, displacement_unit="um")
-    assert micrometres.input.columns.displacement.unit == "um"
-    torsional = mindahl.fit(displacement, force, displacement_unit="rad")
-    assert torsional.sigma.unit == "N m/rad"
-
-
 class ArrayWithAttributes(np.ndarray):
     """An array that states its unit as those of xarray do."""
 
     attrs: dict = {}
 
 
-def test_an_array_states_its_unit_as_an_attribute(sphere):
+def test_units_of_arrays_are_said_or_their_attributes(sphere):
     _, displacement, force = sphere
+    said = mindahl.fit(displacement * 1e6, force, displacement_unit="um")
+    assert said.input.columns.displacement.unit == "um"
     micrometres = (displacement * 1e6).view(ArrayWithAttributes)
     micrometres.attrs = {"units": "um"}
-    result = mindahl.fit(micrometres, force)
-    assert result.input.columns.displacement.unit == "um"
-    expected = mindahl.fit(displacement * 1e6, force, displacement_unit="um")
-    assert result.sigma.value == expected.sigma.value
-
-
-def test_slip_forces_of_either_sense_can_be_fitted(sphere):
-    _, displacement, force = sphere
-    cycled = slice(len(force) // 3, None)  # one that had slipped, and whose force has its zero
-    result = mindahl.fit(displacement[cycled], force[cycled], terms="asymmetry",
-                         initial_state="steady", fix={"force_offset": 0})
-    mean, asymmetry = result.slip_force.value, result.asymmetry.value
-    assert result.contact.slip_force_positive.value == pytest.approx(mean * (1 + asymmetry))
-    assert result.contact.slip_force_negative.value == pytest.approx(mean * (1 - asymmetry))
-    with pytest.raises(ValueError, match="cannot be distinguished from force_offset"):
-        mindahl.fit(displacement[cycled], force[cycled], terms="asymmetry", initial_state="steady")
+    stated = mindahl.fit(micrometres, force)
+    assert stated.input.columns.displacement.unit == "um" and stated.sigma == said.sigma
+    assert mindahl.fit(displacement, force, displacement_unit="rad").sigma.unit == "N m/rad"
 
 
 def test_a_further_array_can_be_a_covariate(sphere):
@@ -215,9 +184,8 @@ def test_a_further_array_can_be_a_covariate(sphere):
     pressure = np.sin(np.arange(len(force)) / 7.0)
     factor = 2.0
     columns = {"x [m]": displacement, "F [N]": force + factor * pressure, "pressure": pressure}
-    result = mindahl.fit(columns, covariate="pressure")
+    fitted = mindahl.fit(columns, covariate="pressure").covariate_pressure
     # The truth lies within five standard errors but once in two million.
-    fitted = result.covariate_pressure
     assert abs(fitted.value - factor) < 5 * fitted.standard_error
 
 
@@ -240,13 +208,10 @@ def test_attributes_are_the_report_s(sphere):
     assert result.sigma.value > 0
 
 
-def test_fitted_force_less_measured_is_the_residual(sphere):
+def test_fitted_force_and_residual_are_read_only(sphere):
     _, displacement, force = sphere
     result = mindahl.fit(displacement, force)
     np.testing.assert_array_equal(result.records[0].force, force)
-    # A rounding of the difference, and one of each of its two terms' own storage.
-    rounding = 4 * np.finfo(float).eps * np.abs(force).max()
-    np.testing.assert_allclose(result.fitted_force - force, result.residual, rtol=0, atol=rounding)
     with pytest.raises(ValueError, match="read-only"):
         result.residual[0] = 0.0
 
@@ -273,6 +238,12 @@ def test_arrays_outlive_their_result(sphere):
     (([0.0, 1.0, 0.0], None), "force is missing"),
     ((None, None), "a record is missing"),
     ((42, [1.0]), "."),
+    (([0, 1, 2], np.ma.masked_array([0.0, 1, 2], [False, True, False])), "force has masked values"),
+    (({"a": [0.0, 1.0], "b": [1.0, 2.0], "c": [3.0, 4.0]},),
+     "with displacement and that of the force with force, by name or number"),
+    (({"t [s]": [0.0, 1, 0.5], "x [m]": [0.0, 1, 0], "F [N]": [0.0, 1, 2]},),
+     "time = 0.5 s is before the 1 s of the row above"),
+    (({"x [m]": [0.0, 1, 2], "F [N]": [0.0, np.nan, 2]},), "record:2:2: holds no number"),
 ])
 def test_what_is_no_record_is_refused_in_one_line(arguments, message):
     with pytest.raises(ValueError, match=message) as refused:
@@ -282,23 +253,15 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
 
 @pytest.mark.parametrize("keywords, message", [
     ({"model": "coulomb"}, "model: 'coulomb' is unknown: must be one of auto, mindlin-dahl"),
-    ({"initial_state": "new"}, "initial_state: 'new' is unknown: must be one of auto, virgin, steady"),
     ({"offsets": "maybe"}, "offsets: 'maybe' is unknown: must be one of on, off"),
-    ({"fix": {"gamma": 1}}, "gamma"),
     ({"fix": {"alpha": "x"}}, "fix: 'x' is not a number: write NAME=VALUE"),
-    ({"rig_stiffness": -1}, r"rig_stiffness \[N/m\] = -1 is invalid"),
     ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "'rig_stiffness' is given twice"),
-    ({"force_noise": 0}, r"force_noise \[N\] = 0 is invalid"),
-    ({"cycles": (3, 2)}, "cycles: '3:2' is empty"),
     ({"cycles": 3}, "cycles: '3' is incomplete: write LO:HI"),
     ({"cycles": (1, 2, 3)}, "must be a number or a pair"),
     ({"normal_load": -5}, r"normal_load \[N\] = -5 is invalid"),
-    ({"normal_load": [1, 2]}, "2 loads for 1 file"),
     ({"normal_load": (50, -1)}, "the standard uncertainty in '50±-1' is -1: must be finite and >= 0"),
     ({"poisson_1": 0.7}, r"poisson_1 \[-\] = 0.7 is invalid"),
-    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown: must be one of refuse, skip"),
     ({"sample_rate": -1}, "sample_rate -1: must be finite and > 0 Hz"),
-    ({"covariate": "pressure"}, "pressure"),
     ({"displacement_unit": "furlong"}, "furlong"),
     ({"time": "t"}, "names a column, but the displacement is an array"),
     ({"time_unit": "ms"}, "no column is recognised as the time"),
@@ -321,14 +284,6 @@ def test_a_fault_of_a_file_is_an_input_error(tmp_path):
         mindahl.read_csv(tmp_path / "none.csv")
 
 
-def test_a_missing_number_in_a_frame_is_named_by_row_and_column(sphere):
-    _, displacement, force = sphere
-    frame = pandas.DataFrame({"x [m]": displacement, "F [N]": force})
-    frame.loc[4:14, "F [N]"] = np.nan
-    with pytest.raises(mindahl.InputError, match="record:5:2: holds no number"):
-        mindahl.fit(frame)
-
-
 def test_what_a_person_should_act_on_is_warned_of():
     with pytest.warns(mindahl.FitWarning) as warned:
         result = mindahl.fit(DATA / "far_from_slip.csv")
@@ -347,8 +302,6 @@ def test_a_prior_is_the_program_s(tmp_path):
     program("fit", path, "--terms", "none", "--prior", f"sigma={value + error!r}±{error!r}",
             "--json", output)
     assert result.to_json() == output.read_text()
-    # A prior as sharp as the record moves the value by half of their distance, but for curvature.
-    assert (result.sigma.value - value) / error == pytest.approx(0.5, abs=0.05)
     with pytest.raises(mindahl.InputError, match="prior: lag is not fitted"):
         mindahl.fit(path, prior={"lag": (1e-3, 1e-4)})
     with pytest.raises(ValueError, match="has no standard uncertainty"):
@@ -426,22 +379,6 @@ def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
     assert html.escape(warned.warnings[0].message.split(": ")[1]) in warned.page()
 
 
-def test_a_short_form_has_no_number_of_what_is_not_identified():
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", mindahl.FitWarning)
-        far = mindahl.fit(DATA / "far_from_slip.csv")
-    assert "alpha: not identifiable" in repr(far)
-    assert "slip_force > 3.2" in repr(far) and "bounded below" in repr(far)
-    assert "sigma = 4.84" in repr(far)
-
-
-def test_masked_values_are_refused(sphere):
-    _, displacement, force = sphere
-    masked = np.ma.masked_array(force, np.abs(force) > 14)
-    with pytest.raises(ValueError, match="force has masked values"):
-        mindahl.fit(displacement, masked)
-
-
 def test_other_threads_run_while_it_fits(sphere):
     """No thread hands over by itself here: another one counts only where the fit lets go."""
     _, displacement, force = sphere
@@ -475,14 +412,8 @@ def test_other_threads_run_while_it_fits(sphere):
 def test_results_of_fits_at_once_are_those_of_one_after_the_other(sphere):
     _, displacement, force = sphere
     expected = mindahl.fit(displacement, force).to_dict()
-    results = []
-    threads = [threading.Thread(
-        target=lambda: results.append(mindahl.fit(displacement, force).to_dict()))
-        for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(2) as pool:
+        results = list(pool.map(lambda _: mindahl.fit(displacement, force).to_dict(), range(2)))
     assert results == [expected, expected]
 
 
@@ -512,7 +443,7 @@ import mindahl
 _, x = mindahl.excitation(amplitude=3e-6, cycles=100, samples_per_cycle=1000)
 force = mindahl.simulate(x, sigma=4e7, slip_force=40.0)
 force += np.random.default_rng(1).normal(0, 0.1, force.size)
-threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 begin = time.monotonic()
 try:
     {call}
@@ -520,4 +451,4 @@ except KeyboardInterrupt:
     print(time.monotonic() - begin)
 """)
     run = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
-    assert 0.9 < float(run.stdout) < 5.0, run.stdout  # all take much longer
+    assert 0.25 < float(run.stdout) < 5.0, run.stdout  # all take much longer

@@ -11,6 +11,8 @@ import mindahl
 from conftest import DATA, program, program_json, read_columns
 
 SIGMA, SLIP_FORCE = 4e7, 40.0
+LAW = {"sigma": SIGMA, "slip_force": SLIP_FORCE}
+SPHERE = DATA / "mindlin_sphere_on_plane.csv"
 
 
 @pytest.fixture(scope="module")
@@ -44,23 +46,25 @@ def assert_same_table(tracked, table):
         np.testing.assert_array_equal(tracked[name], expected, err_msg=name)
 
 
-def test_track_gives_the_program_s_table(long_record, tmp_path):
-    table = table_of(long_record, tmp_path, "--normal-load", 100)
-    tracked = mindahl.track(long_record, normal_load=100)
-    assert len(tracked["cycle"]) == 29
+@pytest.mark.parametrize("keywords, options", [
+    ({"normal_load": 100}, ["--normal-load", 100]),
+    ({"compliance": 4e-11}, ["--compliance", "4e-11"]),
+    ({"average": 2}, ["--average", 2]),
+])
+def test_track_gives_the_program_s_table(long_record, tmp_path, keywords, options):
+    table = table_of(long_record, tmp_path, *options)
+    counts = program_json("track", long_record, "--output", tmp_path / "own.csv", *options)["energy_counts"]
+    tracked = mindahl.track(long_record, **keywords)
     assert_same_table(tracked, table)
+    assert len(tracked["cycle"]) == 29 // keywords.get("average", 1)
+    assert tracked.energy_counts == counts
     assert tracked.units["sigma"] == "N/m"
     assert list(tracked.to_pandas()["cycle"]) == list(tracked["cycle"])
-
-
-def test_track_of_cycles_together_accumulates_the_energy_of_each(long_record, tmp_path):
-    table = table_of(long_record, tmp_path, "--average", 2)
-    tracked = mindahl.track(long_record, average=2)
-    assert_same_table(tracked, table)
-    # Two of 29 cycles a row, each of which dissipates the same but for the noise.
-    single = mindahl.track(long_record)
-    assert len(tracked["cycle"]) == 14
-    assert tracked["accumulated_energy"][-1] == pytest.approx(single["accumulated_energy"][27], rel=0.01)
+    if "compliance" in keywords:
+        assert tracked["contact_radius"] == pytest.approx(tracked["sigma"] * 4e-11 / 8)
+    if "average" in keywords:  # of two cycles a row each dissipates the same but for the noise
+        single = mindahl.track(long_record)
+        assert tracked["accumulated_energy"][-1] == pytest.approx(single["accumulated_energy"][27], rel=0.01)
 
 
 def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
@@ -88,20 +92,6 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     assert not any("step" in line for line in mindahl.track(long_record).changes)
 
 
-def test_track_counts_energies_and_takes_the_contact_as_the_program_does(long_record, tmp_path):
-    expected = program_json("track", long_record, "--output", tmp_path / "own.csv", "--compliance", "4e-11")
-    table = table_of(long_record, tmp_path, "--compliance", "4e-11")
-    tracked = mindahl.track(long_record, compliance=4e-11)
-    assert tracked.energy_counts == expected["energy_counts"]
-    assert tracked.energy_counts["measured"] == len(tracked["cycle"])
-    assert_same_table(tracked, table)
-    assert tracked["contact_radius"] == pytest.approx(tracked["sigma"] * 4e-11 / 8)
-    worn = tmp_path / "untimed.csv"
-    worn.write_text("displacement [m],force [N]\n0,1\n1e-6,2\n")
-    with pytest.raises(ValueError, match="has a time"):
-        mindahl.track([long_record, worn], join=True)
-
-
 def test_excitation_is_the_program_s_waveform():
     for waveform in ("sine", "triangle", "growing-sine", "random", "nested"):
         lines = program("simulate", "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--waveform",
@@ -112,10 +102,6 @@ def test_excitation_is_the_program_s_waveform():
                                                 samples_per_cycle=40, seed=5)
         np.testing.assert_array_equal(time, expected[0])
         np.testing.assert_array_equal(displacement, expected[1])
-    with pytest.raises(mindahl.InputError, match="waveform: 'triangel' is unknown: did you mean 'triangle'"):
-        mindahl.excitation("triangel", amplitude=1e-6)
-    with pytest.raises(ValueError, match="amplitude"):
-        mindahl.excitation(amplitude=-1.0)
 
 
 def test_track_of_arrays_frames_and_files_is_the_same(long_record):
@@ -126,17 +112,6 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
                     mindahl.track(frame, average=2)):
         for name in set(expected) - {"first_line"}:  # a file's first sample is on line 2
             np.testing.assert_array_equal(tracked[name], expected[name], err_msg=name)
-
-
-@pytest.mark.parametrize("keywords, message", [
-    ({"average": 0}, "average: '0' is invalid"),
-    ({"average": 1000}, "fewer than average says"),
-    ({"broken_rows": "mend"}, "broken_rows: 'mend' is unknown"),
-    ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
-])
-def test_track_refuses_what_the_program_refuses(long_record, keywords, message):
-    with pytest.raises(ValueError, match=message):
-        mindahl.track(long_record, **keywords)
 
 
 def test_track_warns_of_rows_that_it_skipped(long_record, tmp_path):
@@ -151,11 +126,6 @@ def test_track_warns_of_rows_that_it_skipped(long_record, tmp_path):
     assert len(tracked["cycle"]) == 29
 
 
-def test_track_says_why_there_is_no_cycle():
-    with pytest.raises(mindahl.InputError, match="record: no whole cycle"):
-        mindahl.track([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.5, 1.6, 1.7])
-
-
 @pytest.mark.parametrize("model", ["mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl"])
 def test_simulate_gives_the_program_s_force(model, tmp_path):
     generator = np.random.default_rng(7)
@@ -165,7 +135,7 @@ def test_simulate_gives_the_program_s_force(model, tmp_path):
     output = tmp_path / "force.csv"
     program("simulate", "--model", model, "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--path",
             path, "-o", output)
-    force = mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
+    force = mindahl.simulate(displacement, **LAW, model=model)
     np.testing.assert_array_equal(force, read_columns(output)[2])
 
 
@@ -173,13 +143,17 @@ def test_a_contact_state_moves_as_simulate_does():
     generator = np.random.default_rng(11)
     displacement = np.cumsum(generator.normal(size=300)) * 3e-7
     for model in ("mindlin-dahl", "dahl", "jenkins"):
-        expected = mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
-        state = mindahl.ContactState(sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
+        expected = mindahl.simulate(displacement, **LAW, model=model)
+        state = mindahl.ContactState(**LAW, model=model)
         moved = [state.move(x) for x in displacement]
         # docs/accuracy.md: below 5e-14 of the slip force after reversals, in either of the two.
         accuracy = 1e-13 * SLIP_FORCE
         np.testing.assert_allclose(moved, expected, rtol=0, atol=accuracy)
         assert state.force == moved[-1] and state.displacement == displacement[-1]
+        assert state.peek(2e-7) == copy.copy(state).move(2e-7)
+        assert state.displacement == displacement[-1]
+        state.reset()
+        assert state.force == 0 and state.tangent_stiffness == SIGMA
 
 
 def test_a_joint_follows_the_torque_that_it_carries():
@@ -195,26 +169,6 @@ def test_a_joint_follows_the_torque_that_it_carries():
     assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9
     with pytest.raises(ValueError, match="load is of model dahl alone"):
         mindahl.simulate(angle, load=torque, sigma=1, slip_force=1)
-
-
-def test_a_contact_state_is_copied_peeked_and_reset():
-    state = mindahl.ContactState(sigma=SIGMA, slip_force=SLIP_FORCE)
-    state.move(5e-7)
-    twin = copy.copy(state)
-    assert state.peek(2e-7) == twin.move(2e-7)
-    assert state.displacement == 5e-7
-    state.reset()
-    assert state.force == 0
-    assert state.tangent_stiffness == SIGMA
-
-
-def test_the_virgin_force_of_mindlin_is_the_closed_form():
-    x = np.linspace(0, 2e-6, 101)
-    force = mindahl.simulate(x, sigma=SIGMA, slip_force=SLIP_FORCE, model="mindlin")
-    share = np.clip(1 - SIGMA * x * (2 / 3) / SLIP_FORCE, 0, None)
-    # Both sides round a few times in numbers of the slip force's size.
-    rounding = 8 * np.finfo(float).eps * SLIP_FORCE
-    np.testing.assert_allclose(force, SLIP_FORCE * (1 - share**1.5), rtol=0, atol=rounding)
 
 
 @pytest.mark.parametrize("call, message", [
@@ -234,36 +188,31 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
      "normal_load has no effect unless to is one of lammps, liggghts, yade"),
+    (lambda: mindahl.track([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.5, 1.6, 1.7]), "record: no whole cycle"),
+    (lambda: mindahl.track(SPHERE, average=0), "average: '0' is invalid"),
+    (lambda: mindahl.track(SPHERE, average=1000), "fewer than average says"),
+    (lambda: mindahl.track(SPHERE, broken_rows="mend"), "broken_rows: 'mend' is unknown"),
+    (lambda: mindahl.track(SPHERE, normal_load=0), r"normal_load \[N\] = 0 is invalid"),
+    (lambda: mindahl.excitation("triangel", amplitude=1e-6),
+     "waveform: 'triangel' is unknown: did you mean 'triangle'"),
+    (lambda: mindahl.excitation(amplitude=-1.0), "amplitude"),
+    (lambda: mindahl.plan(**LAW), "force_noise missing"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "want: 'alpa' is no parameter"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), "want: 'alpha=much' is no precision"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, initial_state="old"), "initial_state: 'old'"),
+    (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' is unknown"),
+    (lambda: mindahl.command("tradeoff", excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
+    (lambda: mindahl.command("validate", cases=0), "cases: '0' is invalid: must be a whole number from 1"),
+    (lambda: mindahl.command("validate", cases=2).to_pandas("lines"), "table = 'lines' is invalid"),
+    (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
+    (lambda: mindahl.batch([SPHERE], strict="very"), "strict = 'very' is invalid"),
+    (lambda: mindahl.batch([SPHERE], executor=3), "executor: a int has neither"),
 ])
 def test_what_breaks_a_rule_is_refused(call, message):
     with pytest.raises(ValueError, match=message) as refused:
         call()
     assert "\n" not in str(refused.value)
-
-
-def test_contact_gives_the_program_s_json():
-    keywords = {"friction": (0.3, 0.01), "normal_load": 50, "youngs_modulus_1": 2.1e11,
-                "poisson_1": 0.3, "radius_1": 0.01, "youngs_modulus_2": 7e10, "poisson_2": 0.34,
-                "radius_2": float("inf")}
-    options = []
-    for name, value in keywords.items():
-        text = "0.3±0.01" if isinstance(value, tuple) else repr(value)
-        options += [f"--{name.replace('_', '-')}", text]
-    result = mindahl.contact(**keywords)
-    assert result.to_dict() == program_json("contact", *options)
-    assert result.parameters.slip_force.value == pytest.approx(15.0, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "mujoco", "mujoco-joint", "urdf", "sdf"])
-def test_convert_gives_the_program_s_json_and_lines(to):
-    options = ["--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--amplitude", 1.2e-6, "--to", to]
-    keywords = {"normal_load": 100} if to == "lammps" else {}
-    options += ["--normal-load", 100] if to == "lammps" else []
-    result = mindahl.convert(sigma=SIGMA, slip_force=SLIP_FORCE, amplitude=1.2e-6, to=to,
-                             **keywords)
-    assert result.to_dict() == program_json("convert", *options)
-    assert "\n".join(result.input_lines) + "\n" == program("convert", *options, "--input-lines", "-")
 
 
 def test_read_csv_converts_units_and_says_what_it_read(tmp_path):
@@ -299,7 +248,7 @@ def test_arrays_are_used_where_they_are():
     displacement = np.linspace(0, 1e-6, 50)
     displacement.setflags(write=False)
     before = displacement.copy()
-    mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE)
+    mindahl.simulate(displacement, **LAW)
     np.testing.assert_array_equal(displacement, before)
     from mindahl._arguments import array
     assert array("displacement", displacement) is displacement

@@ -11,11 +11,7 @@ using testing::kSlipForce;
 using testing::MadeFit;
 using testing::MadeRecord;
 
-const contact::KnownBody kSteel{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
-const contact::KnownBody kPlane{.youngs_modulus = 210e9,
-                                .poisson_ratio = 0.3,
-                                .radius = std::numeric_limits<double>::infinity()};
-const contact::KnownContact kSphere{.normal_load = 50.0, .body_1 = kSteel, .body_2 = kPlane};
+using testing::kSphereOnPlane;
 
 identification::FitResult Fit() { return MadeFit({MadeRecord(2e-6)}, 2e-6); }
 
@@ -31,7 +27,7 @@ TEST(DescribeContact, MapsTheEndsOfTheIntervalOfTheParameter) {
   fit.parameters[0].upper95 = 1.5 * kSigma;
   fit.parameters[2].lower95 = 0.9 * kSlipForce;
   fit.parameters[2].upper95 = 1.05 * kSlipForce;
-  const auto contact = DescribeContact(fit, kSphere);
+  const auto contact = DescribeContact(fit, kSphereOnPlane);
   const auto expect_ends = [&](const char* name, double lower, double upper) {
     const ContactQuantity quantity = Of(contact, name);
     EXPECT_NEAR(*quantity.lower / *quantity.value, lower, kExact) << name;
@@ -46,7 +42,7 @@ TEST(DescribeContact, MapsTheEndsOfTheIntervalOfTheParameter) {
 }
 
 TEST(DescribeContact, AddsTheUncertaintyOfInputsInQuadrature) {
-  contact::KnownContact known = kSphere;
+  contact::KnownContact known = kSphereOnPlane;
   known.normal_load = {50.0, 2.5};  // 5 %
   identification::FitResult fit = Fit();
   fit.parameters[2].lower95 = kSlipForce / 1.1;
@@ -62,7 +58,7 @@ TEST(DescribeContact, GivesNoValueOfAParameterThatIsNotIdentifiable) {
   fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
   fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
   fit.parameters[2].upper95.reset();
-  const auto contact = DescribeContact(fit, kSphere);
+  const auto contact = DescribeContact(fit, kSphereOnPlane);
   for (const ContactQuantity& quantity : contact) {
     EXPECT_EQ(quantity.value.has_value(), quantity.name == "normal_load") << quantity.name;
   }
@@ -74,7 +70,7 @@ TEST(DescribeContact, OfAHeldParameterHasTheUncertaintyOfInputsAlone) {
   fit.parameters[2].status = identification::ParameterStatus::kFixed;
   fit.parameters[2].lower95.reset();
   fit.parameters[2].upper95.reset();
-  const ContactQuantity friction = Of(DescribeContact(fit, kSphere), "friction_coefficient");
+  const ContactQuantity friction = Of(DescribeContact(fit, kSphereOnPlane), "friction_coefficient");
   EXPECT_NEAR(*friction.lower, *friction.value, kExact);
   EXPECT_NEAR(*friction.upper, *friction.value, kExact);
 }
@@ -82,7 +78,7 @@ TEST(DescribeContact, OfAHeldParameterHasTheUncertaintyOfInputsAlone) {
 TEST(DescribeContact, KeepsAnEndOpenThatTheParameterLeavesOpen) {
   identification::FitResult fit = Fit();
   fit.parameters[0].upper95.reset();
-  const auto contact = DescribeContact(fit, kSphere);
+  const auto contact = DescribeContact(fit, kSphereOnPlane);
   EXPECT_FALSE(Of(contact, "contact_radius").upper);
   EXPECT_TRUE(Of(contact, "contact_radius").lower);
   EXPECT_FALSE(Of(contact, "maximum_pressure").lower);
@@ -102,8 +98,7 @@ TEST(DescribeContact, GivesGrossSlipOfMindlinsContactAlone) {
 
 TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {
   identification::FitResult fit = Fit();
-  fit.parameters.push_back(testing::MadeParameter("asymmetry", "-", 0.1, 0.005));
-  fit.correlation.assign(16, 0.0);
+  testing::AddParameter(fit, "asymmetry", "-", 0.1, 0.005);
   const auto contact = DescribeContact(fit, {});
   EXPECT_NEAR(*Of(contact, "slip_force_positive").value, 1.1 * kSlipForce, 1e-9);
   EXPECT_NEAR(*Of(contact, "slip_force_negative").value, 0.9 * kSlipForce, 1e-9);
@@ -113,8 +108,7 @@ TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {
 
 TEST(DescribeContact, GivesNoSlipForceThatThePlateausContradict) {
   identification::FitResult fit = Fit();
-  fit.parameters.push_back(testing::MadeParameter("asymmetry", "-", 0.5, 0.05));
-  fit.correlation.assign(16, 0.0);
+  testing::AddParameter(fit, "asymmetry", "-", 0.5, 0.05);
   loop::LoopFacts& facts = fit.records[0].facts;
   facts.closed = true;
   facts.energy_ratio = 0.95;
@@ -139,8 +133,7 @@ TEST(TestAlpha, RejectsAThirdOutsideTheIntervalAlone) {
 TEST(TheoriesOfLoad, AreThoseWithinTheIntervalOfTheExponent) {
   identification::FitResult fit = Fit();
   EXPECT_THAT(TheoriesOfLoad(fit), IsEmpty());
-  fit.parameters.push_back(testing::MadeParameter("load_exponent", "-", 0.335, 0.01));
-  fit.correlation.assign(16, 0.0);
+  testing::AddParameter(fit, "load_exponent", "-", 0.335, 0.01);
   fit.load_exponent = 0.335;
   EXPECT_THAT(TheoriesOfLoad(fit), Contains("smooth sphere (0.333)"));
   EXPECT_THAT(TheoriesOfLoad(fit), Not(Contains(StartsWith("cone"))));

@@ -13,53 +13,6 @@ using testing::MadeInput;
 
 Json Document(ReportInput input) { return Json::parse(ToJson(MakeReport(std::move(input)))); }
 
-std::vector<std::string> KeysOf(const Json& object) {
-  std::vector<std::string> keys;
-  for (const auto& [key, member] : object.items()) keys.push_back(key);
-  return keys;
-}
-
-TEST(Json, HasTheKeysOfItsSchemaAndNoOther) {
-  const Json document = Document(MadeInput());
-  EXPECT_THAT(KeysOf(document), ElementsAre("schema", "version", "input", "model", "initial_state",
-                                            "parameters", "correlation", "residuals", "solver",
-                                            "adequacy", "measured", "law", "contact", "mapping",
-                                            "terms", "next", "confidence", "warnings", "nulls"));
-  EXPECT_EQ(document["schema"], "mindahl.fit/2");
-  EXPECT_THAT(KeysOf(document["input"]),
-              ElementsAre("files", "columns", "samples", "cycles", "reversals", "left_out"));
-  EXPECT_THAT(KeysOf(document["parameters"]["sigma"]),
-              ElementsAre("value", "unit", "ci95", "standard_error", "status", "identifiability"));
-  EXPECT_THAT(KeysOf(document["contact"]["friction_coefficient"]),
-              ElementsAre("value", "ci95", "unit"));
-}
-
-void Walk(const Json& value, const std::string& path, std::vector<std::string>& nulls) {
-  if (value.is_null()) nulls.push_back(path);
-  if (!value.is_structured()) return;
-  for (const auto& [key, member] : value.items()) {
-    Walk(member,
-         value.is_array() ? path + "[" + key + "]"
-         : path.empty()   ? key
-                          : path + "." + key,
-         nulls);
-  }
-}
-
-TEST(Json, SaysOfEveryNullWhy) {
-  for (const Json& document : {Document(MadeInput()), Document(FailedInput())}) {
-    std::vector<std::string> nulls;
-    Walk(document, "", nulls);
-    std::vector<std::string> said;
-    for (const Json& entry : document["nulls"]) {
-      said.push_back(entry["path"]);
-      EXPECT_NE(entry["why"], "") << entry["path"];
-      EXPECT_NE(entry["why"], "not a finite number") << entry["path"];
-    }
-    EXPECT_EQ(said, nulls);
-  }
-}
-
 TEST(Json, OfAFitThatFailedHasNoNumberOfIt) {
   const Json document = Document(FailedInput());
   EXPECT_THAT(document["parameters"], IsEmpty());
@@ -90,8 +43,7 @@ TEST(Json, NamesTheColumnsThatWereRead) {
 TEST(Json, HasTheNextStepThatWasTried) {
   ReportInput input = MadeInput();
   EXPECT_TRUE(Document(input)["next"].is_null());
-  input.next = {
-      .text = "a lag", .options = "--terms lag", .misfit_before = 0.05, .misfit_after = 0.045};
+  input.next = testing::MadeStep("--terms lag");
   EXPECT_EQ(Document(input)["next"]["options"], "--terms lag");
 }
 

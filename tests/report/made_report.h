@@ -77,6 +77,24 @@ inline identification::FitResult MadeFit(const std::vector<loop::Record>& record
   return fit;
 }
 
+/// Adds one that is not correlated with others.
+inline identification::ParameterEstimate& AddParameter(identification::FitResult& fit,
+                                                       const char* name, const char* unit,
+                                                       double value, double standard_error) {
+  fit.parameters.push_back(MadeParameter(name, unit, value, standard_error));
+  fit.correlation.assign(fit.parameters.size() * fit.parameters.size(), 0.0);
+  return fit.parameters.back();
+}
+
+/// A steel ball on a steel plane.
+inline const contact::KnownContact kSphereOnPlane = [] {
+  contact::KnownContact known{.normal_load = 50.0};
+  known.body_1 = {.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.01};
+  known.body_2 = known.body_1;
+  known.body_2.radius = std::numeric_limits<double>::infinity();
+  return known;
+}();
+
 inline report::ReportInput MadeInput(const std::vector<loop::Record>& records, double amplitude) {
   report::ReportInput input;
   for (const loop::Record& record : records) {
@@ -89,6 +107,14 @@ inline report::ReportInput MadeInput(const std::vector<loop::Record>& records, d
   }
   input.fit = MadeFit(records, amplitude);
   return input;
+}
+
+/// A step that was tried and halves the misfit.
+inline report::NextStep MadeStep(std::string options, std::string text = "") {
+  return {.text = std::move(text),
+          .options = std::move(options),
+          .misfit_before = 0.2,
+          .misfit_after = 0.1};
 }
 
 inline constexpr double kMadeAmplitude = 2e-6;  // [m]

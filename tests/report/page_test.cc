@@ -54,7 +54,7 @@ TEST(Page, EscapesWhatItIsGiven) {
 
 TEST(Page, HasTheCommandOfTheNextStep) {
   ReportInput input = MadeInput();
-  input.next = {.text = "", .options = "--terms lag", .misfit_before = 0.2, .misfit_after = 0.1};
+  input.next = testing::MadeStep("--terms lag");
   EXPECT_THAT(Page(std::move(input), {"mindahl fit a.csv", {}, {}}),
               HasSubstr("mindahl fit a.csv <span class=\"option\">--terms</span> lag"));
 }
@@ -70,8 +70,7 @@ TEST(ToPlot, PutsTheResidualOverTheSameAxis) {
 TEST(ToPlot, CallsRecordsOfASeriesByTheirLoads) {
   ReportInput input = testing::MadeInput({MadeRecord(2e-6), MadeRecord(2e-6)}, 2e-6);
   EXPECT_EQ(ToPlot(MakeReport(input)).panels[0].series[1].label, "loop_2.csv");
-  input.fit.parameters.push_back(testing::MadeParameter("load_exponent", "-", 0.33, 0.01));
-  input.fit.correlation.assign(16, 0.0);
+  testing::AddParameter(input.fit, "load_exponent", "-", 0.33, 0.01);
   input.fit.normal_load = 30.0;
   input.fit.records[0].normal_load = 20.0;
   input.fit.records[1].normal_load = 40.0;
@@ -82,7 +81,7 @@ TEST(ToPlot, CallsRecordsOfASeriesByTheirLoads) {
 
 TEST(ToPlot, ShowsTheFitOfTheNextStep) {
   ReportInput input = MadeInput();
-  input.next = {.text = "", .options = "--terms lag", .misfit_before = 0.2, .misfit_after = 0.1};
+  input.next = testing::MadeStep("--terms lag");
   input.next->fitted_force = {input.fit.records[0].fitted_force};
   const io::Plot plot = ToPlot(MakeReport(std::move(input)));
   EXPECT_EQ(plot.panels[0].series.back().label, "fitted with --terms lag");

@@ -6,18 +6,17 @@
 #include <regex>
 
 #include "mindahl/core/version.h"
+#include "report/made_report.h"
 #include "support/histories.h"
 #include "support/prelude.h"
-#include "support/text.h"
 
 namespace mindahl::request::batch_test {
 namespace {
 
 std::vector<io::RecordFile> CleanRecord() {
   io::RecordFile file;
-  for (int i = 0; i <= 300; ++i) {
-    file.record.displacement.push_back(3e-6 * std::sin(2 * std::numbers::pi * i / 100));
-  }
+  file.record.displacement = testing::Sine(3, 100);
+  for (double& displacement : file.record.displacement) displacement *= 3e-6;
   file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
                                        file.record.displacement);
   return {file};
@@ -84,17 +83,19 @@ std::vector<BatchEntry> EntriesOf(const std::vector<Made>& made) {
   return entries;
 }
 
+nlohmann::json RepeatsOf(const std::vector<Made>& made) {
+  return nlohmann::json::parse(ToJson(EntriesOf(made), ""))["repeats"];
+}
+
 constexpr double kNormal95 = 1.959963984540054;
 constexpr double kRounding = 1e-12;
 
 TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   // Errors of 3, and of 1 with an interval that is inflated to 4: √15 of it are common to repeats.
-  const auto repeats = nlohmann::json::parse(
-      ToJson(EntriesOf({{40, 3, 3 * kNormal95, "identifiable", 41},
-                        {48, 1, 4 * kNormal95, "effective", 43},
-                        {1000, 1, kNormal95, "bounded_below", 48},
-                        {2000, 1, kNormal95, "identifiable", 99, /*done=*/false}}),
-             ""))["repeats"];
+  const auto repeats = RepeatsOf({{40, 3, 3 * kNormal95, "identifiable", 41},
+                                  {48, 1, 4 * kNormal95, "effective", 43},
+                                  {1000, 1, kNormal95, "bounded_below", 48},
+                                  {2000, 1, kNormal95, "identifiable", 99, /*done=*/false}});
   const auto& slip_force = repeats["slip_force"];
   EXPECT_EQ(slip_force["files"], 2);
   EXPECT_NEAR(slip_force["mean"], 44.0, kRounding);
@@ -114,31 +115,20 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
 }
 
 TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
-  const auto repeats = nlohmann::json::parse(
-      ToJson(EntriesOf({{40, 3, kNormal95}, {41, 4, kNormal95}}), ""))["repeats"];
+  const auto repeats = RepeatsOf({{40, 3, kNormal95}, {41, 4, kNormal95}});
   EXPECT_NEAR(repeats["slip_force"]["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
 }
 
 TEST(Repeats, ScatterByTheErrorOfRepeatsAndNotByThatOfTheModel) {
-  const auto repeats =
-      nlohmann::json::parse(ToJson(EntriesOf({{40, 3, 6 * kNormal95, "effective", 0, true, 0.5},
-                                              {41, 0, 6 * kNormal95, "effective", 0, true, 0.5}}),
-                                   ""))["repeats"];
+  const auto repeats = RepeatsOf({{40, 3, 6 * kNormal95, "effective", 0, true, 0.5},
+                                  {41, 0, 6 * kNormal95, "effective", 0, true, 0.5}});
   EXPECT_EQ(repeats["slip_force"]["files"], 2) << "at a bound it has no standard error";
   EXPECT_NEAR(repeats["slip_force"]["stated_error"], 0.5, 10 * kRounding);
   EXPECT_NEAR(repeats["slip_force"]["common_error"], std::sqrt(36 - 0.25), 10 * kRounding);
 }
 
 TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
-  identification::ParameterEstimate sigma;
-  sigma.name = "sigma";
-  sigma.unit = "N/m";
-  sigma.value = 4e7;
-  sigma.standard_error = 4e5;
-  sigma.lower95 = 3.92e7;
-  sigma.upper95 = 4.08e7;
-  sigma.status = identification::ParameterStatus::kFree;
-  sigma.identifiability = identification::Identifiability::kIdentifiable;
+  const identification::ParameterEstimate sigma = testing::MadeParameter("sigma", "N/m", 4e7, 4e5);
   identification::ParameterEstimate open = sigma;
   open.value = 7.777e7;
   open.identifiability = identification::Identifiability::kNotIdentifiable;

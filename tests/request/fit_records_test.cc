@@ -11,10 +11,9 @@ namespace {
 /// A loop in 2.5 cycles of 40 samples, in a file whose rows begin with the third line.
 io::RecordFile LoopFile() {
   io::RecordFile file;
-  for (std::size_t i = 0; i <= 100; ++i) {
-    file.record.displacement.push_back(
-        2e-6 * std::sin(2 * std::numbers::pi * static_cast<double>(i) / 40));
-    file.lines.push_back(i + 3);
+  for (const double sine : testing::Sine(2.5, 40)) {
+    file.record.displacement.push_back(2e-6 * sine);
+    file.lines.push_back(file.lines.size() + 3);
   }
   file.record.force = testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0},
                                        file.record.displacement);
@@ -32,22 +31,20 @@ std::string RefusalOf(const std::vector<io::RecordFile>& files, FitRequest reque
   return MessageOf<InputError>([&] { FitRecords(request, files); });
 }
 
-TEST(FitRecords, RefusesADisplacementThatNeverChanges) {
-  io::RecordFile file = LoopFile();
-  file.record.displacement.assign(101, 0.5);
-  EXPECT_THAT(RefusalOf({LoopFile(), file}),
-              StartsWith("b.csv:3:2: the displacement never changes, it is 0.5 m in every row"));
-  file.is_torsional = true;
-  EXPECT_THAT(RefusalOf({file}), HasSubstr("it is 0.5 rad in every row"));
-}
-
-TEST(FitRecords, RefusesAForceThatNeverChangesInAnyFile) {
-  io::RecordFile file = LoopFile();
-  file.record.force.assign(101, -7.0);
-  EXPECT_THAT(RefusalOf({file}), StartsWith("a.csv:3:4: the force never changes, it is -7 N"));
-  EXPECT_THAT(RefusalOf({file, file}), StartsWith("a.csv:3:4"));
+TEST(FitRecords, RefusesADisplacementThatNeverChangesAndAForceThatDoesInNoFile) {
+  io::RecordFile still = LoopFile();
+  still.record.displacement.assign(101, 0.5);
+  still.is_torsional = true;
+  EXPECT_THAT(RefusalOf({still}),
+              StartsWith("a.csv:3:2: the displacement never changes, it is 0.5 rad in every row"));
+  still.is_torsional = false;
+  EXPECT_THAT(RefusalOf({LoopFile(), still}), StartsWith("b.csv:3:2: the displacement never"));
+  io::RecordFile slack = LoopFile();
+  slack.record.force.assign(101, -7.0);
+  EXPECT_THAT(RefusalOf({slack, slack}),
+              StartsWith("a.csv:3:4: the force never changes, it is -7 N"));
   // A file at rest beside one that is loaded is one of the contact's.
-  EXPECT_THAT(RefusalOf({LoopFile(), file}), Not(HasSubstr("never changes")));
+  EXPECT_THAT(RefusalOf({LoopFile(), slack}), Not(HasSubstr("never changes")));
 }
 
 TEST(FitRecords, RefusesUnitsBeyondAnyAtTheWidestValue) {
@@ -119,13 +116,11 @@ TEST(FitRecords, JoinsPiecesOfOneRecord) {
   const io::RecordFile whole = LoopFile();
   io::RecordFile first = whole;
   io::RecordFile second = whole;
-  const auto cut = [](std::vector<double>& column, std::ptrdiff_t begin, std::ptrdiff_t end) {
-    column = std::vector<double>(column.begin() + begin, column.begin() + end);
-  };
-  cut(first.record.displacement, 0, 41);
-  cut(first.record.force, 0, 41);
-  cut(second.record.displacement, 41, 101);
-  cut(second.record.force, 41, 101);
+  for (const auto column : {&loop::Record::displacement, &loop::Record::force}) {
+    (first.record.*column).resize(41);
+    (second.record.*column)
+        .erase((second.record.*column).begin(), (second.record.*column).begin() + 41);
+  }
   FitRequest request;
   request.files = {"a.csv", "b.csv"};
   request.join = true;

@@ -1,10 +1,7 @@
 #include "mindahl/request/fit_request.h"
 
-#include <map>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "mindahl/identification/terms.h"
 #include "support/prelude.h"
 
 namespace mindahl::request::fit_request_test {
@@ -33,121 +30,89 @@ TEST(FitRecords, NeedsARecordAndANameForEach) {
   EXPECT_THROW(FitRecords({}, {io::RecordFile{}}), InvalidArgument);
 }
 
-TEST(FitRequest, BecomesOptionsEachInItsPlace) {
+TEST(FitRequest, BecomesOptionsWithItsLoadsTermsAndColumns) {
   FitRequest request;
   request.fit.model = models::FindFrictionModel("dahl");
-  request.fit.initial_state = models::InitialState::kVirgin;
-  request.fit.preparation.force_sense = -1;
-  request.fit.offsets = false;
-  request.fit.loss = identification::Loss::kCauchy;
-  request.fit.preparation.load_window = {10.0, 20.0};
-  request.fit.preparation.cycles = loop::CountRange{2, 5};
-  request.fit.preparation.samples = loop::CountRange{7, 90};
-  request.fit.fixed["alpha"] = 0.25;
   request.fit.start["sigma"] = 3e7;
-  request.fit.bounds["slip_force"] = {1.0, 5.0};
   request.fit.priors["sigma"] = {2e7, 1e6};
-  request.fit.confidence = 0.5;
-  request.fit.force_noise = 0.125;
-  request.fit.preparation.displacement_noise = 1e-9;
-  request.fit.preparation.reversal_gate = 2e-9;
-  request.contact.normal_loads = {{30.0, 1.0}, {40.0, 2.0}};
-  request.fit.covariates = {"2"};
-  request.fit.terms = {"rig_stiffness"};
-  request.terms = {"viscous", "pressure"};
   request.fit.fixed["lag"] = 0.0625;
+  request.fit.terms = {"rig_stiffness"};
+  request.fit.covariates = {"2"};
+  request.terms = {"viscous", "pressure"};
+  request.contact.normal_loads = {{30.0, 1.0}, {40.0, 2.0}};
   const identification::FitOptions fit = MakeFitOptions(request);
   EXPECT_EQ(fit.model->name, "dahl");
-  EXPECT_EQ(fit.initial_state, models::InitialState::kVirgin);
-  EXPECT_EQ(fit.preparation.force_sense, -1);
-  EXPECT_EQ(fit.preparation.excitation, loop::Channel::kDisplacement);
-  EXPECT_FALSE(fit.offsets);
-  EXPECT_EQ(fit.loss, identification::Loss::kCauchy);
-  EXPECT_EQ(fit.preparation.load_window->lower, 10.0);
-  EXPECT_EQ(fit.preparation.load_window->upper, 20.0);
-  EXPECT_EQ(fit.preparation.cycles->first, 2U);
-  EXPECT_EQ(fit.preparation.cycles->last, 5U);
-  EXPECT_EQ(fit.preparation.samples->first, 7U);
-  EXPECT_EQ(fit.preparation.samples->last, 90U);
   EXPECT_EQ(fit.start, request.fit.start);
-  EXPECT_EQ(fit.bounds.at("slip_force").lower, 1.0);
-  EXPECT_EQ(fit.bounds.at("slip_force").upper, 5.0);
-  EXPECT_EQ(fit.confidence, 0.5);
-  EXPECT_EQ(fit.force_noise, 0.125);
-  EXPECT_EQ(fit.preparation.displacement_noise, 1e-9);
-  EXPECT_EQ(fit.preparation.reversal_gate, 2e-9);
-  EXPECT_THAT(fit.normal_loads, ElementsAre(30.0, 40.0));
-  EXPECT_THAT(fit.covariates, ElementsAre("2", "pressure"));
-  EXPECT_THAT(fit.terms, ElementsAre("rig_stiffness", "viscous"));
-  EXPECT_EQ(fit.fixed, request.fit.fixed);
-  ASSERT_EQ(fit.priors.size(), 1U);
   EXPECT_EQ(fit.priors.at("sigma").value, 2e7);
   EXPECT_EQ(fit.priors.at("sigma").standard_uncertainty, 1e6);
+  EXPECT_EQ(fit.fixed, request.fit.fixed);
+  EXPECT_THAT(fit.terms, ElementsAre("rig_stiffness", "viscous"));
+  EXPECT_THAT(fit.covariates, ElementsAre("2", "pressure"));
+  EXPECT_THAT(fit.normal_loads, ElementsAre(30.0, 40.0));
 }
 
 std::string RefusalOf(const FitRequest& request) {
   return MessageOf<std::exception>([&] { MakeFitOptions(request); });
 }
 
-TEST(FitRequest, RefusesAnOptionOfWhatIsNotFittedWithItsReason) {
-  const auto start = [](const char* name, const auto& change) {
+using Change = std::function<void(FitRequest&)>;
+
+TEST(FitRequest, RefusesAStartOfWhatIsNotFittedWithItsReason) {
+  const Change as_it_is = [](FitRequest&) {};
+  const Change forced = [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; };
+  const Change steady = [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; };
+  for (const auto& [name, change, reason] :
+       std::vector<std::tuple<std::string, Change, std::string>>{
+           {"alpha", as_it_is, ""},
+           {"alpha", [](FitRequest& r) { r.fit.fixed["alpha"] = 0.25; },
+            "it is held at a value that is given"},
+           {"alpha", [](FitRequest& r) { r.fit.model = models::FindFrictionModel("mindlin"); },
+            "--model mindlin prescribes it"},
+           {"force_offset", as_it_is, ""},
+           {"force_offset", [](FitRequest& r) { r.fit.offsets = false; },
+            "--offsets off holds it at 0"},
+           {"force_offset", steady, ""},
+           {"force_offset",
+            [&](FitRequest& r) {
+              steady(r);
+              forced(r);
+            },
+            "that of a steady loop is its centre"},
+           {"displacement_offset", as_it_is, ""},
+           {"displacement_offset", steady, "that of a steady loop is its centre"},
+           {"viscous", as_it_is, "add --terms viscous"},
+           {"viscous", [](FitRequest& r) { r.terms = {"viscous"}; }, ""},
+           {"rig_stiffness", as_it_is, "add --rig-stiffness fit"},
+           {"displacement_drift", forced, "add --terms displacement_drift"}}) {
     FitRequest request;
     request.fit.start[name] = 0.25;
     change(request);
-    return RefusalOf(request);
-  };
-  const auto as_it_is = [](FitRequest&) {};
-  EXPECT_EQ(start("alpha", as_it_is), "");
-  EXPECT_THAT(start("alpha", [](FitRequest& r) { r.fit.fixed["alpha"] = 0.25; }),
-              HasSubstr("it is held at a value that is given"));
-  EXPECT_THAT(
-      start("alpha", [](FitRequest& r) { r.fit.model = models::FindFrictionModel("mindlin"); }),
-      HasSubstr("--model mindlin prescribes it"));
-  EXPECT_EQ(start("force_offset", as_it_is), "");
-  EXPECT_THAT(start("force_offset", [](FitRequest& r) { r.fit.offsets = false; }),
-              HasSubstr("--offsets off holds it at 0"));
-  EXPECT_EQ(start("displacement_offset", as_it_is), "");
-  EXPECT_THAT(start("displacement_offset",
-                    [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
-              HasSubstr("that of a steady loop is its centre"));
-  EXPECT_EQ(start("force_offset",
-                  [](FitRequest& r) { r.fit.initial_state = models::InitialState::kSteady; }),
-            "");
-  EXPECT_THAT(start("force_offset",
-                    [](FitRequest& r) {
-                      r.fit.initial_state = models::InitialState::kSteady;
-                      r.fit.preparation.excitation = loop::Channel::kForce;
-                    }),
-              HasSubstr("that of a steady loop is its centre"));
-  EXPECT_THAT(start("viscous", as_it_is), HasSubstr("add --terms viscous"));
-  EXPECT_EQ(start("viscous", [](FitRequest& r) { r.terms = {"viscous"}; }), "");
-  EXPECT_THAT(start("rig_stiffness", as_it_is), HasSubstr("add --rig-stiffness fit"));
-  EXPECT_THAT(start("displacement_drift",
-                    [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }),
-              EndsWith("add --terms displacement_drift"));
+    EXPECT_THAT(RefusalOf(request), HasSubstr(reason)) << name;
+    EXPECT_EQ(RefusalOf(request).empty(), reason.empty()) << name;
+  }
 }
 
 TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
-  const auto made = [](std::vector<std::string> terms) {
+  const auto with = [](std::vector<std::string> terms) {
     FitRequest request;
     request.terms = std::move(terms);
-    return MakeFitOptions(request);
+    return request;
   };
-  EXPECT_THAT(made({}).terms, IsEmpty());
-  EXPECT_THAT(made({"none"}).terms, IsEmpty());
-  EXPECT_THAT(made({"auto"}).terms, IsEmpty());
-  EXPECT_THAT(made({"viscous", "slip_position"}).terms,
+  EXPECT_THAT(MakeFitOptions(with({})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"none"})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"auto"})).terms, IsEmpty());
+  EXPECT_THAT(MakeFitOptions(with({"viscous", "slip_position"})).terms,
               ElementsAre("viscous", "slip_slope", "plateau_slope"));
-  EXPECT_THAT(made({"lag", "oil pressure"}).covariates, ElementsAre("oil pressure"));
-  const auto refusal = [](std::vector<std::string> terms) {
-    FitRequest request;
-    request.terms = std::move(terms);
-    return RefusalOf(request);
-  };
-  EXPECT_THAT(refusal({"viscous", "viscous"}), HasSubstr("--terms: 'viscous' is given twice"));
-  EXPECT_THAT(refusal({"viscous", "auto"}), HasSubstr("'auto' stands alone"));
-  EXPECT_THAT(refusal({"viscos"}), HasSubstr("'viscos' is no term: did you mean 'viscous'?"));
-  EXPECT_THAT(refusal({"displacement_drift"}), HasSubstr("has no place in a fit of the force"));
+  EXPECT_THAT(MakeFitOptions(with({"lag", "oil pressure"})).covariates,
+              ElementsAre("oil pressure"));
+  for (const auto& [terms, said] :
+       {std::pair<std::vector<std::string>, const char*>({"viscous", "viscous"},
+                                                         "'viscous' is given twice"),
+        {{"viscous", "auto"}, "'auto' stands alone"},
+        {{"viscos"}, "'viscos' is no term: did you mean 'viscous'?"},
+        {{"displacement_drift"}, "has no place in a fit of the force"}}) {
+    EXPECT_THAT(RefusalOf(with(terms)), HasSubstr(said));
+  }
 }
 
 TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
@@ -165,7 +130,7 @@ TEST(FitRequest, FixesATermTogetherWithWhatItNeeds) {
 }
 
 TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
-  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+  const std::vector<std::pair<const char*, Change>> refused = {
       {"rig_stiffness has no place", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
       {"a covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
       {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
@@ -188,7 +153,7 @@ TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
 }
 
 TEST(FitRequest, OfACycleRefusesWhatIsOfATest) {
-  const std::vector<std::pair<const char*, std::function<void(FitRequest&)>>> refused = {
+  const std::vector<std::pair<const char*, Change>> refused = {
       {"--noise-in displacement",
        [](FitRequest& r) { r.fit.preparation.excitation = loop::Channel::kForce; }},
       {"--terms asymmetry", [](FitRequest& r) { r.terms = {"asymmetry"}; }},
@@ -211,6 +176,40 @@ TEST(FitRequest, TakesARangeWithBothItsEnds) {
       counted.fit.preparation.*range = loop::CountRange{first, last};
       EXPECT_EQ(RefusalOf(counted).empty(), is_fine) << first << " " << last;
     }
+  }
+}
+
+// --- what is established
+
+TEST(Established, IsWhatConvergedAndWhereStrictIsKnownByAModelThatDescribesIt) {
+  using identification::AdequacyVerdict;
+  using identification::Identifiability;
+  struct Row {
+    AdequacyVerdict verdict;
+    Identifiability identifiability;
+    bool doubtful, adequate;  // whether it is established so strictly
+  };
+  for (const Row& row :
+       {Row{AdequacyVerdict::kAdequate, Identifiability::kIdentifiable, true, true},
+        {AdequacyVerdict::kAdequate, Identifiability::kBoundedBelow, false, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kIdentifiable, true, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kEffective, true, false},
+        {AdequacyVerdict::kDoubtful, Identifiability::kBoundedBelow, false, false},
+        {AdequacyVerdict::kInadequate, Identifiability::kIdentifiable, false, false}}) {
+    identification::FitResult fit;
+    fit.converged = true;
+    fit.adequacy.verdict = row.verdict;
+    identification::ParameterEstimate& sigma = fit.parameters.emplace_back();
+    sigma.status = identification::ParameterStatus::kFree;
+    sigma.identifiability = row.identifiability;
+    EXPECT_TRUE(Established(fit, Strictness::kNone));
+    EXPECT_EQ(Established(fit, Strictness::kDoubtful), row.doubtful);
+    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.adequate);
+    sigma.status = identification::ParameterStatus::kFixed;
+    EXPECT_EQ(Established(fit, Strictness::kAdequate), row.verdict == AdequacyVerdict::kAdequate)
+        << "one that is held";
+    fit.converged = false;
+    EXPECT_FALSE(Established(fit, Strictness::kNone));
   }
 }
 

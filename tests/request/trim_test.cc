@@ -1,10 +1,5 @@
 
 
-#include <nlohmann/json.hpp>
-
-#include "mindahl/identification/fit.h"
-#include "mindahl/models/friction_model.h"
-#include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 #include "support/histories.h"
 #include "support/prelude.h"
@@ -13,36 +8,25 @@
 namespace mindahl::request::trim_test {
 namespace {
 
-using identification::FitOptions;
-using identification::FitResult;
 using loop::Record;
-using models::BranchLaw;
 
-constexpr std::size_t kCycle = 100;            // samples
-constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};  // δc = 1.5 µm
-constexpr double kReach = 2e-6;                // [m]
-constexpr double kNoise = 0.2;                 // [N]
+constexpr std::size_t kCycle = 100;                    // samples
+constexpr models::BranchLaw kLaw{4e7, 1.0 / 3, 40.0};  // δc = 1.5 µm
+constexpr double kReach = 2e-6;                        // [m]
+constexpr double kNoise = 0.2;                         // [N]
 
-/// A contact that runs in: its force begins with 0.7 of what it settles to.
-Record RunningIn(std::size_t cycles, Generator& generator, double begins_with = 0.7) {
-  constexpr double kTime = 1.5;  // [cycles]
+Record Cycles(double cycles, Generator& generator) {
   Record record;
-  for (std::size_t i = 0; i <= cycles * kCycle; ++i) {
-    const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
-    record.displacement.push_back(kReach * std::sin(2 * std::numbers::pi * cycle));
-  }
+  record.displacement = testing::Sine(cycles, kCycle);
+  for (double& displacement : record.displacement) displacement *= kReach;
   record.force = testing::Respond(testing::Model("mindlin-dahl"), kLaw, record.displacement);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
-    record.force[i] *= 1 + (begins_with - 1) * std::exp(-cycle / kTime);
-    record.force[i] += kNoise * testing::Normal(generator);
-  }
+  for (double& force : record.force) force += kNoise * testing::Normal(generator);
   return record;
 }
 
 /// Under a load [N] that ramps up over three cycles, and its force with it.
-Record UnderARampingLoad(std::size_t cycles, Generator& generator) {
-  Record record = RunningIn(cycles, generator, 1.0);
+Record UnderARampingLoad(double cycles, Generator& generator) {
+  Record record = Cycles(cycles, generator);
   for (std::size_t i = 0; i < record.size(); ++i) {
     const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
     const double share = std::min(1.0, 0.4 + 0.2 * cycle);
@@ -53,7 +37,8 @@ Record UnderARampingLoad(std::size_t cycles, Generator& generator) {
 }
 
 /// As the program fits it.
-report::Report ReportOf(const Record& record, FitRequest request = {}) {
+report::Report ReportOf(const Record& record) {
+  FitRequest request;
   io::RecordFile file;
   file.record = record;
   file.displacement.unit = "m";
@@ -76,8 +61,7 @@ TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
 
 TEST(TrimmedFit, HasSignGapAndScaleOfTheTestAndNamesTheRowsOfATravel) {
   Generator generator(9);
-  const Record test = RunningIn(6, generator, 1.0);
-  Record record = test;
+  Record record = Cycles(6, generator);
   // An approach of 100 mm under a force of the other sign, and the same way back.
   for (std::size_t i = 0; i < 150; ++i) {
     const double far = -0.1 * (1 - static_cast<double>(i) / 150);

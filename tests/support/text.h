@@ -1,29 +1,25 @@
 #pragma once
 
+#include <regex>
+#include <set>
 #include <string>
-#include <string_view>
 
 namespace mindahl::testing {
 
-/// Returns a text with one blank wherever it has several: a table to be looked for by its cells.
-inline std::string WithSingleBlanks(std::string text) {
-  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
-  return text;
-}
-
 /// A page without what says where its lines may break, for text to be looked for as it reads.
 inline std::string Unbroken(std::string page) {
-  constexpr std::string_view kOption = "<span class=\"option\">";
-  constexpr std::string_view kEnd = "</span>";
-  constexpr std::string_view kBreak = "<wbr>";
-  for (std::size_t at = page.find(kOption); at != std::string::npos; at = page.find(kOption, at)) {
-    page.erase(at, kOption.size());
-    page.erase(page.find(kEnd, at), kEnd.size());
+  static const std::regex kBreaks("<span class=\"option\">(.*?)</span>|<wbr>");
+  return std::regex_replace(page, kBreaks, "$1");
+}
+
+/// What a pattern's first group matches.
+inline std::set<std::string> Matches(const std::string& text, const std::string& pattern) {
+  std::set<std::string> found;
+  const std::regex regex(pattern);
+  for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match) {
+    found.insert((*match)[1]);
   }
-  for (std::size_t at = page.find(kBreak); at != std::string::npos; at = page.find(kBreak, at)) {
-    page.erase(at, kBreak.size());
-  }
-  return page;
+  return found;
 }
 
 }  // namespace mindahl::testing
