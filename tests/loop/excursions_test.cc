@@ -1,5 +1,3 @@
-
-
 #include "loop/strokes.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"

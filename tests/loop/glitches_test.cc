@@ -1,4 +1,3 @@
-
 #include <type_traits>
 
 #include "loop/interpolated.h"
@@ -11,16 +10,6 @@
 // Samples that no contact and no drive has made, and those that some contact or drive has.
 namespace mindahl::loop::glitches_test {
 namespace {
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
-
-History Sine(double cycles, double samples_per_cycle, double phase = 0.0) {
-  History history;
-  for (double i = 0; i <= cycles * samples_per_cycle; ++i) {
-    history.push_back(std::sin(phase + kTwoPi * i / samples_per_cycle));
-  }
-  return history;
-}
 
 History Triangle(double cycles, double samples_per_cycle) {
   History history = Sine(cycles, samples_per_cycle);
@@ -53,14 +42,6 @@ Record Respond(Generator& generator, const History& displacement) {
   return record;
 }
 
-void AddNoise(Generator& generator, History& values, double deviation) {
-  for (double& value : values) value += deviation * Normal(generator);
-}
-
-void Count(History& values, double step) {
-  for (double& value : values) value = step * std::round(value / step);
-}
-
 std::vector<bool> FindGlitches(const Record& record) {
   return FindAndInterpolate(record, {}).glitches;
 }
@@ -91,23 +72,23 @@ const std::vector<CleanKind>& CleanKinds() {
       {"Noise",
        [](Generator& g) {
          Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 1000)));
-         AddNoise(g, record.displacement, LogUniform(g, 1e-5, 3e-2));
-         AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         record.displacement = WithNoise(g, record.displacement, LogUniform(g, 1e-5, 3e-2));
+         record.force = WithNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
          return record;
        }},
       {"Encoders",
        [](Generator& g) {
          Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 3000)));
          const double step = LogUniform(g, 1e-4, 5e-2);
-         AddNoise(g, record.displacement, (g() % 2 == 0 ? 0.0 : 0.3) * step);
-         Count(record.displacement, step);
-         Count(record.force, LogUniform(g, 1e-4, 0.1));
+         record.displacement = WithNoise(g, record.displacement, (g() % 2 == 0 ? 0.0 : 0.3) * step);
+         record.displacement = Quantised(record.displacement, step);
+         record.force = Quantised(record.force, LogUniform(g, 1e-4, 0.1));
          return record;
        }},
       {"Rests",
        [](Generator& g) {
          Record record = Respond(g, Resting(Sine(3, LogUniform(g, 8, 1000)), 1 + g() % 100));
-         if (g() % 2 == 0) AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         if (g() % 2 == 0) record.force = WithNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
          return record;
        }},
       {"AnyHistory", [](Generator& g) { return Respond(g, testing::RandomHistory(g)); }},
@@ -119,7 +100,7 @@ const std::vector<CleanKind>& CleanKinds() {
            history.push_back(i / half % 2 == 0 ? -1.0 : 1.0);
          }
          Record record = Respond(g, history);
-         if (g() % 2 == 0) AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         if (g() % 2 == 0) record.force = WithNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
          return record;
        }},
       {"BeginsAtRestAtZero",
@@ -169,8 +150,8 @@ Record Noisy(std::uint64_t seed = 1) {
   record.displacement = Sine(5, 200, 0.2);
   record.force =
       testing::Respond(testing::Model("mindlin"), {20, 1.0 / 3, 1.0}, record.displacement);
-  AddNoise(generator, record.displacement, 3e-3);
-  AddNoise(generator, record.force, 3e-3);
+  record.displacement = WithNoise(generator, record.displacement, 3e-3);
+  record.force = WithNoise(generator, record.force, 3e-3);
   return record;
 }
 
@@ -233,18 +214,6 @@ TEST(FindGlitches, ADropoutOfOneChannelComesBackToWhereItWas) {
     rest.displacement[i] = rest.displacement[60];
   }
   EXPECT_EQ(CountIn(rest).total, 0U);
-}
-
-TEST(FindGlitches, TakesNothingForAGlitchThatMakesUpAQuarterOfTheRecord) {
-  const auto with_zeros = [](std::size_t every) {
-    Record record = Noisy();
-    for (std::size_t i = 1; i + 1 < record.size(); i += every) {
-      record.displacement[i] = record.force[i] = 0.0;
-    }
-    return CountIn(record).total;
-  };
-  EXPECT_EQ(with_zeros(3), 0U);
-  EXPECT_GT(with_zeros(5), 150U);
 }
 
 TEST(FindGlitches, FindsNoneInARecordThatIsEmptyOrAllZero) {
