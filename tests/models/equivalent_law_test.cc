@@ -1,4 +1,3 @@
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "../support/histories.h"
@@ -105,20 +104,6 @@ TEST(EquivalentLaw, LosesTheSameEnergyAndReachesTheSamePeak) {
                 1.0, 64 * kEpsilon)
         << Say(law, amplitude);
   });
-}
-
-TEST(EquivalentLaw, IsOfOneAmplitudeOnly) {
-  // Small loops of α = 1/3 lose twice as much by Dahl's own law: σ' and Tc' are those of the wide
-  // one.
-  const BranchLaw mindlin{4e7, 1.0 / 3, 40.0};
-  const double amplitude = 0.8 * GrossSlipDisplacement(mindlin);
-  const BranchLaw dahl = DahlEquivalent(mindlin, amplitude);
-  const double small = amplitude / 100;
-  EXPECT_GT(SteadyLoopEnergy(Model("dahl"), dahl, small) /
-                SteadyLoopEnergy(Model("mindlin-dahl"), mindlin, small),
-            1.1);
-  // Nor is the virgin curve the same: it starts with σ' instead of σ.
-  EXPECT_LT(dahl.tangential_stiffness, 0.9 * mindlin.tangential_stiffness);
 }
 
 TEST(EquivalentLaw, RefusesInvalidAmplitudeOrLaw) {

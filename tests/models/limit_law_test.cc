@@ -1,5 +1,3 @@
-
-
 #include "mindahl/models/branch_law.h"
 #include "support/prelude.h"
 

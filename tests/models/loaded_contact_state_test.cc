@@ -1,5 +1,3 @@
-
-
 #include "../support/histories.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/variable_load.h"
@@ -7,12 +5,6 @@
 
 namespace mindahl::models::loaded_contact_state_test {
 namespace {
-
-using mindahl::testing::Generator;
-using mindahl::testing::History;
-using mindahl::testing::LogUniform;
-using mindahl::testing::Model;
-using mindahl::testing::Uniform;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -49,7 +41,7 @@ TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
   Generator generator(1);
   for (const double alpha : kShapeExponents) {
     for (int i = 0; i < 1000; ++i) {
-      const History displacement = mindahl::testing::RandomHistory(generator);
+      const History displacement = RandomHistory(generator);
       const History load = RandomLoads(generator, displacement.size());
       const History expected = Respond(UnitLaw(alpha), displacement, load);
       LoadedContactState contact(UnitLaw(alpha), {.normal_load = load.front()});
@@ -109,7 +101,6 @@ TEST(LoadedContactState, AddsOneZoneForALoadThatRisesAtRest) {
 }
 
 TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
-  using ::testing::HasSubstr;
   LoadDependentLaw soft = UnitLaw(1.0 / 3.0);
   soft.reference_stiffness = 1e-306;
   LoadedContactState contact(soft, {.normal_load = 1.0});

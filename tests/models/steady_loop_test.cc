@@ -84,32 +84,6 @@ INSTANTIATE_TEST_SUITE_P(EveryModel, SteadyLoop,
                          ::testing::ValuesIn(FrictionModels().begin(), FrictionModels().end()),
                          NameOf);
 
-TEST(SteadyLoop, OfMindlinLosesWhatJohnsonSays) {
-  // Johnson 7.57, with G* the compliance: (9Tc²G*/10a){1 − (1−r)^{5/3} − (5r/6)[1 + (1−r)^{2/3}]}.
-  const double a = 0.0027, compliance = 4.42e-11, slip_force = 30.0;
-  const BranchLaw law{8 * a / compliance, 1.0 / 3.0, slip_force};
-  constexpr double kCancellation = 1e-13;  // 1e-16 over the bracket, 1e-3 at the least
-  for (const double lambda : {0.3, 0.8, 1.0}) {
-    const double amplitude = lambda * GrossSlipDisplacement(law);
-    const double r = SteadyPeakForce(Model("mindlin"), law, amplitude) / slip_force;
-    const double bracket =
-        1 - std::pow(1 - r, 5.0 / 3.0) - 5 * r / 6 * (1 + std::pow(1 - r, 2.0 / 3.0));
-    const double johnson = 9 * slip_force * slip_force * compliance / (10 * a) * bracket;
-    EXPECT_NEAR(SteadyLoopEnergy(Model("mindlin"), law, amplitude), johnson,
-                kCancellation / bracket * johnson)
-        << lambda;
-  }
-}
-
-TEST(SteadyLoop, OfDahlIsATanhForOne) {
-  constexpr double kFewRoundings = 2e-15;  // sinh, pow and the tanh of the solution
-  for (const double y : {1e-9, 0.1, 1.0, 5.0}) {
-    EXPECT_NEAR(SteadyPeakForce(Model("dahl"), {1.0, 1.0, 1.0}, y), std::tanh(y),
-                kFewRoundings * std::tanh(y));
-  }
-  EXPECT_EQ(SteadyPeakForce(Model("dahl"), {1.0, 1.0, 1.0}, 50.0), 1.0);
-}
-
 TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
   const BranchLaw law{4e7, 1.0 / 3, 40.0};
@@ -121,19 +95,6 @@ TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
     EXPECT_NEAR(ContactAmplitude(model, law, {kRig}, whole) / contact, 1, kBisected);
   }
   EXPECT_THROW(ContactAmplitude(model, law, {}, -1.0), InvalidArgument);
-}
-
-TEST(SteadyLoop, GrossSlipStartsAtTheFrettingCommunitysRatio) {
-  // α/(2 − α), 0.2 for Mindlin (Fouvry).
-  constexpr double kRounding = 1e-14;
-  for (const double alpha : {0.1, 1.0 / 3.0, 0.5, 0.9}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    const double amplitude = GrossSlipDisplacement(law);
-    const auto& model = Model("mindlin-dahl");
-    EXPECT_NEAR(SteadyLoopEnergy(model, law, amplitude) /
-                    (4 * amplitude * SteadyPeakForce(model, law, amplitude)),
-                alpha / (2 - alpha), kRounding);
-  }
 }
 
 TEST(SteadyLoop, SlipsGrosslyFromTheAmplitudeThatItsBranchesReachSlipAt) {
