@@ -209,7 +209,7 @@ int ForceSense(const RecordView& record, std::span<const std::size_t> reversals)
   const double rectangle =
       (displacement.greatest - displacement.least) * (force.greatest - force.least);
   const std::vector<double> energies = CycleEnergies(record, reversals);
-  if (!energies.empty() && std::abs(Mean(energies)) > 0 * rectangle &&
+  if (!energies.empty() && std::abs(Mean(energies)) > rules.thin * rectangle &&
       std::abs(Mean(energies)) > rules.deviations * NoiseOfMeanEnergy(record, energies.size())) {
     return SignOf(Mean(energies));
   }

@@ -33,11 +33,6 @@ struct Contact {
   [[nodiscard]] Real VirginDisplacement(const Real& force) const {
     return GrossSlipDisplacement() * (1 - TwoThirdsPower(1 - force / slip_force));
   }
-  /// Eq. 8.
-  [[nodiscard]] Real UnloadingDisplacement(const Real& force, const Real& peak) const {
-    return GrossSlipDisplacement() * (2 * TwoThirdsPower(1 - (peak - force) / (2 * slip_force)) -
-                                      TwoThirdsPower(1 - peak / slip_force) - 1);
-  }
   /// Eq. 9.
   [[nodiscard]] Real ReloadingDisplacement(const Real& force, const Real& peak) const {
     return -GrossSlipDisplacement() * (2 * TwoThirdsPower(1 - (peak + force) / (2 * slip_force)) -

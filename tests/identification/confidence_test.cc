@@ -1,5 +1,3 @@
-
-
 #include "core/probability.h"
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
@@ -80,12 +78,6 @@ TEST(Confidence, OneThatIsNoProbabilityIsRefused) {
   const loop::Record record = NoisyLoop(3);
   for (const double confidence : {0.0, 1.0, -0.5, 95.0, std::nan("")}) {
     EXPECT_THROW(FitWith(confidence, record, Depth::kEstimate), InvalidArgument) << confidence;
-  }
-}
-
-TEST(NormalQuantile, IsTheInverseOfTheErrorFunction) {
-  for (const double confidence : {0.01, 0.5, 0.95, 0.999999}) {
-    EXPECT_NEAR(std::erf(NormalQuantile(confidence) / std::sqrt(2.0)), confidence, 1e-15);
   }
 }
 

@@ -1,5 +1,3 @@
-
-
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/disturbances.h"
@@ -18,8 +16,7 @@ constexpr std::size_t kReversals = 6;
 
 Record Clean() {
   const testing::History displacement = Cycling(Wave::kSine, kReach, 3.0, 200);
-  return testing::MakeRecord(displacement,
-                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
+  return testing::LoopOf(kLaw, displacement);
 }
 
 /// @param noise  [m]

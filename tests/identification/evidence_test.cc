@@ -1,5 +1,3 @@
-
-
 #include "core/probability.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/scaled_records.h"
@@ -76,8 +74,11 @@ TEST(Distributions, AreThoseOfClosedForms) {
   EXPECT_NEAR(StudentQuantile(2.0, 0.95), 0.95 * std::sqrt(2 / (1 - 0.95 * 0.95)), 1e-11);
   EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11)
       << "asked for again after another";
-  // Half a normal law within q: P(|z| < q) = 95 %.
+  // Half a normal law within q: P(|z| < q).
   EXPECT_NEAR(std::erf(kNormalQuantile95 / std::sqrt(2.0)), 0.95, kRounding);
+  for (const double confidence : {0.01, 0.5, 0.999999}) {
+    EXPECT_NEAR(std::erf(NormalQuantile(confidence) / std::sqrt(2.0)), confidence, kRounding);
+  }
 }
 
 }  // namespace

@@ -39,8 +39,7 @@ TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
   // gains 39 times as much: P(χ²₁ > 2/39) = 82 %.
   constexpr int kLoops = 100;
   const History displacement = Cycling(Wave::kSine, 0.6 * kReach, 3.0, 120);
-  const Record steady =
-      From(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), 30);
+  const Record steady = From(LoopOf(kLaw, displacement), 30);
   FitOptions options;
   options.fixed["force_offset"] = 0.0;  // else the place where it was unloaded does the same
   int virgin = 0;
@@ -69,9 +68,7 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
   History displacement;
   for (int i = 0; i <= 80; ++i) displacement.push_back(kReach * i / 80);
   for (const double direction : {1.0, -1.0}) {
-    Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-    record = testing::Scaled(record, direction, direction);
-    const FitResult fit = FitOne(record);
+    const FitResult fit = FitOne(Scaled(LoopOf(kLaw, displacement), direction, direction));
     EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
     EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
     // One curve looks the same from wherever its origin is: the offsets are not for the fit.
@@ -82,9 +79,8 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
 
 TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   constexpr double kDriftPerSecond = -3.0;
-  Record record = Loop();
+  Record record = Timed(Loop(), 0.01, 40.0);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(40.0 + 0.01 * static_cast<double>(i));
     record.force[i] += kDriftPerSecond * (record.time[i] - record.time[0]);
   }
   FitOptions options;
@@ -154,8 +150,7 @@ TEST(Fit, CyclesOfReversalsAndGateAreReported) {
 TEST(Fit, WidestRecordIsTheOneOfLargestAmplitude) {
   const Record wide = Loop();
   const History narrow = Cycling(Wave::kSine, kReach / 2, 2.0, 120);
-  const Record small = MakeRecord(narrow, Respond(Model("mindlin-dahl"), kLaw, narrow));
-  const std::vector<Record> records = {small, wide};
+  const std::vector<Record> records = {LoopOf(kLaw, narrow), wide};
   const FitResult fit = Fit(records, {});
   EXPECT_DOUBLE_EQ(fit.WidestRecord().measures.amplitude, kReach);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
@@ -221,9 +216,7 @@ TEST(Fit, DoesNotDependOnTheOrderOfItsRecords) {
   for (const double reach : {1.0, 0.6}) {
     const History displacement = Cycling(Wave::kSine, reach * kReach, 3.0, 150);
     records.push_back(testing::WithForceNoise(
-        testing::Shifted(
-            MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)),
-            (1 - reach) * kReach, reach * kLaw.slip_force),
+        testing::Shifted(LoopOf(kLaw, displacement), (1 - reach) * kReach, reach * kLaw.slip_force),
         0.01 * kLaw.slip_force, generator));
   }
   const FitResult one = Fit(records, {}, Depth::kFull);

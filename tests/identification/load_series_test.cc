@@ -1,5 +1,3 @@
-
-
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/steady_loop.h"
@@ -31,10 +29,7 @@ std::vector<Record> Series(double exponent, double shape_exponent = 1.0 / 3) {
   for (const double load : kLoads) {
     const auto displacement = testing::Cycling(testing::Wave::kSine, kReach, 2.0, 150);
     const BranchLaw law = LawUnder(load, exponent, shape_exponent);
-    records.push_back(testing::Shifted(
-        testing::MakeRecord(displacement,
-                            testing::Respond(testing::Model("mindlin-dahl"), law, displacement)),
-        1e-7 * offset, offset));
+    records.push_back(testing::Shifted(testing::LoopOf(law, displacement), 1e-7 * offset, offset));
     offset += 1.0;
   }
   return records;
@@ -148,12 +143,12 @@ TEST(LoadSeriesFit, RefusesWhatHasNoMeaning) {
   const std::vector<Record> records = Series(1.0 / 3);
   FitOptions options;
   options.normal_loads = {25.0, 50.0};
-  EXPECT_NE(RefusalOf(records, options).find("2 normal loads for 3 records"), std::string::npos);
+  EXPECT_THAT(RefusalOf(records, options), HasSubstr("2 normal loads for 3 records"));
   options.normal_loads = {25.0, 50.0, -1.0};
-  EXPECT_NE(RefusalOf(records, options).find("normal load [N] = -1"), std::string::npos);
+  EXPECT_THAT(RefusalOf(records, options), HasSubstr("normal load [N] = -1"));
   options = {};
   options.fixed["load_exponent"] = 0.5;
-  EXPECT_NE(RefusalOf(records, options).find("load_exponent has no effect"), std::string::npos);
+  EXPECT_THAT(RefusalOf(records, options), HasSubstr("load_exponent has no effect"));
 }
 
 }  // namespace

@@ -64,20 +64,6 @@ TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {
   EXPECT_NE(worst(1), worst(2));
 }
 
-TEST(MappingValidation, NoiseMakesTheErrorsItShould) {
-  // With 1 % noise the errors are of the order of 1 %, not of rounding: the loops are fitted, not
-  // copied.
-  ValidationOptions options;
-  options.cases = 4;
-  options.noise_levels = {0.01};
-  options.lambdas = {1.2};
-  const ValidationReport report = ValidateMapping(options);
-  ASSERT_EQ(report.rows.size(), 1u);
-  EXPECT_GT(report.rows[0].errors[0].median, 1e-5);
-  EXPECT_LT(report.rows[0].errors[0].worst, 0.1);
-  EXPECT_GT(report.rows[0].worst_standardized, 0.0);
-}
-
 TEST(MappingValidation, CoverageOfHonestIntervalsPasses) {
   ValidationOptions options;
   options.cases = 300;

@@ -63,8 +63,7 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
 
 Record Loop() {
   const testing::History displacement = testing::Cycling(testing::Wave::kSine, kReach, 3.0, 200);
-  return testing::MakeRecord(displacement,
-                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
+  return testing::LoopOf(kLaw, displacement);
 }
 
 TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {

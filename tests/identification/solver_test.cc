@@ -37,11 +37,8 @@ double GradientAt(Stages& stages, const Solution& solution) {
 constexpr double kStationary = 1e-4;
 
 TEST(Solver, LeavesNoGradientInAnyParameter) {
-  Record record = NoisyLoop();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.01 * static_cast<double>(i));
-    record.force[i] += 0.5 * record.time[i];
-  }
+  Record record = Timed(NoisyLoop(), 0.01);
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += 0.5 * record.time[i];
   for (const std::vector<std::string>& terms : {std::vector<std::string>{},
                                                 {"force_drift"},
                                                 {"plateau_slope", "force_drift"},
@@ -122,9 +119,8 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
 }
 
 TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
-  Record record = NoisyLoop();
+  Record record = Timed(NoisyLoop(), 0.1);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.1 * static_cast<double>(i));
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
   Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});

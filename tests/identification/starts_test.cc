@@ -25,9 +25,7 @@ TEST(Starts, OfARecordToldToBeVirginLeadToTheLeastMinimum) {
     const double reach = late.lambda * GrossSlipDisplacement(kMindlin);
     const History displacement = Cycling(Wave::kSine, reach, late.cycles, 200);
     Generator generator(7);
-    Record record = WithForceNoise(
-        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement)), 0.05,
-        generator);
+    Record record = WithForceNoise(testing::LoopOf(kMindlin, displacement), 0.05, generator);
     record = Shifted(From(std::move(record), late.lost), reach, 0.0);
     FitOptions options;
     options.model = models::FindFrictionModel(late.model);

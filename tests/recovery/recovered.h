@@ -76,6 +76,15 @@ inline loop::Record From(loop::Record record, std::size_t begin) {
   return record;
 }
 
+/// Read every `step` [s].
+inline loop::Record Timed(loop::Record record, double step, double start = 0.0) {
+  record.time.clear();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(start + step * static_cast<double>(i));
+  }
+  return record;
+}
+
 inline loop::Record Shifted(loop::Record record, double displacement, double force) {
   for (double& x : record.displacement) x += displacement;
   for (double& f : record.force) f += force;
