@@ -90,18 +90,6 @@ TEST(MapMindlinToDahl, PutsGrossSlipAtOneAndAHalfElasticDisplacements) {
               kRounding);
 }
 
-TEST(PredictContact, RefusesInvalidContact) {
-  KnownContact unloaded = KnowBodies();
-  unloaded.normal_load = 0.0;
-  EXPECT_EQ(MessageOf([&] { PredictContact(unloaded, kFriction); }),
-            "normal load [N] = 0 is invalid: must be finite and > 0");
-  EXPECT_EQ(MessageOf([] { PredictContact(KnowBodies(), -0.4); }),
-            "friction [-] = -0.4 is invalid: must be finite and > 0");
-  const KnownBody plane{.youngs_modulus = 1e9, .poisson_ratio = 0.3, .radius = kInfinity};
-  const KnownContact planes{.normal_load = 1.0, .body_1 = plane, .body_2 = plane};
-  EXPECT_THAT(MessageOf([&] { PredictContact(planes, kFriction); }), HasSubstr("two planes"));
-}
-
 TEST(IdentifyContact, ReturnsTheContactOfTheLoopAndHowFarItsStiffnessIsFromHertz) {
   const ExactContact truth = Truth();
   const KnownContact known = KnowBodies();
@@ -436,6 +424,15 @@ TEST(PredictContact, GivesTheValuesOfItsExactCounterparts) {
 }
 
 TEST(PredictContact, RefusesWhatDoesNotDescribeAContactOrDoesSoTwice) {
+  KnownContact unloaded = KnowBodies();
+  unloaded.normal_load = 0.0;
+  EXPECT_EQ(MessageOf([&] { PredictContact(unloaded, kFriction); }),
+            "normal load [N] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { PredictContact(KnowBodies(), -0.4); }),
+            "friction [-] = -0.4 is invalid: must be finite and > 0");
+  const KnownBody plane{.youngs_modulus = 1e9, .poisson_ratio = 0.3, .radius = kInfinity};
+  const KnownContact planes{.normal_load = 1.0, .body_1 = plane, .body_2 = plane};
+  EXPECT_THAT(MessageOf([&] { PredictContact(planes, kFriction); }), HasSubstr("two planes"));
   const std::string rule =
       "contact: must be given by its normal load and either contact radius and tangential "
       "compliance or E, ν and R of both bodies";

@@ -1,5 +1,3 @@
-
-
 #include "mindahl/convert/conversion.h"
 #include "mindahl/models/friction_model.h"
 #include "support/prelude.h"

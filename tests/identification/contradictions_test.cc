@@ -1,4 +1,3 @@
-
 #include <Eigen/Dense>
 
 #include "identification/inference/estimates.h"
@@ -24,15 +23,6 @@ Record NoisyLoop(const BranchLaw& law, double amplitude, double noise, std::uint
   return WithForceNoise(
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement, initial)), noise,
       generator);
-}
-
-/// The same contact, read `samples` later: no time, so that a lag is in samples.
-Record Delayed(const BranchLaw& law, double amplitude, int samples, int samples_per_cycle) {
-  Record record = NoisyLoop(law, amplitude, 0.0, 1, samples_per_cycle, 3.25);
-  Generator generator(7);
-  record.force.insert(record.force.begin(), static_cast<std::size_t>(samples), 0.0);
-  record.force.resize(record.displacement.size());
-  return WithForceNoise(record, 0.003 * law.slip_force, generator);
 }
 
 /// What must hold of every result, whatever the record.
@@ -70,24 +60,6 @@ TEST(Contradictions, AreNotInFitsOfLoopsOfAllKinds) {
         ExpectNoContradiction(FitOne(NoisyLoop(law, amplitude, noise, seed++)));
       }
     }
-  }
-}
-
-TEST(Contradictions, DelayOfATenthOfACycleIsFoundAtThirtyToAHundredSamplesACycle) {
-  constexpr double kReach = 2.4e-6;  // twice gross slip
-  FitOptions options;
-  options.terms = {"lag"};
-  for (const auto& [samples, samples_per_cycle] :
-       {std::pair{3, 30}, std::pair{5, 50}, std::pair{8, 100}}) {
-    SCOPED_TRACE(samples_per_cycle);
-    const FitResult fit = FitOne(Delayed(kMindlin, kReach, samples, samples_per_cycle), options);
-    const ParameterEstimate& lag = *fit.Find("lag");
-    EXPECT_EQ(lag.status, ParameterStatus::kFree);
-    EXPECT_NEAR(lag.value, samples, 0.5);
-    const ParameterEstimate& sigma = *fit.Find("sigma");
-    // A tenth of σ is five times what half a sample of the first branch is.
-    EXPECT_NEAR(sigma.value, kMindlin.tangential_stiffness, 0.1 * kMindlin.tangential_stiffness);
-    ExpectNoContradiction(fit);
   }
 }
 

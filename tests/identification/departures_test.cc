@@ -181,44 +181,28 @@ Simulate Bulged(int half_waves) {
   };
 }
 
+/// Length of the motion's unit [m].
+double ScaleOf(const Motion& motion) {
+  return (motion.displacement.front() - kCentre) /
+         MotionAt(motion.time.front(), motion.time.back());
+}
+
 /// The force between samples, from fifty times as many.
 std::vector<double> Late(const Departed& departed, double lag) {
-  constexpr std::size_t kFiner = 50;
-  Motion fine;
-  const Motion& motion = departed.motion;
-  const double scale = kLength;
-  for (std::size_t i = 0; i < departed.size(); ++i) {
-    for (std::size_t k = 0; k < (i + 1 < departed.size() ? kFiner : 1); ++k) {
-      const double share = static_cast<double>(k) / kFiner;
-      if (k == 0) {
-        fine.time.push_back(motion.time[i]);
-        fine.displacement.push_back(motion.displacement[i]);
-        continue;
-      }
-      // Between reversals the motion is that of the samples, by the parabolas through them.
-      const std::size_t j = std::clamp<std::size_t>(i, 1, departed.size() - 2);
-      const double time = motion.time[i] + share * (motion.time[i + 1] - motion.time[i]);
-      double x = 0.0;
-      for (std::size_t a = j - 1; a <= j + 1; ++a) {
-        double weight = 1.0;
-        for (std::size_t b = j - 1; b <= j + 1; ++b) {
-          if (b != a) weight *= (time - motion.time[b]) / (motion.time[a] - motion.time[b]);
-        }
-        x += weight * motion.displacement[a] / scale;
-      }
-      fine.time.push_back(time);
-      fine.displacement.push_back(x * scale);
-    }
+  constexpr std::size_t kLast = 50 * (kSamples - 1);
+  const double duration = departed.motion.time.back();
+  const double scale = ScaleOf(departed.motion);
+  History fine;
+  for (std::size_t i = 0; i <= kLast; ++i) {
+    const double time = duration * static_cast<double>(i) / kLast;
+    fine.push_back(kCentre + scale * MotionAt(time, duration));
   }
-  const std::vector<double> force = departed.contact.Force(fine.displacement);
+  const std::vector<double> force = departed.contact.Force(fine);
   std::vector<double> late;
-  for (const double time : motion.time) {
-    const double at = std::max(time - lag, 0.0);
-    const auto next = std::ranges::upper_bound(fine.time, at);
-    const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(next - fine.time.begin()), 1,
-                                           fine.time.size() - 1);
-    const double share = (at - fine.time[i - 1]) / (fine.time[i] - fine.time[i - 1]);
-    late.push_back(force[i - 1] + share * (force[i] - force[i - 1]));
+  for (const double time : departed.motion.time) {
+    const double place = std::clamp(time - lag, 0.0, duration) / duration * kLast;
+    const std::size_t i = std::min(static_cast<std::size_t>(place), kLast - 1);
+    late.push_back(std::lerp(force[i], force[i + 1], place - static_cast<double>(i)));
   }
   return late;
 }
@@ -242,14 +226,7 @@ Simulate WithDerivative(int order) {
   return [order](const Departed& departed, double size) {
     const Motion& motion = departed.motion;
     const double duration = motion.time.back();
-    const auto [lowest, highest] = std::ranges::minmax(motion.displacement);
-    double low = 0.0;
-    double high = 0.0;
-    for (const double time : motion.time) {
-      low = std::min(low, MotionAt(time, duration));
-      high = std::max(high, MotionAt(time, duration));
-    }
-    const double scale = (highest - lowest) / (high - low);
+    const double scale = ScaleOf(motion);
     std::vector<double> force = departed.contact.Force(motion.displacement);
     for (std::size_t i = 0; i < force.size(); ++i) {
       force[i] += size * scale * Differentiated(motion.time[i], duration, order);

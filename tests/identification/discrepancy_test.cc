@@ -81,15 +81,6 @@ TEST(Discrepancy, ReachesToBothSidesOfASlipForceThatIsOffTheGap) {
   }
 }
 
-TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
-  const auto width = [](double b) {
-    const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");
-    return *estimate.upper95 - *estimate.lower95;
-  };
-  EXPECT_LT(width(0.02), width(0.08));
-  EXPECT_LT(width(0.08), width(0.3));
-}
-
 TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
   // Cycles 15 % stronger and weaker in turn: of n half gaps with deviation s another one lies
   // within t(n − 1)·s·√(1 + 1/n) of the mean.

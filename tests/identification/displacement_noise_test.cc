@@ -109,23 +109,6 @@ TEST(DisplacementNoise, IntervalsCoverTheTruthWhereAnEncoderMakesIt) {
               Virgin()));
 }
 
-TEST(DisplacementNoise, ThatIsKnownMakesNoReversal) {
-  Generator generator(7);
-  FitOptions options = Virgin();
-  options.preparation.displacement_noise = 0.01 * kReach;
-  const FitResult fit = FitOne(WithNoise(Clean(), 0.01 * kReach, generator), options);
-  EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
-  EXPECT_EQ(fit.records[0].displacement_noise, 0.01 * kReach);
-}
-
-TEST(DisplacementNoise, OfAnEncoderIsThatOfItsRounding) {
-  Generator generator(8);
-  constexpr double kStep = 0.01 * kReach;
-  const FitResult fit = FitOne(Counted(Clean(), kStep, generator), Virgin());
-  EXPECT_GE(fit.records[0].displacement_noise, kStep / std::sqrt(12.0) * (1 - 1e-9));
-  EXPECT_LT(fit.records[0].displacement_noise, kStep);
-}
-
 TEST(DisplacementNoise, IsNoneInACleanRecord) {
   const FitResult fit = FitOne(Clean(), Virgin());
   EXPECT_EQ(fit.records[0].displacement_noise, 0.0);

@@ -117,29 +117,6 @@ TEST(Lag, ThatIsKnownIsTakenOff) {
   EXPECT_EQ(fit.records[0].left_out, 3U);
 }
 
-TEST(Lag, OfOneToThreeSamplesOf200IsTheFirstCauseOfADoubt) {
-  Generator generator(17);
-  for (const double shape_exponent : {1.0 / 3, 0.7}) {
-    const BranchLaw law = LawOf(shape_exponent);
-    for (const double samples : {1.0, 2.0, 3.0, -2.0}) {
-      for (const std::size_t begin : {0U, 230U}) {
-        // Without the way in, a sample is hardly told from a force that saturates: ΔAICc of 4.
-        if (begin > 0 && samples == 1.0) continue;
-        SCOPED_TRACE(::testing::Message()
-                     << shape_exponent << " late by " << samples << " from " << begin);
-        const Record record =
-            WithForceNoise(From(LateRecord(law, TimesOf(4.0), samples * kStep), begin),
-                           0.01 * law.slip_force, generator);
-        const FitResult fit = FitOne(record);
-        ASSERT_FALSE(fit.adequacy.causes.empty());
-        const Cause& cause = fit.adequacy.causes.front();
-        EXPECT_EQ(cause.code, "channel_lag");
-        EXPECT_EQ(cause.term, "lag");
-      }
-    }
-  }
-}
-
 TEST(Lag, IsRefusedWhereItCannotBeCounted) {
   const Record timed = LateRecord(LawOf(1.0 / 3), TimesOf(2.25), 0.0);
   Record without = timed;

@@ -95,16 +95,9 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   EXPECT_EQ(RefusalOf({Loop()}, options),
             "--select load=LO:HI needs a normal load in every record: name its column with "
             "--normal-load-column");
-  Record loaded = Loop();
-  loaded.normal_load.assign(loaded.size(), 200.0);
-  EXPECT_EQ(RefusalOf({loaded}, options),
-            "--select load=90:110 holds no sample: the normal load runs from 200 to 200 N");
   options = {};
   options.preparation.held_out = {{true, false}};
   EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("held-out mask"));
-  options = {};
-  options.fixed["rig_stiffness"] = -1.0;
-  EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("rig_stiffness [N/m] = -1 is invalid"));
 }
 
 }  // namespace

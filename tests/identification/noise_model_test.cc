@@ -72,35 +72,23 @@ double SecondOrderShare(double first, double second) {
 /// Normal estimates are off by this many standard deviations once in 1.7 million.
 constexpr double kSurely = 5.0;
 
-TEST(NoiseModel, FirstOrderProcessIsRecoveredWithinItsSamplingError) {
-  constexpr double kRho = 0.9;
-  // Brockwell and Davis, Time Series (1991) §8.1: Var φ̂ = (1 − ρ²)/n. The share of the innovations
-  // is 1 − ρ̂², twice ρ times as uncertain.
-  const double error = std::sqrt((1 - kRho * kRho) / kSamples);
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Generator generator(seed);
-    const std::vector<std::vector<double>> series = {Autoregressive({kRho}, kSamples, generator)};
-    const Autocorrelation noise = EstimateNoise(series);
-    ASSERT_EQ(noise.order, 1U) << seed;
-    EXPECT_NEAR(noise.coefficients[0], kRho, kSurely * error) << seed;
-    EXPECT_NEAR(noise.innovation_share, 1 - kRho * kRho, kSurely * 2 * kRho * error) << seed;
-  }
-}
-
-TEST(NoiseModel, SecondOrderProcessIsRecoveredWithinItsSamplingError) {
-  constexpr double kFirst = 1.2;
-  constexpr double kSecond = -0.5;
-  // Var φ̂₁ = Var φ̂₂ = (1 − φ₂²)/n.
-  const double error = std::sqrt((1 - kSecond * kSecond) / kSamples);
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Generator generator(seed);
-    const std::vector<std::vector<double>> series = {
-        Autoregressive({kFirst, kSecond}, kSamples, generator)};
-    const Autocorrelation noise = EstimateNoise(series);
-    ASSERT_EQ(noise.order, 2U) << seed;
-    EXPECT_NEAR(noise.coefficients[0], kFirst, kSurely * error) << seed;
-    EXPECT_NEAR(noise.coefficients[1], kSecond, kSurely * error) << seed;
-    EXPECT_NEAR(noise.innovation_share, SecondOrderShare(kFirst, kSecond), 0.03) << seed;
+TEST(NoiseModel, ProcessIsRecoveredWithinItsSamplingError) {
+  // Brockwell and Davis, Time Series (1991) §8.1: Var φ̂ = (1 − φ_p²)/n of either coefficient. The
+  // share of the innovations of the first order is 1 − ρ̂², twice ρ times as uncertain.
+  for (const std::vector<double>& process : {std::vector{0.9}, {1.2, -0.5}}) {
+    const double error = std::sqrt((1 - process.back() * process.back()) / kSamples);
+    const bool is_first = process.size() == 1;
+    const double share = is_first ? 1 - 0.9 * 0.9 : SecondOrderShare(process[0], process[1]);
+    const double share_error = is_first ? kSurely * 2 * 0.9 * error : 0.03;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Generator generator(seed);
+      const Autocorrelation noise = EstimateNoise({Autoregressive(process, kSamples, generator)});
+      ASSERT_EQ(noise.order, process.size()) << seed;
+      for (std::size_t k = 0; k < process.size(); ++k) {
+        EXPECT_NEAR(noise.coefficients[k], process[k], kSurely * error) << seed;
+      }
+      EXPECT_NEAR(noise.innovation_share, share, share_error) << seed;
+    }
   }
 }
 

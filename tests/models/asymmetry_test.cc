@@ -104,25 +104,6 @@ TEST(Asymmetry, IsThatOfElementsOfUnequalLimitsOnAnyHistory) {
   }
 }
 
-TEST(Asymmetry, LeavesTheStiffnessAndMakesTheVirginCurveLargerOrSmaller) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  constexpr double kAsymmetry = 0.25;
-  for (const double sense : {1.0, -1.0}) {
-    const double limit = 1 + sense * kAsymmetry;
-    const BranchLaw of_sense = {.tangential_stiffness = kStiffness,
-                                .shape_exponent = 1.0 / 3,
-                                .slip_force = kSlipForce * limit};
-    std::vector<double> way;
-    for (int i = 0; i <= 30; ++i) way.push_back(sense * i * GrossSlipDisplacement(law) / 20);
-    const std::vector<double> force = ForceOn(law, way, {.asymmetry = kAsymmetry});
-    const std::vector<double> expected = ForceOn(of_sense, way, {});
-    for (std::size_t i = 0; i < way.size(); ++i) {
-      EXPECT_NEAR(force[i], expected[i], kRounding * kSlipForce);
-    }
-    EXPECT_NEAR(force.back(), sense * kSlipForce * limit, kRounding * kSlipForce);
-  }
-}
-
 TEST(Asymmetry, IsAnOffsetOfTheForceOnceTheContactHasSlippedAsAWhole) {
   const BranchLaw law = LawOf(0.5);
   constexpr double kAsymmetry = -0.35;

@@ -82,23 +82,6 @@ TEST(SimplifiedDahl, IsRightFromTheSecondCycleOnInGrossSlip) {
                {0.05, kRounding, kRounding, kRounding, kRounding});
 }
 
-TEST(FullDahl, WithItsOwnPeakForceIsOffByTheSameInEveryCycle) {
-  // The memory refers to the force reached: no transient. By hand, to first order in Δ ln σ: f
-  // moves by g = x·f' = 1.5·λ·√(1−λ)·Tc, a branch by 2g(λ') − g(0.8), most at λ' = 2/3.
-  const BranchLaw printed{4.839e8, 1.0 / 3.0, kSlipForce};
-  const History history = PaperSine(0.8, kCycles, kPerCycle);
-  const auto errors = ErrorsByCycle(history, Respond(Model("mindlin-dahl"), printed, history));
-  const auto g = [](double lambda) { return 1.5 * lambda * std::sqrt(1 - lambda); };
-  const double expected = 100 * std::abs(std::log(4.839e8 / kPaperLaw.tangential_stiffness)) *
-                          (2 * g(2.0 / 3.0) - g(0.8)) / (1 - std::pow(0.2, 1.5));
-  constexpr double kFirstOrder = 0.02;  // 1 % of 1 %, times a curvature of order 1
-  constexpr double kRounding = 1e-11;
-  for (const double error : errors) {
-    EXPECT_NEAR(error, errors.front(), kRounding);
-    EXPECT_NEAR(error, expected, kFirstOrder);
-  }
-}
-
 TEST(MasingMemory, AddsUpAMillionNestedReversalsAsARandomWalkOfRoundings) {
   // T = f(e₀) + Σ 2·sgn·f(|eₖ₊₁ − eₖ|/2), summed in long double.
   constexpr std::size_t kReversals = 1'000'000;

@@ -137,39 +137,6 @@ TEST(Rig, LeavesTheForceThatTheContactHasAtItsOwnDisplacement) {
   EXPECT_LE(worst.value, kBound) << worst.where;
 }
 
-TEST(Rig, OfASteadyContactIsItself) {
-  // A record that turns at both extremes first, off centre, and then has inner loops: the steady
-  // amplitude of δ is that of x and T*/k_r together.
-  constexpr double kBound = 1.1e-13;
-  for (const FrictionModel& model : Models()) {
-    for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 0.8, 1.0, 2.0}) {
-      if (model.shape_exponent && alpha != *model.shape_exponent) continue;
-      for (const double size : {1e-9, 0.05, 0.6, 1.4, 4.0}) {
-        for (const double stiffness : {1e-6, 0.2, 1.0, 7.0, 1e6}) {
-          for (const double sense : {1.0, -1.0}) {
-            History contact;
-            for (const double x :
-                 {-0.4, 0.3, 1.0, 0.1, -1.0, 0.2, 0.7, 0.1, 0.5, -0.6, -0.9, 0.8}) {
-              contact.push_back(sense * size * x + 0.3 * size);
-            }
-            const BranchLaw law{1.0, alpha, 1.0};
-            const InitialContact steady{.state = InitialState::kSteady};
-            const std::vector<double> expected = Respond(model, law, contact, steady);
-            const SeriesSpring rig{stiffness};
-            const std::vector<double> force =
-                RespondWithRig(model, law, rig, WithRig(contact, expected, rig), steady);
-            for (std::size_t i = 0; i < force.size(); ++i) {
-              EXPECT_NEAR(force[i], expected[i], kBound * std::min(1.0, 10 * size))
-                  << model.name << " alpha " << alpha << " size " << size << " spring " << stiffness
-                  << " sample " << i;
-            }
-          }
-        }
-      }
-    }
-  }
-}
-
 TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
   Generator generator(64);
   for (const FrictionModel& model : FrictionModels()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -55,6 +56,13 @@ inline History Quantised(History history, double step) {
 /// Log-uniform between two positive numbers.
 inline double LogUniform(Generator& generator, double low, double high) {
   return std::exp(Uniform(generator, std::log(low), std::log(high)));
+}
+
+/// Largest magnitude.
+inline double Largest(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
 inline History RandomWalk(Generator& generator, std::size_t samples, double step) {

@@ -5,12 +5,6 @@
 
 namespace mindahl::testing {
 
-/// Returns a text with one blank wherever it has several: a table to be looked for by its cells.
-inline std::string WithSingleBlanks(std::string text) {
-  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
-  return text;
-}
-
 /// A page without what says where its lines may break, for text to be looked for as it reads.
 inline std::string Unbroken(std::string page) {
   constexpr std::string_view kOption = "<span class=\"option\">";
