@@ -190,5 +190,24 @@ TEST(SolveLeastSquares, OfAMatrixOfZerosIsZero) {
   EXPECT_EQ(solved, Eigen::MatrixXd::Zero(2, 4));
 }
 
+TEST(Intervals, AreTheUnionOfTheirParts) {
+  ParameterEstimate estimate;
+  estimate.name = "alpha";
+  estimate.value = 0.5;
+  Include(estimate, {.lower = 0.1, .upper = 0.9});
+  EXPECT_FALSE(estimate.lower95 || estimate.upper95) << "what is held has none";
+  SetInterval(estimate, {.lower = 0.4, .upper = 0.6});
+  Include(estimate, {.lower = 0.45, .upper = 0.8});
+  EXPECT_EQ(estimate.lower95, 0.4);
+  EXPECT_EQ(estimate.upper95, 0.8);
+  Include(estimate, {.lower = 0.5, .upper = HUGE_VAL});
+  EXPECT_EQ(estimate.lower95, 0.4);
+  EXPECT_FALSE(estimate.upper95) << "an end that is no number is open";
+  Include(estimate, {.lower = 0.5, .upper = 0.5});
+  EXPECT_FALSE(estimate.upper95) << "and stays open";
+  WithdrawInterval(estimate);
+  EXPECT_FALSE(estimate.lower95 || estimate.upper95);
+}
+
 }  // namespace
 }  // namespace mindahl::identification::estimates_test

@@ -2,6 +2,8 @@
 
 #include "../support/histories.h"
 #include "../support/measured.h"
+#include "loop/strokes.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 namespace mindahl::loop::reversals_test {
@@ -11,42 +13,31 @@ using Indices = std::vector<std::size_t>;
 
 std::size_t CountGated(const History& history) { return ChooseReversalGate(history).count; }
 
-TEST(FindReversals, FindsEveryChangeOfDirectionWithoutAGate) {
-  EXPECT_EQ(FindReversals(History{0, 2, 1, 3, -1, 0}, 0.0), (Indices{1, 2, 3, 4}));
-}
-
-TEST(FindReversals, FindsNoneOnAMonotoneRecord) {
-  EXPECT_TRUE(FindReversals(History{1, 2, 2, 5, 9}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{1, -2, -2, -5, -9}, 0.0).empty());
-}
-
-TEST(FindReversals, FindsNoneWhereNothingMoves) {
-  EXPECT_TRUE(FindReversals(History{}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{3}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{3, 3, 3, 3}, 0.0).empty());
-}
-
-TEST(FindReversals, TakesTheFirstSampleOfADwell) {
-  EXPECT_EQ(FindReversals(History{0, 0, 2, 2, 2, 1, 1, 4}, 0.0), (Indices{2, 5}));
-}
-
-TEST(FindReversals, ADwellWithinAStrokeIsNoReversal) {
-  EXPECT_EQ(FindReversals(History{0, 1, 1, 2, 1, 1, 0}, 0.0), (Indices{3}));
-}
-
-TEST(FindReversals, IgnoresRetreatsUpToTheGate) {
-  const History history = {0, 5, 4, 6, 0};
-  EXPECT_EQ(FindReversals(history, 1.0), (Indices{3}));  // a retreat of just the gate is none
-  EXPECT_EQ(FindReversals(history, 0.999), (Indices{1, 2, 3}));
-}
-
-TEST(FindReversals, TheExtremumIsTheFarthestSampleNotTheOneThatLeavesTheGate) {
-  EXPECT_EQ(FindReversals(History{0, 8, 10, 9.5, 9.8, 6, 3, 3.5, 2, 9}, 1.0), (Indices{2, 8}));
-}
-
-TEST(FindReversals, TheSideOfTheFirstOneIsFoundBeyondTheGateOnly) {
-  // Within ±1 at first; then down and up again.
-  EXPECT_EQ(FindReversals(History{0, 0.6, -0.3, 0.5, -3, 2}, 1.0), (Indices{4}));
+TEST(FindReversals, FindsTheFarthestSampleOfEachTurnBeyondTheGate) {
+  struct Turns {
+    std::string_view name;
+    History history;
+    double gate;
+    Indices reversals;
+  };
+  for (const Turns& turns : std::initializer_list<Turns>{
+           {"every change of direction", {0, 2, 1, 3, -1, 0}, 0.0, {1, 2, 3, 4}},
+           {"none of a monotone record", {1, 2, 2, 5, 9}, 0.0, {}},
+           {"nor downwards", {1, -2, -2, -5, -9}, 0.0, {}},
+           {"none of nothing", {}, 0.0, {}},
+           {"none of one sample", {3}, 0.0, {}},
+           {"none at rest", {3, 3, 3, 3}, 0.0, {}},
+           {"the first sample of a dwell", {0, 0, 2, 2, 2, 1, 1, 4}, 0.0, {2, 5}},
+           {"no dwell within a stroke", {0, 1, 1, 2, 1, 1, 0}, 0.0, {3}},
+           {"no retreat of just the gate", {0, 5, 4, 6, 0}, 1.0, {3}},
+           {"but one beyond it", {0, 5, 4, 6, 0}, 0.999, {1, 2, 3}},
+           {"not the sample that leaves the gate",
+            {0, 8, 10, 9.5, 9.8, 6, 3, 3.5, 2, 9},
+            1.0,
+            {2, 8}},
+           {"the side beyond the gate only", {0, 0.6, -0.3, 0.5, -3, 2}, 1.0, {4}}}) {
+    EXPECT_EQ(FindReversals(turns.history, turns.gate), turns.reversals) << turns.name;
+  }
 }
 
 TEST(FindReversals, MaximaAndMinimaAlternateByMoreThanTheGate) {
@@ -348,6 +339,49 @@ TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
     EXPECT_GE(gate.gate, 1.5 * kCount);
     EXPECT_EQ(gate.count, 4U) << record;
   }
+}
+
+// ---
+// The staircase of the number of reversals over the gate.
+
+std::vector<Excursion> Excursions(const History& history) { return FindExcursions(history); }
+
+TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
+  Generator generator(1);
+  for (int i = 0; i < 2000; ++i) {
+    const History history = testing::RandomHistory(generator);
+    const auto excursions = Excursions(history);
+    ASSERT_EQ(CountReversals(excursions, 0.0), FindReversals(history, 0.0).size());
+    for (const Excursion& excursion : excursions) {
+      for (const double gate :
+           {excursion.range * (1 - 1e-12), excursion.range, excursion.range * (1 + 1e-12)}) {
+        ASSERT_EQ(CountReversals(excursions, gate), FindReversals(history, gate).size())
+            << "history " << i << ", gate " << gate;
+      }
+    }
+  }
+}
+
+TEST(FindExcursions, AreClosedLoopsAndTheTravelFromEndToEnd) {
+  // 0 → 5 → 4 → 6 → −6 → −5: the loop 5 → 4, then three strokes.
+  const auto excursions = Excursions({0, 5, 4, 6, -6, -5});
+  ASSERT_EQ(excursions.size(), 4U);
+  EXPECT_EQ(excursions[0].range, 1.0);
+  EXPECT_EQ(excursions[0].reversals, 2U);
+  EXPECT_EQ(excursions[0].first, 1U);
+  EXPECT_EQ(excursions[0].duration(), 1U);
+  EXPECT_EQ(excursions[1].range, 1.0);
+  EXPECT_EQ(excursions[1].reversals, 1U);
+  EXPECT_EQ(excursions[2].range, 6.0);
+  EXPECT_EQ(excursions[2].duration(), 3U);
+  EXPECT_EQ(excursions[3].range, 12.0);
+}
+
+TEST(FindExcursions, AreNoneWhereNothingTurnsOrMoves) {
+  EXPECT_TRUE(Excursions({}).empty());
+  EXPECT_EQ(CountReversals(Excursions({1}), 0.0), 0U);
+  EXPECT_EQ(CountReversals(Excursions({1, 2, 3}), 0.0), 0U);
+  EXPECT_EQ(CountReversals(Excursions({2, 2, 2}), 0.0), 0U);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include "../../tools/reference/force_and_gradient.h"
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
@@ -100,17 +99,6 @@ TEST(FloatingPointExceptions, ComeFromNoResponseInDoubleOrItsGradient) {
             << model.name << ", " << Describe(law, x);
       }
     });
-  }
-}
-
-TEST(FloatingPointExceptions, ComeFromNoExcitation) {
-  for (const Waveform waveform : {Waveform::kSine, Waveform::kTriangle, Waveform::kGrowingSine}) {
-    for (const double amplitude : {1e-300, 1e-18, 1.0, 1e12, 1e300}) {
-      EXPECT_EQ(RaisedBy([&] {
-                  MakeExcitation({.waveform = waveform, .amplitude = amplitude, .growth = 1e12});
-                }),
-                "");
-    }
   }
 }
 

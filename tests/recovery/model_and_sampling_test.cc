@@ -141,39 +141,33 @@ TEST_F(MasingRecord, OppositeForceSignIsFoundAndFollowed) {
   }
 }
 
-TEST_F(MasingRecord, UnequalAndNestedReversalsAreRecovered) {
-  History displacement;
+TEST_F(MasingRecord, UnequalReversalsGrowingAmplitudesAndUnevenSamplesAreRecovered) {
+  History nested;
   double last = 0.0;
   // Off centre, an inner loop within an inner loop, one passed, then beyond the first extreme.
   for (const double turn : {1.4, -0.3, 0.8, 0.1, 0.5, 0.3, 1.1, -0.9, 1.9, -0.2}) {
     const int steps = 2 + static_cast<int>(40 * std::abs(turn - last));
     for (int i = 1; i <= steps; ++i) {
-      displacement.push_back((last + (turn - last) * i / steps) * kElasticLimit);
+      nested.push_back((last + (turn - last) * i / steps) * kElasticLimit);
     }
     last = turn;
   }
-  EXPECT_TRUE(Recovers(FitOne(Loop(displacement)), law_, kNoiseFree));
-}
-
-TEST_F(MasingRecord, GrowingAmplitudeIsRecovered) {
-  History displacement = Cycling(Wave::kSine, 1.0, 4.0, 120);
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    displacement[i] *= kReach * static_cast<double>(i) / static_cast<double>(displacement.size());
+  History growing = Cycling(Wave::kSine, 1.0, 4.0, 120);
+  for (std::size_t i = 0; i < growing.size(); ++i) {
+    growing[i] *= kReach * static_cast<double>(i) / static_cast<double>(growing.size());
   }
-  EXPECT_TRUE(Recovers(FitOne(Loop(displacement)), law_, kNoiseFree));
-}
-
-TEST_F(MasingRecord, NonUniformSamplingAndRepeatedSamplesAreRecovered) {
   Generator generator(20240611);
   const History fine = Cycling(Wave::kSine, kReach, 3.0, 400);
-  History kept;
+  History uneven;  // and repeated
   for (std::size_t i = 0; i < fine.size(); ++i) {
     const bool is_extreme = i % 200 == 100;  // otherwise the response to the kept samples differs
     if (!is_extreme && generator() % 4 != 0) continue;
-    kept.push_back(fine[i]);
-    while (generator() % 3 == 0) kept.push_back(fine[i]);
+    uneven.push_back(fine[i]);
+    while (generator() % 3 == 0) uneven.push_back(fine[i]);
   }
-  EXPECT_TRUE(Recovers(FitOne(Loop(kept)), law_, kNoiseFree));
+  for (const History& displacement : {nested, growing, uneven}) {
+    EXPECT_TRUE(Recovers(FitOne(Loop(displacement)), law_, kNoiseFree));
+  }
 }
 
 TEST_F(MasingRecord, VirginRecordWhoseFirstRowIsAlreadyLoadedIsRecovered) {
