@@ -132,6 +132,10 @@ TEST(FitOptions, FixedParametersKeepTheirValueAndFreeTheRest) {
   EXPECT_FALSE(alpha.standard_error || alpha.lower95 || alpha.upper95);
   EXPECT_EQ(fit.Find("sigma")->status, ParameterStatus::kFree);
   EXPECT_EQ(fit.Find("force_offset")->value, 0.0);
+  const std::size_t row = fit.parameters.size();
+  EXPECT_TRUE(std::isnan(fit.correlation[1]) && std::isnan(fit.correlation[row])) << "of alpha";
+  EXPECT_EQ(fit.correlation[2], fit.correlation[2 * row]) << "of sigma and slip_force";
+  EXPECT_EQ(fit.correlation[0], 1.0);
 }
 
 TEST(FitOptions, FixingEveryParameterEvaluatesTheModelThere) {

@@ -117,25 +117,6 @@ TEST(Fit, ResidualIsFittedMinusMeasuredWithSignOfFile) {
   }
 }
 
-TEST(Fit, CorrelationIsSymmetricWithUnitDiagonalAndEmptyForTheFixed) {
-  Generator generator(3);
-  const FitResult fit = FitOne(testing::WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator));
-  const std::size_t count = fit.parameters.size();
-  ASSERT_EQ(fit.correlation.size(), count * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const double correlation = fit.correlation[i * count + j];
-      const bool fixed = fit.parameters[i].status == ParameterStatus::kFixed ||
-                         fit.parameters[j].status == ParameterStatus::kFixed;
-      EXPECT_EQ(std::isnan(correlation), fixed);
-      if (fixed) continue;
-      EXPECT_LE(std::abs(correlation), 1.0);
-      EXPECT_DOUBLE_EQ(correlation, fit.correlation[j * count + i]);
-      EXPECT_TRUE(i != j || correlation == 1.0);
-    }
-  }
-}
-
 TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   const FitResult fit = FitOne(Loop(2.0));
   EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
@@ -168,25 +149,6 @@ TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
   const Finding* finding = fit.FindFinding("undetermined_parameter");
   ASSERT_NE(finding, nullptr);
   EXPECT_THAT(finding->parameters, ::testing::ElementsAre("sigma"));
-}
-
-TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
-  // A loop that opposes its own model: lag instead of lead, the force sense forced.
-  History displacement;
-  std::vector<double> force;
-  for (int i = 0; i < 200; ++i) {
-    displacement.push_back(std::sin(0.1 * i));
-    force.push_back(std::sin(0.1 * i - 0.5));
-  }
-  for (const int sense : {1, -1}) {
-    FitOptions options;
-    options.preparation.force_sense = sense;
-    const FitResult fit = FitOne(MakeRecord(displacement, force), options);
-    for (const ParameterEstimate& estimate : fit.parameters) {
-      EXPECT_LE(estimate.lower95.value_or(-HUGE_VAL), estimate.value) << estimate.name;
-      EXPECT_GE(estimate.upper95.value_or(HUGE_VAL), estimate.value) << estimate.name;
-    }
-  }
 }
 
 /// Compares what does not depend on the order of the records of a fit.
