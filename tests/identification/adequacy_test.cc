@@ -219,8 +219,7 @@ TEST(Adequacy, CausesAreNamedAndIntervalsCoverWhatTheyChange) {
             std::pair{"slip_force", kLaw.slip_force}}) {
         const ParameterEstimate& estimate = *fit.Find(name);
         if (estimate.status == ParameterStatus::kFixed) continue;
-        EXPECT_LE(estimate.lower95.value_or(truth), truth) << name << " covers the truth";
-        EXPECT_GE(estimate.upper95.value_or(truth), truth) << name << " covers the truth";
+        EXPECT_TRUE(Covers(estimate, truth)) << name;
       }
     }
   }

@@ -7,11 +7,6 @@
 namespace mindahl::identification::confidence_test {
 namespace {
 
-loop::Record NoisyLoop(std::uint64_t seed) {
-  Generator generator(seed);
-  return WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator);
-}
-
 FitResult FitWith(double confidence, const loop::Record& record, Depth depth) {
   FitOptions options;
   options.confidence = confidence;
@@ -47,9 +42,7 @@ TEST(Confidence, FractionOfIntervalsThatContainTheTruthIsIt) {
       for (std::size_t k = 0; k < truth.size(); ++k) {
         const ParameterEstimate& estimate = *fit.Find(truth[k].first);
         ASSERT_TRUE(estimate.lower95 && estimate.upper95);
-        const bool contains =
-            *estimate.lower95 <= truth[k].second && truth[k].second <= *estimate.upper95;
-        covered[k] += contains ? 1 : 0;
+        covered[k] += Covers(estimate, truth[k].second) ? 1 : 0;
       }
     }
     // Four standard deviations of a binomial count: beyond them once in 16 000.

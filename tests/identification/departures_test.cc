@@ -288,6 +288,16 @@ std::vector<Case> Cases() {
       });
     };
   };
+  const auto of_position = [&](int power) {
+    return made([power](auto&, double size, double force, double x, double) {
+      return force + size * kSlipForce * std::pow(x, power);
+    });
+  };
+  const auto of_slip_force = [&](int power, bool alike) {
+    return made([power, alike](auto&, double size, double force, double x, double) {
+      return force + (alike ? std::abs(force) : force) * size * std::pow(x, power);
+    });
+  };
   const auto seen = [](int power) -> Simulate {
     return [power](const Departed& departed, double size) {
       return departed.Seen([&](double x) {
@@ -299,10 +309,7 @@ std::vector<Case> Cases() {
   return {
       {"channel_lag", 0, kDuration, Late, kDifferences},
       {"viscous_force", 0, kSlipForce / kLength * kDuration, WithDerivative(1), kDifferences},
-      {"plateau_slope", 0, kSlipForce / kLength,
-       made([](auto&, double size, double force, double x, double) {
-         return force + size * x * kLength;
-       })},
+      {"plateau_slope", 0, 1, of_position(1)},
       {"force_drift", 0, kSlipForce / kDuration,
        made([](auto&, double size, double force, double, double time) {
          return force + size * time;
@@ -351,37 +358,17 @@ std::vector<Case> Cases() {
       {"force_saturates", 1, 1, made([](auto&, double size, double force, double, double) {
          return force + size * kSlipForce * std::pow(force / kSlipForce, 3);
        })},
-      {"slip_position", 0, 1, made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x);
-       })},
-      {"slip_position", 1, 1, made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x;
-       })},
-      {"force_of_position", 0, 1, made([](auto&, double size, double force, double x, double) {
-         return force + size * kSlipForce * x * x;
-       })},
-      {"force_of_position", 1, 1, made([](auto&, double size, double force, double x, double) {
-         return force + size * kSlipForce * x * x * x;
-       })},
+      {"slip_position", 0, 1, of_slip_force(1, false)},
+      {"slip_position", 1, 1, of_slip_force(1, true)},
+      {"force_of_position", 0, 1, of_position(2)},
+      {"force_of_position", 1, 1, of_position(3)},
       {"smoothing", 0, kDuration * kDuration, Averaged, kSecondDifferences},
       {"speed_power", 0, 1, WithSpeed(0.5), kDifferences},
       {"speed_power", 1, 1, WithSpeed(1.0), kDifferences},
-      {"slip_position_quadratic", 0, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x);
-       })},
-      {"slip_position_quadratic", 1, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x * x);
-       })},
-      {"slip_position_quadratic", 2, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x;
-       })},
-      {"slip_position_quadratic", 3, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x * x;
-       })},
+      {"slip_position_quadratic", 0, 1, of_slip_force(1, false)},
+      {"slip_position_quadratic", 1, 1, of_slip_force(2, false)},
+      {"slip_position_quadratic", 2, 1, of_slip_force(1, true)},
+      {"slip_position_quadratic", 3, 1, of_slip_force(2, true)},
       {"clock_drift", 0, kDuration,
        [](const Departed& departed, double size) {
          std::vector<double> force = Late(departed, size / 2);

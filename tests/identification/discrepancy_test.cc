@@ -36,11 +36,6 @@ FitResult FitNoisy(const Record& record, std::uint64_t seed = 1, const FitOption
   return FitOne(WithForceNoise(record, kNoise, generator), options);
 }
 
-bool Contains(const ParameterEstimate& estimate, double value) {
-  return estimate.lower95 && estimate.upper95 && *estimate.lower95 <= value &&
-         value <= *estimate.upper95;
-}
-
 TEST(Discrepancy, AdequateFitIsLeftAsItIs) {
   const FitResult fit = FitNoisy(Loop());
   ASSERT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
@@ -58,9 +53,9 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
     EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << b;
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective) << b;
-    EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap)) << b;
-    EXPECT_TRUE(Contains(slip_force, kLaw.slip_force)) << b;
-    EXPECT_TRUE(Contains(slip_force, slip_force.value)) << b;
+    EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap)) << b;
+    EXPECT_TRUE(Covers(slip_force, kLaw.slip_force)) << b;
+    EXPECT_TRUE(Covers(slip_force, slip_force.value)) << b;
   }
 }
 
@@ -125,7 +120,7 @@ TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
   const double peak = fit.WidestRecord().facts.peak_force;
   EXPECT_LE(slip_force.value, peak / 0.9);
   EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective);
-  EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap));
+  EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap));
 }
 
 TEST(RepeatError, IsTheScatterOfRepeatsAndNotWhatTheModelMissesInAll) {

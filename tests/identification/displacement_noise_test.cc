@@ -65,9 +65,7 @@ Honesty Measure(MakeNoisy make_noisy, const FitOptions& options) {
     EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
     for (std::size_t k = 0; k < names.size(); ++k) {
       const ParameterEstimate& estimate = *fit.Find(names[k]);
-      const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
-                          (!estimate.upper95 || truth[k] <= *estimate.upper95);
-      honesty.covered[k] += covers ? 1.0 / kLoops : 0.0;
+      honesty.covered[k] += Covers(estimate, truth[k]) ? 1.0 / kLoops : 0.0;
       const double error = estimate.value - truth[k];
       sum[k] += error / kLoops;
       squares[k] += error * error / kLoops;

@@ -11,11 +11,6 @@ namespace {
 using namespace loop;
 using namespace models;
 
-Record NoisyLoop(std::uint64_t seed, double cycles = 2.0) {
-  Generator generator(seed);
-  return WithForceNoise(Loop(cycles), 0.01 * kLaw.slip_force, generator);
-}
-
 /// Every number and word that a result states, one after the other; what is not stated is "none".
 std::vector<std::string> Statements(const FitResult& fit) {
   std::vector<std::string> all = {fit.solver.message};

@@ -70,16 +70,6 @@ TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
   }
 }
 
-TEST(Prior, FarFromWhatTheRecordSaysIsReported) {
-  const Record record = TimedLoop();
-  FitOptions options = Options();
-  options.priors["slip_force"] = {1.2 * kLaw.slip_force, 0.01 * kLaw.slip_force};
-  const FitResult fit = FitOne(record, options);
-  const Finding* finding = fit.FindFinding("prior_contradicted");
-  ASSERT_NE(finding, nullptr);
-  EXPECT_EQ(finding->parameters, std::vector<std::string>{"slip_force"});
-}
-
 TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   const Record record = TimedLoop();
   const auto refusal = [&](const FitOptions& with) { return RefusalOf({record}, with); };

@@ -13,4 +13,10 @@ inline loop::Record Loop(double cycles = 2.0) {
   return testing::LoopOf(kLaw, displacement);
 }
 
+/// With noise of 1 % of Tc.
+inline loop::Record NoisyLoop(std::uint64_t seed, double cycles = 2.0) {
+  Generator generator(seed);
+  return WithForceNoise(Loop(cycles), 0.01 * kLaw.slip_force, generator);
+}
+
 }  // namespace mindahl::testing

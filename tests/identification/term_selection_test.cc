@@ -96,14 +96,6 @@ TEST(TermSelection, LargeViscousForceIsNotLeftToASlipForceOfTheSpeedAndADrag) {
   EXPECT_FALSE(TermOf(selection, "slip_speed").added);
 }
 
-TEST(TermSelection, ForceOfPositionIsAddedAlone) {
-  const double slope = 0.1 * kLaw.slip_force / kReach;
-  const TermSelection selection = Select(Noisy(With(0.0, 0.1), 3));
-  EXPECT_THAT(selection.added, ElementsAre("plateau_slope"));
-  const ParameterEstimate& estimate = *selection.fit.Find("plateau_slope");
-  EXPECT_NEAR(estimate.value, slope, kStandardErrors * *estimate.standard_error);
-}
-
 TEST(TermSelection, ForceOfPositionThatClosesTheIntervalOfTheSlipForceIsAdded) {
   // A spring as stiff as Tc over the stroke makes the law's Tc an asymptote, open above.
   const Record noisy = Noisy(With(0.0, 1.0), 14);

@@ -73,7 +73,7 @@ TEST(TurningPoints, BetweenSamplesLeaveIntervalsTheirCoverage) {
       const Record record = WithForceNoise(exact, noise * kLaw.slip_force, generator);
       const ParameterEstimate& estimate =
           *fitter.Fit(RecordView(record), Depth::kErrors).Find("slip_force");
-      if (estimate.lower95 <= kLaw.slip_force && kLaw.slip_force <= estimate.upper95) ++covered;
+      if (Covers(estimate, kLaw.slip_force)) ++covered;
     }
     EXPECT_GE(covered, kLeast * kLoops) << noise;
   }

@@ -86,13 +86,6 @@ TEST(VaryingLoad, OfASettledContactIsFollowedFromTheRecordsFirstCycle) {
   }
 }
 
-TEST(VaryingLoad, BelowAHundredthIsConstant) {
-  const Motion motion{.swing = 0.009};
-  const FitResult fit = testing::FitOne(RecordOf(motion));
-  EXPECT_EQ(fit.FindFinding("load_followed"), nullptr);
-  EXPECT_FALSE(fit.records.front().load_varies);
-}
-
 TEST(VaryingLoad, IsNoneOfNoisyReadings) {
   // 5 % of white noise about a constant load.
   Generator generator(11);

@@ -16,12 +16,6 @@ constexpr double kElasticLimit = 1e-6;
 
 BranchLaw LawWith(double shape_exponent) { return {4e7, shape_exponent, 40.0}; }
 
-FitOptions Of(const char* model) {
-  FitOptions options;
-  options.model = &Model(model);
-  return options;
-}
-
 Record RecordOf(const char* model, const BranchLaw& law, const History& displacement,
                 const InitialContact& initial = {}) {
   return MakeRecord(displacement, Respond(Model(model), law, displacement, initial));
@@ -65,7 +59,7 @@ TEST(ModelRecovery, VirginLoopsOfEveryModelReturnItsParameters) {
         const History displacement =
             Cycling(Wave::kSine, direction * reach * kElasticLimit, 2.25, 160);
         const BranchLaw law = LawWith(c.shape_exponent);
-        const FitResult fit = FitOne(RecordOf(c.model, law, displacement), Of(c.model));
+        const FitResult fit = FitOne(RecordOf(c.model, law, displacement), OfModel(c.model));
         EXPECT_TRUE(Recovers(fit, law, kNoiseFree));
       }
     }
@@ -78,7 +72,7 @@ TEST(ModelRecovery, JenkinsLoopJustBeyondSlipIsRecovered) {
   const BranchLaw law = LawWith(0.0);
   for (const double lambda : {1.003, 1.01, 1.02, 1.03, 1.1}) {
     const History displacement = Cycling(Wave::kSine, lambda * kElasticLimit, 2, 200);
-    const FitResult fit = FitOne(RecordOf("jenkins", law, displacement), Of("jenkins"));
+    const FitResult fit = FitOne(RecordOf("jenkins", law, displacement), OfModel("jenkins"));
     EXPECT_TRUE(Recovers(fit, law, kNoiseFree)) << lambda;
   }
 }
@@ -95,7 +89,7 @@ TEST(ModelRecovery, SteadyLoopsOfEveryModelReturnItsParametersFromAnySample) {
                                       std::size_t{120}, std::size_t{150}}) {
         SCOPED_TRACE(::testing::Message() << c.model << ", alpha " << c.shape_exponent << ", reach "
                                           << reach << ", from sample " << begin);
-        FitOptions options = Of(c.model);
+        FitOptions options = OfModel(c.model);
         options.initial_state = InitialState::kSteady;
         EXPECT_TRUE(Recovers(FitOne(From(steady, begin), options), law, kNoiseFree));
       }

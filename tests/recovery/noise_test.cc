@@ -15,11 +15,6 @@ using namespace models;
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // Tc/(σ(1 − α))
 
-bool Holds(const ParameterEstimate& estimate, double truth) {
-  return (!estimate.lower95 || *estimate.lower95 <= truth) &&
-         (!estimate.upper95 || truth <= *estimate.upper95);
-}
-
 bool IsWarnedOf(const FitResult& fit, FindingCode code) { return fit.FindFinding(code) != nullptr; }
 
 /// Nothing of a result may be NaN or infinite where it is stated.
@@ -68,7 +63,7 @@ TEST(Noise, NinetyFivePercentIntervalsCoverAsOftenAsTheyState) {
       for (Tally& tally : tallies) {
         const ParameterEstimate& estimate = *fit.Find(tally.name);
         ASSERT_TRUE(estimate.standard_error) << tally.name << " of loop " << loop;
-        tally.holding += Holds(estimate, tally.truth) ? 1 : 0;
+        tally.holding += Covers(estimate, tally.truth) ? 1 : 0;
         tally.squared_error += (estimate.value - tally.truth) * (estimate.value - tally.truth);
         tally.squared_standard_error += *estimate.standard_error * *estimate.standard_error;
       }
@@ -93,7 +88,7 @@ TEST(Noise, ShapeExponentAtItsBoundHasAOneSidedIntervalAndNoStandardError) {
     const FitResult fit = FitOne(WithForceNoise(clean, 0.01 * kJenkins.slip_force, generator));
     ExpectFinite(fit);
     const ParameterEstimate& alpha = *fit.Find("alpha");
-    holding += Holds(alpha, 0.0) ? 1 : 0;
+    holding += Covers(alpha, 0.0) ? 1 : 0;
     if (alpha.status != ParameterStatus::kAtLowerBound) continue;
     ++at_bound;
     EXPECT_EQ(alpha.value, 0.0);

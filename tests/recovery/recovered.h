@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,10 @@ inline loop::Record MakeRecord(History displacement, std::vector<double> force) 
 /// A Masing contact from its unloaded state.
 inline loop::Record LoopOf(const models::BranchLaw& law, const History& displacement) {
   return MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
+}
+
+inline identification::FitOptions OfModel(std::string_view model) {
+  return {.model = &Model(model)};
 }
 
 inline identification::FitOptions Virgin() {
@@ -122,6 +127,11 @@ inline identification::FitResult FitOne(const loop::Record& record,
 inline std::string RefusalOf(const std::vector<loop::Record>& records,
                              const identification::FitOptions& options) {
   return MessageOf([&] { identification::Fit(records, options); });
+}
+
+/// True if an interval, open where it has no end, contains the truth.
+inline bool Covers(const identification::ParameterEstimate& estimate, double truth) {
+  return estimate.lower95.value_or(truth) <= truth && truth <= estimate.upper95.value_or(truth);
 }
 
 /// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.

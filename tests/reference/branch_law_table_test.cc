@@ -52,21 +52,11 @@ double Error(double value, long double reference, long double scale) {
 /// Runs `error(law, row)` over the table and compares with `bound`.
 template <typename ErrorOf>
 void ExpectWithin(double bound, ErrorOf error_of) {
-  for (const Row& row : ReadRows()) {
+  const std::vector<Row> rows = ReadRows();
+  EXPECT_GE(rows.size(), 15U * 45U);  // shape exponents, displacements
+  for (const Row& row : rows) {
     const BranchLaw law{1.0, row.shape_exponent, 1.0};
     EXPECT_LE(error_of(law, row), bound) << "alpha = " << row.shape_exponent << ", y = " << row.y;
-  }
-}
-
-TEST(BranchLawTable, CoversEveryShapeExponentFarBelowToFarBeyondSlip) {
-  const std::vector<Row> rows = ReadRows();
-  EXPECT_GE(rows.size(), 15U * 45U);
-  for (const double alpha : {0.0, 1e-300, 1.0 / 3.0, 1 - 1e-15, 1.0, 1 + 1e-15, 100.0}) {
-    const auto smallest = std::ranges::find_if(
-        rows, [&](const Row& row) { return row.shape_exponent == alpha && row.y < 1e-17; });
-    const auto largest = std::ranges::find_if(
-        rows, [&](const Row& row) { return row.shape_exponent == alpha && row.y > 1e11; });
-    EXPECT_TRUE(smallest != rows.end() && largest != rows.end()) << alpha;
   }
 }
 
