@@ -70,18 +70,6 @@ TEST(MindlinAccuracy, UnloadingAndReloadingForcesAreThoseOfTheLoop) {
   }
 }
 
-TEST(MindlinLoop, ClosesAtBothTips) {
-  const MindlinContact& contact = kLaboratory;
-  for (const double amplitude_ratio : {1e-9, 0.3, 0.8, 1.0, 1.2}) {
-    const double amplitude = amplitude_ratio * GrossSlipDisplacement(contact);
-    const double peak = MindlinVirginForce(contact, amplitude);
-    EXPECT_EQ(MindlinUnloadingForce(contact, amplitude, amplitude), peak);
-    EXPECT_EQ(MindlinReloadingForce(contact, amplitude, amplitude), peak);
-    EXPECT_EQ(MindlinUnloadingForce(contact, -amplitude, amplitude), -peak);
-    EXPECT_EQ(MindlinReloadingForce(contact, -amplitude, amplitude), -peak);
-  }
-}
-
 TEST(MindlinLoop, HoldsTheSlipForceOnThePlateauOfGrossSlip) {
   const MindlinContact& contact = kLaboratory;
   const double onset = GrossSlipDisplacement(contact);

@@ -1,10 +1,7 @@
 #include "identification/diagnosis/diagnosis.h"
 
-#include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/terms.h"
-#include "mindahl/identification/thresholds.h"
 #include "support/prelude.h"
 
 // Findings from results made by hand.
@@ -88,25 +85,6 @@ TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
   EXPECT_FALSE(FindIn(open)[0].Number("record"));
   const std::vector<RecordFit> records = {Flawless(), open};
   EXPECT_EQ(FindInRecords(records).at(0).Number("record"), 2);
-}
-
-// --- whole fits
-
-Record Loop() {
-  const testing::History displacement = testing::Cycling(testing::Wave::kSine, kReach, 3.0, 200);
-  return testing::LoopOf(kLaw, displacement);
-}
-
-TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {
-  const Record record = Loop();
-  const std::vector<RecordView> views = {record};
-  Fitter fitter;
-  const FitResult& intervals = fitter.Fit(views, Depth::kIntervals);
-  EXPECT_TRUE(intervals.records[0].facts.closed);
-  EXPECT_NEAR(intervals.records[0].facts.amplitude / kReach, 1, 1e-3);
-  EXPECT_EQ(intervals.records[0].gate.count, intervals.records[0].reversals.size());
-  EXPECT_THAT(intervals.findings, IsEmpty());
-  EXPECT_FALSE(fitter.Fit(views, Depth::kEstimate).records[0].facts.closed);
 }
 
 TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
