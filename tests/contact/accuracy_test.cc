@@ -33,7 +33,7 @@ TEST(ContactAccuracy, HoldsItsBoundsFromAtomicToTectonic) {
   constexpr double kOnce = 1.0;       // [ε]: rounded once
   constexpr double kOfRounded = 2.0;  // from two rounded moduli, added
   Draw draw;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const double load = draw.Log(1e-15, 1e15);
     const double radius = draw.Log(1e-10, 1e6);
     const double modulus = draw.Log(1e3, 1e13);
@@ -76,17 +76,14 @@ TEST(ContactAccuracy, HoldsItsBoundsFromAtomicToTectonic) {
 }
 
 TEST(ContactAccuracy, RefusesWhatNoDoubleHolds) {
-  const auto refusal = [](auto call) { return MessageOf(call); };
-  const std::string rule = "must be within the range of double";
-  EXPECT_NE(refusal([] { HertzMaximumPressure(1e300, 1e-100); }).find(rule), std::string::npos);
-  EXPECT_NE(refusal([] { HertzMaximumPressure(1e-300, 1e100); }).find(rule), std::string::npos);
-  EXPECT_NE(refusal([] { GrossSlipForce(1e200, 1e200); }).find(rule), std::string::npos);
-  EXPECT_NE(refusal([] { MindlinTangentialStiffness(1e300, 1e-300); }).find(rule),
-            std::string::npos);
-  EXPECT_NE(refusal([] {
-              GrossSlipDisplacement(MindlinContact{1e300, 1e-300, 1.0});
-            }).find(rule),
-            std::string::npos);
+  const auto expect_refusal = [](auto call) {
+    EXPECT_THAT(MessageOf(call), HasSubstr("must be within the range of double"));
+  };
+  expect_refusal([] { HertzMaximumPressure(1e300, 1e-100); });
+  expect_refusal([] { HertzMaximumPressure(1e-300, 1e100); });
+  expect_refusal([] { GrossSlipForce(1e200, 1e200); });
+  expect_refusal([] { MindlinTangentialStiffness(1e300, 1e-300); });
+  expect_refusal([] { GrossSlipDisplacement({1e300, 1e-300, 1.0}); });
   // What overflows only on the way does not matter.
   EXPECT_DOUBLE_EQ(HertzEquivalentRadius(1e300, 1e120, 1e-60), 4.0 / 3.0);
 }

@@ -5,7 +5,7 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 
 /// The equations of Peyret et al. (2017) in the form they are printed, errata corrected where a
-/// comment says so, in 100 digits: the loss in partial slip cancels 36 of them at T*/Tc = 1e-12.
+/// comment says so, in 100 digits.
 namespace mindahl::printed {
 
 using Real = boost::multiprecision::cpp_bin_float_100;
@@ -33,11 +33,6 @@ struct Contact {
   [[nodiscard]] Real VirginDisplacement(const Real& force) const {
     return GrossSlipDisplacement() * (1 - TwoThirdsPower(1 - force / slip_force));
   }
-  /// Eq. 8.
-  [[nodiscard]] Real UnloadingDisplacement(const Real& force, const Real& peak) const {
-    return GrossSlipDisplacement() * (2 * TwoThirdsPower(1 - (peak - force) / (2 * slip_force)) -
-                                      TwoThirdsPower(1 - peak / slip_force) - 1);
-  }
   /// Eq. 9.
   [[nodiscard]] Real ReloadingDisplacement(const Real& force, const Real& peak) const {
     return -GrossSlipDisplacement() * (2 * TwoThirdsPower(1 - (peak + force) / (2 * slip_force)) -
@@ -56,13 +51,6 @@ struct Contact {
   [[nodiscard]] Real ReloadingForce(const Real& displacement, const Real& peak, int sign) const {
     const Real base = (sign * Share(displacement) + TwoThirdsPower(1 - peak / slip_force) + 1) / 2;
     return -peak + 2 * slip_force * (1 - ThreeHalvesPower(base));
-  }
-  /// Johnson (1985) eq. 7.57.
-  [[nodiscard]] Real EnergyPerCycle(const Real& peak) const {
-    const Real r = peak / slip_force;
-    const Real z = TwoThirdsPower(1 - r);
-    return 9 * slip_force * slip_force * tangential_compliance / (10 * contact_radius) *
-           (1 - (1 - r) * z - 5 * r / 6 * (1 + z));
   }
 };
 

@@ -1,5 +1,3 @@
-
-
 #include "identification/solve/projected_residual.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
@@ -23,12 +21,13 @@ constexpr double kRecovered = 1e-5;
 
 Record Loop(double cycles = 2.3) {
   const auto displacement = Cycling(Wave::kSine, kReach, cycles, kSamplesPerCycle);
-  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  record.time.clear();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(kStep * static_cast<double>(i));
-  }
-  return record;
+  return Timed(LoopOf(kLaw, displacement), kStep);
+}
+
+FitResult FitWith(const Record& record, const std::vector<std::string>& terms) {
+  FitOptions options;
+  options.terms = terms;
+  return FitOne(record, options);
 }
 
 /// Central differences, as a fit knows the velocity [m/s].
@@ -42,6 +41,19 @@ std::vector<double> Velocity(const Record& record) {
                        (record.time[after] - record.time[before]));
   }
   return velocity;
+}
+
+/// Mean of the speed over the path in the middle third [m/s].
+double SpeedInTheMiddle(const Record& record, const std::vector<double>& velocity) {
+  double sum = 0.0;
+  double path = 0.0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    if (std::abs(record.displacement[i]) > kReach / 3) continue;
+    const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
+    sum += step * std::abs(velocity[i]);
+    path += step;
+  }
+  return sum / path;
 }
 
 /// Direction of the stroke of each sample, a turning point ending its stroke.
@@ -73,9 +85,7 @@ TEST(AddedForces, PowerOfTheSpeedIsRecovered) {
       record.force[i] +=
           std::copysign(factor * std::pow(std::abs(velocity[i]), exponent), velocity[i]);
     }
-    FitOptions options;
-    options.terms = {"viscous", "speed_exponent"};
-    const FitResult fit = FitOne(record, options);
+    const FitResult fit = FitWith(record, {"viscous", "speed_exponent"});
     ExpectLaw(fit);
     EXPECT_NEAR(ValueOf(fit, "speed_exponent"), exponent, kRecovered);
     // C belongs to 1 m/s: ∂ ln C/∂m = ln(u/v), of a speed of 1e-5 m/s.
@@ -95,9 +105,8 @@ TEST(AddedForces, SlipForceOfPositionAndDirectionIsRecovered) {
     record.force[i] += plateau_slope * record.displacement[i] +
                        plateau_curvature * record.displacement[i] * record.displacement[i];
   }
-  FitOptions options;
-  options.terms = {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit =
+      FitWith(record, {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"});
   ExpectLaw(fit);
   EXPECT_NEAR(ValueOf(fit, "slip_slope"), kSlope, kRecovered);
   EXPECT_NEAR(ValueOf(fit, "slip_curvature"), kCurvature, kRecovered);
@@ -111,21 +120,12 @@ TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
   constexpr double kOfSpeed = 0.4;
   constexpr double kExponent = 0.5;
   const std::vector<double> velocity = Velocity(record);
-  double sum = 0.0;
-  double path = 0.0;
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    if (std::abs(record.displacement[i]) > kReach / 3) continue;
-    const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
-    sum += step * std::abs(velocity[i]);
-    path += step;
-  }
+  const double usual = SpeedInTheMiddle(record, velocity);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double ratio = std::abs(velocity[i]) / (sum / path);
+    const double ratio = std::abs(velocity[i]) / usual;
     record.force[i] *= 1 + kOfSpeed * (std::pow(ratio, kExponent) - 1);
   }
-  FitOptions options;
-  options.terms = {"slip_speed", "slip_speed_exponent"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = FitWith(record, {"slip_speed", "slip_speed_exponent"});
   ExpectLaw(fit);
   // At rest a fit has 1 − c(1 − (v_ε/v₀)^m), with a resolution of 1e-6 of the speed.
   constexpr double kAtRest = 1e-3;
@@ -139,21 +139,12 @@ TEST(AddedForces, DragIsRecoveredAndTcIsItsSumWithTheContactsForceInTheMiddle) {
   const std::vector<double> velocity = Velocity(record);
   constexpr double kDrag = 40.0;
   constexpr double kExponent = 0.5;
-  double sum = 0.0;
-  double path = 0.0;
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    if (std::abs(record.displacement[i]) > kReach / 3) continue;
-    const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
-    sum += step * std::abs(velocity[i]);
-    path += step;
-  }
+  const double usual = SpeedInTheMiddle(record, velocity);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double ratio = std::abs(velocity[i]) / (sum / path);
+    const double ratio = std::abs(velocity[i]) / usual;
     record.force[i] += std::copysign(kDrag * std::pow(ratio, kExponent), velocity[i]);
   }
-  FitOptions options;
-  options.terms = {"drag_fraction", "drag_exponent"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = FitWith(record, {"drag_fraction", "drag_exponent"});
   EXPECT_TRUE(fit.converged) << fit.solver.message;
   constexpr double kAtRest = 1e-3;  // as above
   const double together = kLaw.slip_force + kDrag;
@@ -173,9 +164,7 @@ TEST(AddedForces, SlipForceThatChangesWithTimeIsRecovered) {
     const double time = (record.time[i] - middle) / (record.time.back() - middle);
     record.force[i] *= 1 + kTrend * time;
   }
-  FitOptions options;
-  options.terms = {"slip_trend"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = FitWith(record, {"slip_trend"});
   ExpectLaw(fit);
   EXPECT_NEAR(ValueOf(fit, "slip_trend"), kTrend, -10 * kRecovered * kTrend);
 }
@@ -188,10 +177,8 @@ TEST(AddedForces, RippleWithAPhaseForEachDirectionIsRecovered) {
     const double phase = 2 * std::numbers::pi * record.displacement[i] / period;
     record.force[i] += direction[i] > 0 ? 2 * std::cos(phase + 0.7) : 3 * std::cos(phase - 1.9);
   }
-  FitOptions options;
-  options.terms = {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
-                   "ripple_sine_down"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = FitWith(record, {"ripple_period", "ripple_cosine_up", "ripple_sine_up",
+                                         "ripple_cosine_down", "ripple_sine_down"});
   ExpectLaw(fit);
   EXPECT_NEAR(ValueOf(fit, "ripple_period"), period, kRecovered * period);
   const double up = std::hypot(ValueOf(fit, "ripple_cosine_up"), ValueOf(fit, "ripple_sine_up"));
@@ -214,9 +201,7 @@ TEST(AddedForces, MassIsRecovered) {
     record.force[i] +=
         kMass * (velocity[after] - velocity[before]) / (record.time[after] - record.time[before]);
   }
-  FitOptions options;
-  options.terms = {"inertia"};
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = FitWith(record, {"inertia"});
   ExpectLaw(fit);
   EXPECT_NEAR(ValueOf(fit, "inertia"), kMass, kRecovered * kMass);
 }

@@ -40,7 +40,7 @@ TEST(Asymmetry, IsRecoveredWithBothOffsetsFromVirginContact) {
   for (const double alpha : {0.2, 1.0 / 3, 0.7}) {
     const BranchLaw law{5e7, alpha, 60.0};
     for (const double lambda : {0.9, 1.3, 2.5}) {
-      for (const double asymmetry : {-0.6, -0.15, 0.02, 0.3, 0.75}) {
+      for (const double asymmetry : {-0.6, -0.15, 0.0, 0.3, 0.75}) {
         SCOPED_TRACE(::testing::Message() << alpha << ", lambda " << lambda << ", " << asymmetry);
         const Record record =
             Shifted(LoopOf(asymmetry, lambda, 2.25, law), kDisplacementOffset, kForceOffset);
@@ -157,16 +157,7 @@ TEST(Asymmetry, IsWhatASymmetricFitOfAVirginLoopLooksFor) {
   EXPECT_EQ(cause->term, "asymmetry");
   const FitResult fit = FitOne(record, WithAsymmetry());
   EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
-  EXPECT_LT(asymmetry.lower95.value(), 0.25);
-  EXPECT_GT(asymmetry.upper95.value(), 0.25);
-}
-
-TEST(Asymmetry, LeavesASymmetricLoopItsParameters) {
-  const FitResult fit =
-      FitOne(Shifted(LoopOf(0.0, 1.3), kDisplacementOffset, kForceOffset), WithAsymmetry());
-  EXPECT_TRUE(Recovers(fit, kMindlin, kWithAsymmetry));
-  EXPECT_NEAR(fit.Find("asymmetry")->value, 0.0, kWithAsymmetry);
+  EXPECT_TRUE(Covers(*fit.Find("asymmetry"), 0.25));
 }
 
 TEST(Asymmetry, IsRecoveredWhereTheMotionTurnsBetweenTheSamples) {

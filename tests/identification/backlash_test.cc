@@ -1,5 +1,3 @@
-
-
 #include "identification/stages.h"
 #include "mindahl/identification/term_selection.h"
 #include "support/prelude.h"
@@ -95,8 +93,7 @@ TEST(Backlash, LeavesInnerLoopsThatDoNotUnloadTheContactOnOneSideOfTheGap) {
 
 TEST(Backlash, OfNoneIsFoundAtItsBoundAndLeavesTheLaw) {
   const History displacement = Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle);
-  const FitResult fit = FitOne(
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), WithBacklash());
+  const FitResult fit = FitOne(testing::LoopOf(kLaw, displacement), WithBacklash());
   ASSERT_TRUE(fit.converged);
   EXPECT_NEAR(fit.law.slip_force / kLaw.slip_force, 1.0, kRecovered);
   EXPECT_LT(fit.Find("backlash")->value, 1e-6 * kReach);

@@ -24,12 +24,9 @@ Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, dou
   if (friction.shape_exponent) law.shape_exponent = *friction.shape_exponent;
   const testing::History displacement = Cycling(Wave::kSine, reach * testing::kReach, 2.0, 240);
   Generator generator(seed);
-  Record record = WithForceNoise(MakeRecord(displacement, Respond(friction, law, displacement)),
-                                 noise * law.slip_force, generator);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.01 * static_cast<double>(i));
-  }
-  return record;
+  return Timed(WithForceNoise(MakeRecord(displacement, Respond(friction, law, displacement)),
+                              noise * law.slip_force, generator),
+               0.01);
 }
 
 FitOptions OptionsOf(const std::string& model, const std::string& term) {
@@ -50,73 +47,67 @@ FitOptions OptionsOf(const std::string& model, const std::string& term) {
   return options;
 }
 
-struct Case {
-  std::string model;
-  std::string term;
-};
+/// The terms that a fit may be asked for; "" for the law alone.
+std::vector<std::string> TermsToAskFor() {
+  std::vector<std::string> terms = {""};
+  for (const Term& term : Terms()) {
+    const bool is_asked = term.presence == Presence::kOnDemand ||
+                          (term.presence == Presence::kReported && term.needs_time) ||
+                          term.name == "force_drift";
+    // A further coefficient of a term is fitted with it.
+    if (is_asked && !term.of_column && !term.group.empty()) terms.emplace_back(term.name);
+  }
+  return terms;
+}
 
-std::vector<Case> LawsAndTerms() {
-  std::vector<Case> cases;
-  for (const char* model : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
-    cases.push_back({model, ""});
-    for (const Term& term : Terms()) {
-      const bool is_asked = term.presence == Presence::kOnDemand ||
-                            (term.presence == Presence::kReported && term.needs_time) ||
-                            term.name == "force_drift";
-      // A further coefficient of a term is fitted with it.
-      if (!is_asked || term.of_column || term.group.empty()) continue;
-      cases.push_back({model, std::string(term.name)});
+class OfEveryLaw : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(OfEveryLaw, GradientsAgreeWithDifferences) {
+  const std::string model = GetParam();
+  const Record record = TimedLoop(model, 0.7, 3);
+  const RecordView view(record);
+  for (const std::string& term : TermsToAskFor()) {
+    SCOPED_TRACE(term);
+    const FitOptions options = OptionsOf(model, term);
+    Fitter fitter(options);
+    const FitResult& fit = fitter.Fit(view, Depth::kEstimate);
+    ASSERT_TRUE(fit.converged);
+    CeresProblem problem({&view, 1}, options, fit, kLaw.slip_force);
+    // Off the minimum, and off the neutral value of the term.
+    for (CeresParameter& parameter : problem.parameters()) {
+      if (!parameter.fixed) parameter.theta += 0.003;
+      // Where the law holds α at 0, differences need room below.
+      if (parameter.name == "alpha") parameter.theta = std::max(parameter.theta, 0.05);
+    }
+    const auto cost = problem.MakeCostFunction();
+    std::vector<const double*> blocks;
+    for (const std::size_t place : problem.blocks()) {
+      blocks.push_back(&problem.parameters()[place].theta);
+    }
+    const std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
+    ceres::NumericDiffOptions differences;
+    differences.ridders_relative_initial_step_size = 1e-5;
+    const ceres::GradientChecker checker(cost.get(), &manifolds, differences);
+    ceres::GradientChecker::ProbeResults results;
+    checker.Probe(blocks.data(), 1.0, &results);
+    // Ridders' differences have nine digits where the response is smooth. Samples that a step
+    // carries over a corner have none: those where slip begins, and under a lag, which moves
+    // samples along straight lines between readings, all that pass a reading.
+    const double tolerance = term == "lag" || model == "jenkins" ? 2e-2 : 1e-3;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const double norm = results.jacobians[b].norm();
+      EXPECT_LE((results.jacobians[b] - results.numeric_jacobians[b]).norm(),
+                tolerance * std::max(norm, 1e-3))
+          << problem.parameters()[problem.blocks()[b]].name << ", norm " << norm;
     }
   }
-  return cases;
 }
 
-class OfEveryLawAndTerm : public ::testing::TestWithParam<Case> {};
-
-TEST_P(OfEveryLawAndTerm, GradientsAgreeWithDifferences) {
-  const auto& [model, term] = GetParam();
-  const Record record = TimedLoop(model, 0.7, 3);
-  const FitOptions options = OptionsOf(model, term);
-  const RecordView view(record);
-  Fitter fitter(options);
-  const FitResult& fit = fitter.Fit(view, Depth::kEstimate);
-  ASSERT_TRUE(fit.converged);
-  CeresProblem problem({&view, 1}, options, fit, kLaw.slip_force);
-  // Off the minimum, and off the neutral value of the term.
-  for (CeresParameter& parameter : problem.parameters()) {
-    if (!parameter.fixed) parameter.theta += 0.003;
-    // Where the law holds α at 0, differences need room below.
-    if (parameter.name == "alpha") parameter.theta = std::max(parameter.theta, 0.05);
-  }
-  const auto cost = problem.MakeCostFunction();
-  std::vector<const double*> blocks;
-  for (const std::size_t place : problem.blocks()) {
-    blocks.push_back(&problem.parameters()[place].theta);
-  }
-  const std::vector<const ceres::Manifold*> manifolds(blocks.size(), nullptr);
-  ceres::NumericDiffOptions differences;
-  differences.ridders_relative_initial_step_size = 1e-5;
-  const ceres::GradientChecker checker(cost.get(), &manifolds, differences);
-  ceres::GradientChecker::ProbeResults results;
-  checker.Probe(blocks.data(), 1.0, &results);
-  // Ridders' differences have nine digits where the response is smooth. Samples that a step carries
-  // over a corner have none: those where slip begins, and under a lag, which moves samples along
-  // straight lines between readings, all that pass a reading.
-  const double tolerance = term == "lag" || model == "jenkins" ? 2e-2 : 1e-3;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const double norm = results.jacobians[b].norm();
-    EXPECT_LE((results.jacobians[b] - results.numeric_jacobians[b]).norm(),
-              tolerance * std::max(norm, 1e-3))
-        << problem.parameters()[problem.blocks()[b]].name << ", norm " << norm;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(CeresProblem, OfEveryLawAndTerm, ::testing::ValuesIn(LawsAndTerms()),
+INSTANTIATE_TEST_SUITE_P(CeresProblem, OfEveryLaw,
+                         ::testing::Values("mindlin-dahl", "mindlin", "jenkins", "dahl"),
                          [](const auto& instance) {
-                           std::string name = instance.param.model + "_" + instance.param.term;
-                           for (char& letter : name) {
-                             if (letter == '-') letter = '_';
-                           }
+                           std::string name(instance.param);
+                           std::ranges::replace(name, '-', '_');
                            return name;
                          });
 
@@ -164,7 +155,7 @@ double JudgeCost(std::span<const RecordView> views, const FitOptions& options,
   return least;
 }
 
-TEST(CeresProblem, MinimumIsThatOfTheFitForTwoHundredLoops) {
+TEST(CeresProblem, MinimumIsThatOfTheFit) {
   // Both stop where a step gains less than 1e-10 of the cost.
   constexpr double kSameMinimum = 1e-8;
   struct Kind {
@@ -186,9 +177,8 @@ TEST(CeresProblem, MinimumIsThatOfTheFitForTwoHundredLoops) {
       {"mindlin-dahl", "", 1.0, true},
       {"mindlin-dahl", "", 1.0, false, true},
   };
-  int loops = 0;
   for (const Kind& kind : kinds) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed, ++loops) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(std::string(kind.model) + " " + kind.term + " seed " + std::to_string(seed));
       std::vector<Record> records = {TimedLoop(kind.model, kind.reach, seed)};
       if (kind.joint) records.push_back(TimedLoop(kind.model, 0.6, seed + 100));
@@ -205,7 +195,6 @@ TEST(CeresProblem, MinimumIsThatOfTheFitForTwoHundredLoops) {
       EXPECT_NEAR(2 * fit.solver.final_cost / judge, 1.0, kSameMinimum);
     }
   }
-  EXPECT_EQ(loops, 200);
 }
 
 // Ceres writes a page to the standard error of a residual or derivative that is no number.

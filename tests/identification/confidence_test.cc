@@ -1,5 +1,3 @@
-
-
 #include "core/probability.h"
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
@@ -8,11 +6,6 @@
 // The confidence of intervals is one setting: what it changes, and whether it is kept.
 namespace mindahl::identification::confidence_test {
 namespace {
-
-loop::Record NoisyLoop(std::uint64_t seed) {
-  Generator generator(seed);
-  return WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator);
-}
 
 FitResult FitWith(double confidence, const loop::Record& record, Depth depth) {
   FitOptions options;
@@ -49,9 +42,7 @@ TEST(Confidence, FractionOfIntervalsThatContainTheTruthIsIt) {
       for (std::size_t k = 0; k < truth.size(); ++k) {
         const ParameterEstimate& estimate = *fit.Find(truth[k].first);
         ASSERT_TRUE(estimate.lower95 && estimate.upper95);
-        const bool contains =
-            *estimate.lower95 <= truth[k].second && truth[k].second <= *estimate.upper95;
-        covered[k] += contains ? 1 : 0;
+        covered[k] += Covers(estimate, truth[k].second) ? 1 : 0;
       }
     }
     // Four standard deviations of a binomial count: beyond them once in 16 000.
@@ -80,12 +71,6 @@ TEST(Confidence, OneThatIsNoProbabilityIsRefused) {
   const loop::Record record = NoisyLoop(3);
   for (const double confidence : {0.0, 1.0, -0.5, 95.0, std::nan("")}) {
     EXPECT_THROW(FitWith(confidence, record, Depth::kEstimate), InvalidArgument) << confidence;
-  }
-}
-
-TEST(NormalQuantile, IsTheInverseOfTheErrorFunction) {
-  for (const double confidence : {0.01, 0.5, 0.95, 0.999999}) {
-    EXPECT_NEAR(std::erf(NormalQuantile(confidence) / std::sqrt(2.0)), confidence, 1e-15);
   }
 }
 

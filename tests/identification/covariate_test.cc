@@ -1,5 +1,3 @@
-
-
 #include "identification/sample_loop.h"
 #include "mindahl/identification/terms.h"
 #include "support/prelude.h"
@@ -104,36 +102,6 @@ TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
   FitOptions options;
   options.covariates = {"p", "volts"};
   EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'p' and 'volts' are one channel"));
-}
-
-/// The first cause that a fit without terms finds.
-const Cause& FirstCause(const FitResult& fit) {
-  static const Cause none{.code = "none", .term = {}};
-  return fit.adequacy.causes.empty() ? none : fit.adequacy.causes.front();
-}
-
-TEST(Covariate, NotRequestedIsNamedAsCauseAndNotApplied) {
-  Generator generator(11);
-  Record record = WithForceNoise(LoopBesideTwo(), 0.01 * kLaw.slip_force, generator);
-  // The force itself, in another unit, and a column that says nothing.
-  record.covariates.push_back({.name = "volts", .unit = "V", .values = record.force});
-  for (double& value : record.covariates.back().values) value = 0.02 * value + 1;
-  record.covariates.push_back(
-      {.name = "noise", .unit = "", .values = Wandering(record.size(), 0.0, 7.7)});
-  FitOptions options;
-  options.covariates = {"p"};
-  const FitResult fit = FitOne(record, options);
-  EXPECT_EQ(fit.Find("covariate_oil_temperature"), nullptr);
-  EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
-  const Cause& cause = FirstCause(fit);
-  EXPECT_EQ(cause.code, "covariate");
-  EXPECT_EQ(cause.term, "oil temperature");
-  for (const Cause& other : fit.adequacy.causes) {
-    EXPECT_THAT(other.term, ::testing::Not(HasSubstr("volts")));
-    EXPECT_THAT(other.term, ::testing::Ne("p"));
-  }
-  options.covariates = {"p", "oil temperature"};
-  EXPECT_EQ(FitOne(record, options).adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
 TEST(Covariate, HasANameThatNeedsNoQuoting) {

@@ -181,44 +181,28 @@ Simulate Bulged(int half_waves) {
   };
 }
 
+/// Length of the motion's unit [m].
+double ScaleOf(const Motion& motion) {
+  return (motion.displacement.front() - kCentre) /
+         MotionAt(motion.time.front(), motion.time.back());
+}
+
 /// The force between samples, from fifty times as many.
 std::vector<double> Late(const Departed& departed, double lag) {
-  constexpr std::size_t kFiner = 50;
-  Motion fine;
-  const Motion& motion = departed.motion;
-  const double scale = kLength;
-  for (std::size_t i = 0; i < departed.size(); ++i) {
-    for (std::size_t k = 0; k < (i + 1 < departed.size() ? kFiner : 1); ++k) {
-      const double share = static_cast<double>(k) / kFiner;
-      if (k == 0) {
-        fine.time.push_back(motion.time[i]);
-        fine.displacement.push_back(motion.displacement[i]);
-        continue;
-      }
-      // Between reversals the motion is that of the samples, by the parabolas through them.
-      const std::size_t j = std::clamp<std::size_t>(i, 1, departed.size() - 2);
-      const double time = motion.time[i] + share * (motion.time[i + 1] - motion.time[i]);
-      double x = 0.0;
-      for (std::size_t a = j - 1; a <= j + 1; ++a) {
-        double weight = 1.0;
-        for (std::size_t b = j - 1; b <= j + 1; ++b) {
-          if (b != a) weight *= (time - motion.time[b]) / (motion.time[a] - motion.time[b]);
-        }
-        x += weight * motion.displacement[a] / scale;
-      }
-      fine.time.push_back(time);
-      fine.displacement.push_back(x * scale);
-    }
+  constexpr std::size_t kLast = 50 * (kSamples - 1);
+  const double duration = departed.motion.time.back();
+  const double scale = ScaleOf(departed.motion);
+  History fine;
+  for (std::size_t i = 0; i <= kLast; ++i) {
+    const double time = duration * static_cast<double>(i) / kLast;
+    fine.push_back(kCentre + scale * MotionAt(time, duration));
   }
-  const std::vector<double> force = departed.contact.Force(fine.displacement);
+  const std::vector<double> force = departed.contact.Force(fine);
   std::vector<double> late;
-  for (const double time : motion.time) {
-    const double at = std::max(time - lag, 0.0);
-    const auto next = std::ranges::upper_bound(fine.time, at);
-    const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(next - fine.time.begin()), 1,
-                                           fine.time.size() - 1);
-    const double share = (at - fine.time[i - 1]) / (fine.time[i] - fine.time[i - 1]);
-    late.push_back(force[i - 1] + share * (force[i] - force[i - 1]));
+  for (const double time : departed.motion.time) {
+    const double place = std::clamp(time - lag, 0.0, duration) / duration * kLast;
+    const std::size_t i = std::min(static_cast<std::size_t>(place), kLast - 1);
+    late.push_back(std::lerp(force[i], force[i + 1], place - static_cast<double>(i)));
   }
   return late;
 }
@@ -242,14 +226,7 @@ Simulate WithDerivative(int order) {
   return [order](const Departed& departed, double size) {
     const Motion& motion = departed.motion;
     const double duration = motion.time.back();
-    const auto [lowest, highest] = std::ranges::minmax(motion.displacement);
-    double low = 0.0;
-    double high = 0.0;
-    for (const double time : motion.time) {
-      low = std::min(low, MotionAt(time, duration));
-      high = std::max(high, MotionAt(time, duration));
-    }
-    const double scale = (highest - lowest) / (high - low);
+    const double scale = ScaleOf(motion);
     std::vector<double> force = departed.contact.Force(motion.displacement);
     for (std::size_t i = 0; i < force.size(); ++i) {
       force[i] += size * scale * Differentiated(motion.time[i], duration, order);
@@ -311,6 +288,16 @@ std::vector<Case> Cases() {
       });
     };
   };
+  const auto of_position = [&](int power) {
+    return made([power](auto&, double size, double force, double x, double) {
+      return force + size * kSlipForce * std::pow(x, power);
+    });
+  };
+  const auto of_slip_force = [&](int power, bool alike) {
+    return made([power, alike](auto&, double size, double force, double x, double) {
+      return force + (alike ? std::abs(force) : force) * size * std::pow(x, power);
+    });
+  };
   const auto seen = [](int power) -> Simulate {
     return [power](const Departed& departed, double size) {
       return departed.Seen([&](double x) {
@@ -322,10 +309,7 @@ std::vector<Case> Cases() {
   return {
       {"channel_lag", 0, kDuration, Late, kDifferences},
       {"viscous_force", 0, kSlipForce / kLength * kDuration, WithDerivative(1), kDifferences},
-      {"plateau_slope", 0, kSlipForce / kLength,
-       made([](auto&, double size, double force, double x, double) {
-         return force + size * x * kLength;
-       })},
+      {"plateau_slope", 0, 1, of_position(1)},
       {"force_drift", 0, kSlipForce / kDuration,
        made([](auto&, double size, double force, double, double time) {
          return force + size * time;
@@ -374,37 +358,17 @@ std::vector<Case> Cases() {
       {"force_saturates", 1, 1, made([](auto&, double size, double force, double, double) {
          return force + size * kSlipForce * std::pow(force / kSlipForce, 3);
        })},
-      {"slip_position", 0, 1, made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x);
-       })},
-      {"slip_position", 1, 1, made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x;
-       })},
-      {"force_of_position", 0, 1, made([](auto&, double size, double force, double x, double) {
-         return force + size * kSlipForce * x * x;
-       })},
-      {"force_of_position", 1, 1, made([](auto&, double size, double force, double x, double) {
-         return force + size * kSlipForce * x * x * x;
-       })},
+      {"slip_position", 0, 1, of_slip_force(1, false)},
+      {"slip_position", 1, 1, of_slip_force(1, true)},
+      {"force_of_position", 0, 1, of_position(2)},
+      {"force_of_position", 1, 1, of_position(3)},
       {"smoothing", 0, kDuration * kDuration, Averaged, kSecondDifferences},
       {"speed_power", 0, 1, WithSpeed(0.5), kDifferences},
       {"speed_power", 1, 1, WithSpeed(1.0), kDifferences},
-      {"slip_position_quadratic", 0, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x);
-       })},
-      {"slip_position_quadratic", 1, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x * x);
-       })},
-      {"slip_position_quadratic", 2, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x;
-       })},
-      {"slip_position_quadratic", 3, 1,
-       made([](auto&, double size, double force, double x, double) {
-         return force + std::abs(force) * size * x * x;
-       })},
+      {"slip_position_quadratic", 0, 1, of_slip_force(1, false)},
+      {"slip_position_quadratic", 1, 1, of_slip_force(2, false)},
+      {"slip_position_quadratic", 2, 1, of_slip_force(1, true)},
+      {"slip_position_quadratic", 3, 1, of_slip_force(2, true)},
       {"clock_drift", 0, kDuration,
        [](const Departed& departed, double size) {
          std::vector<double> force = Late(departed, size / 2);

@@ -1,6 +1,7 @@
 #include "identification/diagnosis/diagnosis.h"
 
 #include "identification/stages.h"
+#include "mindahl/identification/fit.h"
 #include "support/prelude.h"
 
 // Findings from results made by hand.
@@ -31,6 +32,71 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   EXPECT_EQ(findings[0].Number("amplitude"), 0.5e-6);
   result.parameters[1].status = ParameterStatus::kFixed;
   EXPECT_EQ(FindOpenSlipForce(result).size(), 1U);
+}
+
+// ---
+// What is found in records, from facts made by hand, and what a whole fit makes of them.
+
+using namespace loop;
+using namespace models;
+
+std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
+  std::vector<std::string_view> codes;
+  for (const Finding& finding : findings) codes.push_back(finding.code);
+  return codes;
+}
+
+RecordFit Flawless() {
+  RecordFit record;
+  record.facts.closed = true;
+  return record;
+}
+
+std::vector<Finding> FindIn(const RecordFit& record) { return FindInRecords({&record, 1}); }
+
+TEST(FindInRecords, NothingInAFlawlessOne) { EXPECT_THAT(FindIn(Flawless()), IsEmpty()); }
+
+TEST(FindInRecords, UncertainReversalsHaveBothCountsAndGates) {
+  RecordFit record = Flawless();
+  record.gate = {8e-4, 21, false, 148, 3e-6};
+  record.reversals.resize(19);  // after smoothing
+  const std::vector<Finding> findings = FindIn(record);
+  ASSERT_THAT(Codes(findings), ElementsAre("reversals_uncertain"));
+  EXPECT_EQ(findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(findings[0].Number("count"), 19);
+  EXPECT_EQ(findings[0].Number("gate"), 8e-4);
+  EXPECT_EQ(findings[0].Number("other_count"), 148);
+  EXPECT_EQ(findings[0].Number("other_gate"), 3e-6);
+}
+
+TEST(FindInRecords, GlitchesAreANote) {
+  RecordFit record = Flawless();
+  record.glitches.total = 7;
+  const std::vector<Finding> findings = FindIn(record);
+  ASSERT_THAT(Codes(findings), ElementsAre("glitches_left_out"));
+  EXPECT_EQ(findings[0].severity, Severity::kNote);
+  EXPECT_EQ(findings[0].Number("count"), 7);
+}
+
+TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
+  RecordFit open;
+  EXPECT_THAT(Codes(FindIn(open)), ElementsAre("no_closed_cycle"));
+  EXPECT_EQ(FindIn(open)[0].severity, Severity::kNote);
+  EXPECT_FALSE(FindIn(open)[0].Number("record"));
+  const std::vector<RecordFit> records = {Flawless(), open};
+  EXPECT_EQ(FindInRecords(records).at(0).Number("record"), 2);
+}
+
+TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
+  ScaledRecords data;
+  ScaledRecord& record = data.records.emplace_back();
+  record.force.assign({0.0, 0.1, 0.2, 0.3});
+  record.load_change.assign({0.5, 0.3, 0.1, 9.0});
+  record.counts.assign({1, 1, 1, 0});
+  const std::vector<Finding> findings = FindVaryingLoads(data);
+  ASSERT_EQ(findings.size(), 1U);
+  // The variance of 0.5, 0.3 and 0.1 is 0.08/3.
+  EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
 }
 
 }  // namespace

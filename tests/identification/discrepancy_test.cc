@@ -19,7 +19,7 @@ constexpr double kNoise = 0.002 * 40.0;
 
 Record Loop(double reach = kReach) {
   const History displacement = Cycling(Wave::kSine, reach, 5.0, 300);
-  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  return testing::LoopOf(kLaw, displacement);
 }
 
 /// Times 1 + b·x/X.
@@ -34,11 +34,6 @@ Record OfPosition(double b, double reach = kReach) {
 FitResult FitNoisy(const Record& record, std::uint64_t seed = 1, const FitOptions& options = {}) {
   Generator generator(seed);
   return FitOne(WithForceNoise(record, kNoise, generator), options);
-}
-
-bool Contains(const ParameterEstimate& estimate, double value) {
-  return estimate.lower95 && estimate.upper95 && *estimate.lower95 <= value &&
-         value <= *estimate.upper95;
 }
 
 TEST(Discrepancy, AdequateFitIsLeftAsItIs) {
@@ -58,9 +53,9 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
     EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << b;
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective) << b;
-    EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap)) << b;
-    EXPECT_TRUE(Contains(slip_force, kLaw.slip_force)) << b;
-    EXPECT_TRUE(Contains(slip_force, slip_force.value)) << b;
+    EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap)) << b;
+    EXPECT_TRUE(Covers(slip_force, kLaw.slip_force)) << b;
+    EXPECT_TRUE(Covers(slip_force, slip_force.value)) << b;
   }
 }
 
@@ -79,15 +74,6 @@ TEST(Discrepancy, ReachesToBothSidesOfASlipForceThatIsOffTheGap) {
         bulge > 0 ? *slip_force.upper95 - slip_force.value : slip_force.value - *slip_force.lower95;
     EXPECT_GE(beyond, 0.99 * margin) << bulge;
   }
-}
-
-TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
-  const auto width = [](double b) {
-    const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");
-    return *estimate.upper95 - *estimate.lower95;
-  };
-  EXPECT_LT(width(0.02), width(0.08));
-  EXPECT_LT(width(0.08), width(0.3));
 }
 
 TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
@@ -134,7 +120,7 @@ TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
   const double peak = fit.WidestRecord().facts.peak_force;
   EXPECT_LE(slip_force.value, peak / 0.9);
   EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective);
-  EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap));
+  EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap));
 }
 
 TEST(RepeatError, IsTheScatterOfRepeatsAndNotWhatTheModelMissesInAll) {

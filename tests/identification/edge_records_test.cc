@@ -1,7 +1,13 @@
 
 
+#include <Eigen/Dense>
+
+#include "identification/inference/estimates.h"
+#include "identification/inference/local.h"
 #include "identification/sample_loop.h"
+#include "identification/stages.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/models/steady_loop.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 
@@ -140,6 +146,61 @@ TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
   options.fixed.clear();
   options.terms = {"rig_stiffness"};
   EXPECT_EQ(RefusalOf({record}, options), "");
+}
+
+// ---
+// What a fit may not say at once.
+
+using namespace models;
+
+constexpr BranchLaw kMindlin{5e7, 1.0 / 3, 40.0};
+
+Record NoisyLoop(const BranchLaw& law, double amplitude, double noise, std::uint64_t seed,
+                 int samples_per_cycle = 200, double cycles = 2.25,
+                 const InitialContact& initial = {}) {
+  const History displacement = Cycling(Wave::kSine, amplitude, cycles, samples_per_cycle);
+  Generator generator(seed);
+  return WithForceNoise(
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement, initial)), noise,
+      generator);
+}
+
+/// What must hold of every result, whatever the record.
+void ExpectNoContradiction(const FitResult& fit) {
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    SCOPED_TRACE(estimate.name);
+    if (estimate.status == ParameterStatus::kFixed) continue;
+    if (estimate.identifiability == Identifiability::kIdentifiable) {
+      ASSERT_TRUE(estimate.lower95 && estimate.upper95);
+      EXPECT_LE(*estimate.lower95, estimate.value);
+      EXPECT_GE(*estimate.upper95, estimate.value);
+      EXPECT_TRUE(std::isfinite(*estimate.lower95) && std::isfinite(*estimate.upper95));
+    }
+  }
+  for (const double correlation : fit.correlation) {
+    EXPECT_FALSE(std::abs(correlation) > 1.0) << correlation;  // NaN where there is none
+  }
+  if (fit.FindFinding("search_limit") != nullptr) {
+    EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  }
+  if (fit.adequacy.verdict == AdequacyVerdict::kInadequate &&
+      fit.FindFinding("loop_not_seen") == nullptr) {
+    EXPECT_GT(fit.adequacy.misfit_over_noise, 0.0);
+    EXPECT_LT(fit.adequacy.p_value, 0.05);
+  }
+}
+
+TEST(Contradictions, AreNotInFitsOfLoopsOfAllKinds) {
+  std::uint64_t seed = 1;
+  for (const double alpha : {0.0, 0.05, 1.0 / 3, 1.0}) {
+    const BranchLaw law{5e7, alpha, 40.0};
+    for (const double amplitude : {2e-8, 4e-7, 1.6e-6}) {
+      for (const double noise : {0.01, 1.0, 20.0}) {
+        SCOPED_TRACE(::testing::Message() << alpha << ", " << amplitude << ", " << noise);
+        ExpectNoContradiction(FitOne(NoisyLoop(law, amplitude, noise, seed++)));
+      }
+    }
+  }
 }
 
 }  // namespace

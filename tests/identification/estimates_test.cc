@@ -20,11 +20,6 @@ using namespace models;
 /// over the step: 1e-6 of a column, which the condition of the fit, 1e2, may magnify.
 constexpr double kDifferences = 1e-4;
 
-Record NoisyLoop(double noise = 0.01, std::uint64_t seed = 5) {
-  Generator generator(seed);
-  return WithForceNoise(Loop(), noise * kLaw.slip_force, generator);
-}
-
 FitResult IntervalsOf(const Record& record, const FitOptions& options) {
   const RecordView view = record;
   return Fitter(options).Fit(view, Depth::kIntervals);
@@ -55,7 +50,7 @@ Sandwich SandwichOf(const Eigen::MatrixXd& jacobian, double rho) {
 }
 
 TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
-  const Record record = NoisyLoop();
+  const Record record = NoisyLoop(5);
   const FitResult fit = IntervalsOf(record, Virgin());
   ASSERT_EQ(fit.residuals.effective_samples, static_cast<double>(record.size()))
       << "the case needs white residuals";
@@ -102,7 +97,7 @@ TEST(Estimates, AtABoundReachOneSidedFromIt) {
   FitOptions options = Virgin();
   for (const Interval& bounds : {Interval{0.45, 2.0}, Interval{0.0, 0.35}}) {
     options.bounds["alpha"] = bounds;
-    Stages stages(NoisyLoop(), options);
+    Stages stages(NoisyLoop(5), options);
     const Solution solution = stages.Solve();
     const bool is_lower = bounds.lower > 0;
     ASSERT_EQ(solution.side[kShape], is_lower ? BoundSide::kLower : BoundSide::kUpper);
@@ -167,7 +162,7 @@ TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
 
 TEST(Estimates, OfADirectionWithoutEffectAreNone) {
   // A straight line knows the ratio of nothing: its plateau slope is σ.
-  Stages stages(NoisyLoop(), Virgin());
+  Stages stages(NoisyLoop(5), Virgin());
   const Solution solution = stages.Solve();
   Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
   jacobian.col(1) = 2 * jacobian.col(0);
@@ -188,6 +183,25 @@ TEST(SolveLeastSquares, OfAMatrixOfZerosIsZero) {
       SolveLeastSquares(Eigen::MatrixXd::Zero(3, 2), Eigen::MatrixXd::Ones(3, 4), &rank);
   EXPECT_EQ(rank, 0);
   EXPECT_EQ(solved, Eigen::MatrixXd::Zero(2, 4));
+}
+
+TEST(Intervals, AreTheUnionOfTheirParts) {
+  ParameterEstimate estimate;
+  estimate.name = "alpha";
+  estimate.value = 0.5;
+  Include(estimate, {.lower = 0.1, .upper = 0.9});
+  EXPECT_FALSE(estimate.lower95 || estimate.upper95) << "what is held has none";
+  SetInterval(estimate, {.lower = 0.4, .upper = 0.6});
+  Include(estimate, {.lower = 0.45, .upper = 0.8});
+  EXPECT_EQ(estimate.lower95, 0.4);
+  EXPECT_EQ(estimate.upper95, 0.8);
+  Include(estimate, {.lower = 0.5, .upper = HUGE_VAL});
+  EXPECT_EQ(estimate.lower95, 0.4);
+  EXPECT_FALSE(estimate.upper95) << "an end that is no number is open";
+  Include(estimate, {.lower = 0.5, .upper = 0.5});
+  EXPECT_FALSE(estimate.upper95) << "and stays open";
+  WithdrawInterval(estimate);
+  EXPECT_FALSE(estimate.lower95 || estimate.upper95);
 }
 
 }  // namespace

@@ -39,8 +39,7 @@ TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
   // gains 39 times as much: P(χ²₁ > 2/39) = 82 %.
   constexpr int kLoops = 100;
   const History displacement = Cycling(Wave::kSine, 0.6 * kReach, 3.0, 120);
-  const Record steady =
-      From(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), 30);
+  const Record steady = From(LoopOf(kLaw, displacement), 30);
   FitOptions options;
   options.fixed["force_offset"] = 0.0;  // else the place where it was unloaded does the same
   int virgin = 0;
@@ -69,9 +68,7 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
   History displacement;
   for (int i = 0; i <= 80; ++i) displacement.push_back(kReach * i / 80);
   for (const double direction : {1.0, -1.0}) {
-    Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-    record = testing::Scaled(record, direction, direction);
-    const FitResult fit = FitOne(record);
+    const FitResult fit = FitOne(Scaled(LoopOf(kLaw, displacement), direction, direction));
     EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
     EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
     // One curve looks the same from wherever its origin is: the offsets are not for the fit.
@@ -82,9 +79,8 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
 
 TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   constexpr double kDriftPerSecond = -3.0;
-  Record record = Loop();
+  Record record = Timed(Loop(), 0.01, 40.0);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(40.0 + 0.01 * static_cast<double>(i));
     record.force[i] += kDriftPerSecond * (record.time[i] - record.time[0]);
   }
   FitOptions options;
@@ -121,25 +117,6 @@ TEST(Fit, ResidualIsFittedMinusMeasuredWithSignOfFile) {
   }
 }
 
-TEST(Fit, CorrelationIsSymmetricWithUnitDiagonalAndEmptyForTheFixed) {
-  Generator generator(3);
-  const FitResult fit = FitOne(testing::WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator));
-  const std::size_t count = fit.parameters.size();
-  ASSERT_EQ(fit.correlation.size(), count * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const double correlation = fit.correlation[i * count + j];
-      const bool fixed = fit.parameters[i].status == ParameterStatus::kFixed ||
-                         fit.parameters[j].status == ParameterStatus::kFixed;
-      EXPECT_EQ(std::isnan(correlation), fixed);
-      if (fixed) continue;
-      EXPECT_LE(std::abs(correlation), 1.0);
-      EXPECT_DOUBLE_EQ(correlation, fit.correlation[j * count + i]);
-      EXPECT_TRUE(i != j || correlation == 1.0);
-    }
-  }
-}
-
 TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   const FitResult fit = FitOne(Loop(2.0));
   EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
@@ -154,8 +131,7 @@ TEST(Fit, CyclesOfReversalsAndGateAreReported) {
 TEST(Fit, WidestRecordIsTheOneOfLargestAmplitude) {
   const Record wide = Loop();
   const History narrow = Cycling(Wave::kSine, kReach / 2, 2.0, 120);
-  const Record small = MakeRecord(narrow, Respond(Model("mindlin-dahl"), kLaw, narrow));
-  const std::vector<Record> records = {small, wide};
+  const std::vector<Record> records = {LoopOf(kLaw, narrow), wide};
   const FitResult fit = Fit(records, {});
   EXPECT_DOUBLE_EQ(fit.WidestRecord().measures.amplitude, kReach);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
@@ -173,25 +149,6 @@ TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
   const Finding* finding = fit.FindFinding("undetermined_parameter");
   ASSERT_NE(finding, nullptr);
   EXPECT_THAT(finding->parameters, ::testing::ElementsAre("sigma"));
-}
-
-TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
-  // A loop that opposes its own model: lag instead of lead, the force sense forced.
-  History displacement;
-  std::vector<double> force;
-  for (int i = 0; i < 200; ++i) {
-    displacement.push_back(std::sin(0.1 * i));
-    force.push_back(std::sin(0.1 * i - 0.5));
-  }
-  for (const int sense : {1, -1}) {
-    FitOptions options;
-    options.preparation.force_sense = sense;
-    const FitResult fit = FitOne(MakeRecord(displacement, force), options);
-    for (const ParameterEstimate& estimate : fit.parameters) {
-      EXPECT_LE(estimate.lower95.value_or(-HUGE_VAL), estimate.value) << estimate.name;
-      EXPECT_GE(estimate.upper95.value_or(HUGE_VAL), estimate.value) << estimate.name;
-    }
-  }
 }
 
 /// Compares what does not depend on the order of the records of a fit.
@@ -221,9 +178,7 @@ TEST(Fit, DoesNotDependOnTheOrderOfItsRecords) {
   for (const double reach : {1.0, 0.6}) {
     const History displacement = Cycling(Wave::kSine, reach * kReach, 3.0, 150);
     records.push_back(testing::WithForceNoise(
-        testing::Shifted(
-            MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)),
-            (1 - reach) * kReach, reach * kLaw.slip_force),
+        testing::Shifted(LoopOf(kLaw, displacement), (1 - reach) * kReach, reach * kLaw.slip_force),
         0.01 * kLaw.slip_force, generator));
   }
   const FitResult one = Fit(records, {}, Depth::kFull);

@@ -42,9 +42,7 @@ struct ThreeCycles {
     const History displacement = Cycling(Wave::kSine, 3e-6, 3.0, 100);
     const models::BranchLaw law{4e7, 1.0 / 3, 40.0};
     Generator generator(3);
-    record =
-        WithForceNoise(MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement)),
-                       0.2, generator);
+    record = WithForceNoise(testing::LoopOf(law, displacement), 0.2, generator);
     options.initial_state = models::InitialState::kVirgin;
     fit = FitOne(record, options);
     views = {record};
@@ -89,14 +87,11 @@ TEST(TermScores, ValuesOfLinearTermsAreThoseOfTheFitWithThem) {
   constexpr double kViscosity = 1e4;  // [N s/m]: 0.6 N at 6e-5 m/s
   constexpr double kDrift = 0.8;      // [N/s]
   const History displacement = Cycling(Wave::kSine, 2e-6, 3.0, 200);
-  loop::Record record =
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  loop::Record record = Timed(testing::LoopOf(kLaw, displacement), 0.001);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double time = 0.2 * static_cast<double>(i) / 200;
-    record.time.push_back(time);
-    record.force[i] += kDrift * time;
+    const double rate = 10 * std::numbers::pi;
     record.force[i] +=
-        kViscosity * 2e-6 * 10 * std::numbers::pi * std::cos(10 * std::numbers::pi * time);
+        kDrift * record.time[i] + kViscosity * 2e-6 * rate * std::cos(rate * record.time[i]);
   }
   FitOptions options;
   options.preparation.force_sense = 1;

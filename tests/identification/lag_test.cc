@@ -1,5 +1,3 @@
-
-
 #include "identification/problem/moved_samples.h"
 #include "identification/stages.h"
 #include "support/prelude.h"
@@ -69,27 +67,6 @@ Record LateRecord(const BranchLaw& law, const std::vector<double>& time, double 
   return record;
 }
 
-/// The contact moved on the sine itself.
-Record LateRecordOfSine(const BranchLaw& law, const std::vector<double>& time, double lag) {
-  // So dense that the extremes that it misses are nothing beside those of the record's chords.
-  constexpr int kDense = 40;
-  Record record;
-  record.time = time;
-  History motion;
-  std::vector<std::size_t> read;
-  for (const double at : time) {
-    record.displacement.push_back(SineAt(law, at));
-    const double before = at - lag - kStep;
-    for (int k = 1; k <= kDense; ++k) {
-      motion.push_back(SineAt(law, std::max(0.0, before + kStep * k / kDense)));
-    }
-    read.push_back(motion.size() - 1);
-  }
-  const std::vector<double> force = Respond(testing::Model("mindlin-dahl"), law, motion);
-  for (const std::size_t i : read) record.force.push_back(force[i]);
-  return record;
-}
-
 FitOptions WithLag() {
   FitOptions options;
   options.terms.emplace_back("lag");
@@ -119,42 +96,6 @@ TEST(Lag, IsRecoveredOfASteadyLoopThatBeginsAnywhere) {
   }
 }
 
-/// A chord of a sine lies within X(2π/n)²/8 of it, 1.2e-4 X, the force within σ times that: 2.2e-4
-/// Tc, about as much as noise of 0.02 %, which alone leaves errors below 1e-3 in α
-/// (docs/coverage.md has 0.03 of noise of 1 %). But it is no noise: it comes back in every stroke.
-constexpr double kOfChords = 5e-3;
-
-TEST(Lag, IsRecoveredAsFarAsChordsFollowAMotionThatIsSmooth) {
-  for (const double shape_exponent : {1.0 / 3, 0.7}) {
-    const BranchLaw law = LawOf(shape_exponent);
-    for (const double samples : {0.3, 1.0, 3.0}) {
-      SCOPED_TRACE(::testing::Message() << shape_exponent << " late by " << samples);
-      const FitResult fit =
-          FitOne(LateRecordOfSine(law, TimesOf(2.25), samples * kStep), WithLag());
-      EXPECT_TRUE(Recovers(fit, law, kOfChords));
-      EXPECT_NEAR(fit.Find("lag")->value / kStep, samples, kOfChords * kSamplesPerCycle / 10);
-    }
-  }
-}
-
-TEST(Lag, OfThreeSamplesOf200MovesTheShapeFarUnlessItIsFitted) {
-  const BranchLaw law = LawOf(1.0 / 3);
-  Generator generator(5);
-  for (const double samples : {-3.0, 3.0}) {
-    const Record record = WithForceNoise(LateRecord(law, TimesOf(3.0), samples * kStep),
-                                         0.01 * law.slip_force, generator);
-    EXPECT_GT(std::abs(FitOne(record).law.shape_exponent - 1.0 / 3), 0.1) << samples;
-    const FitResult fit = FitOne(record, WithLag());
-    constexpr double kErrors = 4.0;  // standard errors: once in 16000 loops
-    const ParameterEstimate& alpha = *fit.Find("alpha");
-    EXPECT_NEAR(alpha.value, 1.0 / 3, kErrors * alpha.standard_error.value());
-    EXPECT_LT(alpha.standard_error.value(), 0.05);
-    const ParameterEstimate& lag = *fit.Find("lag");
-    EXPECT_NEAR(lag.value, samples * kStep, kErrors * lag.standard_error.value());
-    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  }
-}
-
 TEST(Lag, IsCountedInSamplesWhereTheRecordHasNoTime) {
   const BranchLaw law = LawOf(1.0 / 3);
   Record record = LateRecord(law, TimesOf(2.25), 1.7 * kStep);
@@ -174,29 +115,6 @@ TEST(Lag, ThatIsKnownIsTakenOff) {
   EXPECT_EQ(fit.Find("lag")->status, ParameterStatus::kFixed);
   // 0, 1 and 2 steps from the start: their displacement lies before it.
   EXPECT_EQ(fit.records[0].left_out, 3U);
-}
-
-TEST(Lag, OfOneToThreeSamplesOf200IsTheFirstCauseOfADoubt) {
-  Generator generator(17);
-  for (const double shape_exponent : {1.0 / 3, 0.7}) {
-    const BranchLaw law = LawOf(shape_exponent);
-    for (const double samples : {1.0, 2.0, 3.0, -2.0}) {
-      for (const std::size_t begin : {0U, 230U}) {
-        // Without the way in, a sample is hardly told from a force that saturates: ΔAICc of 4.
-        if (begin > 0 && samples == 1.0) continue;
-        SCOPED_TRACE(::testing::Message()
-                     << shape_exponent << " late by " << samples << " from " << begin);
-        const Record record =
-            WithForceNoise(From(LateRecord(law, TimesOf(4.0), samples * kStep), begin),
-                           0.01 * law.slip_force, generator);
-        const FitResult fit = FitOne(record);
-        ASSERT_FALSE(fit.adequacy.causes.empty());
-        const Cause& cause = fit.adequacy.causes.front();
-        EXPECT_EQ(cause.code, "channel_lag");
-        EXPECT_EQ(cause.term, "lag");
-      }
-    }
-  }
 }
 
 TEST(Lag, IsRefusedWhereItCannotBeCounted) {

@@ -19,12 +19,6 @@ constexpr double kGrossSlip = 1.5e-6;  // [m]
 constexpr int kPerCycle = 200;
 constexpr double kNoise = 0.2;  // [N], 0.5 % of Tc
 
-FitOptions By(const char* model) {
-  FitOptions options;
-  options.model = &Model(model);
-  return options;
-}
-
 /// A virgin contact of a law, cycled.
 Record Virgin(const char* model, double amplitude = 0.8 * kGrossSlip, double cycles = 2.5) {
   const History displacement = Cycling(Wave::kSine, amplitude, cycles, kPerCycle);
@@ -76,7 +70,7 @@ TEST(LawChoice, OfASteadyLoopOfOneAmplitudeIsUndecidedWithBothSetsOfNumbers) {
 }
 
 TEST(LawChoice, OfASteadyLoopFittedByDahlsLawGivesTheContactByMasings) {
-  const FitResult fit = FitOne(Steady(), By("dahl"));
+  const FitResult fit = FitOne(Steady(), OfModel("dahl"));
   ASSERT_TRUE(fit.law_choice);
   EXPECT_FALSE(fit.law_choice->decided);
   EXPECT_EQ(fit.law_choice->alternative->name, "mindlin-dahl");
@@ -108,7 +102,7 @@ TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
   // A good ten standard errors of such a loop.
   ExpectLaw(masing.law_choice->law, kMindlin, 0.05);
 
-  const FitResult dahl = FitOne(record, By("dahl"));
+  const FitResult dahl = FitOne(record, OfModel("dahl"));
   ASSERT_TRUE(dahl.law_choice);
   EXPECT_EQ(dahl.law_choice->preferred->name, "dahl");
   EXPECT_EQ(dahl.FindFinding("other_law_fits_better"), nullptr);
@@ -118,7 +112,7 @@ TEST(LawChoice, IsMadeByASecondAmplitude) {
   for (const char* model : {"mindlin-dahl", "dahl"}) {
     const Record record = Noisy(TwoAmplitudes(model, 1.2 * kGrossSlip, 0.5 * kGrossSlip));
     for (const char* fitted : {"mindlin-dahl", "dahl"}) {
-      const FitResult fit = FitOne(record, By(fitted));
+      const FitResult fit = FitOne(record, OfModel(fitted));
       ASSERT_TRUE(fit.law_choice) << model << ' ' << fitted;
       EXPECT_TRUE(fit.law_choice->decided) << model << ' ' << fitted;
       EXPECT_EQ(fit.law_choice->preferred->name, model) << fitted;
@@ -134,14 +128,14 @@ TEST(LawChoice, IsNotMadeWhereNoiseHidesTheDifference) {
 }
 
 TEST(LawChoice, KeepsAlphaWhereItIsHeld) {
-  const FitResult fit = FitOne(Noisy(Virgin("mindlin-dahl")), By("mindlin"));
+  const FitResult fit = FitOne(Noisy(Virgin("mindlin-dahl")), OfModel("mindlin"));
   ASSERT_TRUE(fit.law_choice);
   EXPECT_EQ(fit.law_choice->law.shape_exponent, kMindlin.shape_exponent);
   EXPECT_EQ(fit.law_choice->preferred->name, "mindlin");
 }
 
 TEST(LawChoice, IsNoneWhereTheLawsAreOneOrAParameterIsHeld) {
-  EXPECT_FALSE(FitOne(Noisy(Steady(2 * kGrossSlip)), By("jenkins")).law_choice);
+  EXPECT_FALSE(FitOne(Noisy(Steady(2 * kGrossSlip)), OfModel("jenkins")).law_choice);
   // Before the motion turns.
   Record rising = Virgin("mindlin-dahl");
   rising.displacement.resize(kPerCycle / 4);

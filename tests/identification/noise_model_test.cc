@@ -1,8 +1,10 @@
-
 #include <Eigen/Dense>
 #include <deque>
 
+#include "core/probability.h"
 #include "identification/inference/noise.h"
+#include "identification/problem/scaled_records.h"
+#include "identification/stages.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
 
@@ -73,35 +75,23 @@ double SecondOrderShare(double first, double second) {
 /// Normal estimates are off by this many standard deviations once in 1.7 million.
 constexpr double kSurely = 5.0;
 
-TEST(NoiseModel, FirstOrderProcessIsRecoveredWithinItsSamplingError) {
-  constexpr double kRho = 0.9;
-  // Brockwell and Davis, Time Series (1991) §8.1: Var φ̂ = (1 − ρ²)/n. The share of the innovations
-  // is 1 − ρ̂², twice ρ times as uncertain.
-  const double error = std::sqrt((1 - kRho * kRho) / kSamples);
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Generator generator(seed);
-    const std::vector<std::vector<double>> series = {Autoregressive({kRho}, kSamples, generator)};
-    const Autocorrelation noise = EstimateNoise(series);
-    ASSERT_EQ(noise.order, 1U) << seed;
-    EXPECT_NEAR(noise.coefficients[0], kRho, kSurely * error) << seed;
-    EXPECT_NEAR(noise.innovation_share, 1 - kRho * kRho, kSurely * 2 * kRho * error) << seed;
-  }
-}
-
-TEST(NoiseModel, SecondOrderProcessIsRecoveredWithinItsSamplingError) {
-  constexpr double kFirst = 1.2;
-  constexpr double kSecond = -0.5;
-  // Var φ̂₁ = Var φ̂₂ = (1 − φ₂²)/n.
-  const double error = std::sqrt((1 - kSecond * kSecond) / kSamples);
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Generator generator(seed);
-    const std::vector<std::vector<double>> series = {
-        Autoregressive({kFirst, kSecond}, kSamples, generator)};
-    const Autocorrelation noise = EstimateNoise(series);
-    ASSERT_EQ(noise.order, 2U) << seed;
-    EXPECT_NEAR(noise.coefficients[0], kFirst, kSurely * error) << seed;
-    EXPECT_NEAR(noise.coefficients[1], kSecond, kSurely * error) << seed;
-    EXPECT_NEAR(noise.innovation_share, SecondOrderShare(kFirst, kSecond), 0.03) << seed;
+TEST(NoiseModel, ProcessIsRecoveredWithinItsSamplingError) {
+  // Brockwell and Davis, Time Series (1991) §8.1: Var φ̂ = (1 − φ_p²)/n of either coefficient. The
+  // share of the innovations of the first order is 1 − ρ̂², twice ρ times as uncertain.
+  for (const std::vector<double>& process : {std::vector{0.9}, {1.2, -0.5}}) {
+    const double error = std::sqrt((1 - process.back() * process.back()) / kSamples);
+    const bool is_first = process.size() == 1;
+    const double share = is_first ? 1 - 0.9 * 0.9 : SecondOrderShare(process[0], process[1]);
+    const double share_error = is_first ? kSurely * 2 * 0.9 * error : 0.03;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Generator generator(seed);
+      const Autocorrelation noise = EstimateNoise({Autoregressive(process, kSamples, generator)});
+      ASSERT_EQ(noise.order, process.size()) << seed;
+      for (std::size_t k = 0; k < process.size(); ++k) {
+        EXPECT_NEAR(noise.coefficients[k], process[k], kSurely * error) << seed;
+      }
+      EXPECT_NEAR(noise.innovation_share, share, share_error) << seed;
+    }
   }
 }
 
@@ -120,7 +110,6 @@ TEST(NoiseModel, WhiteNoiseHasOrderZero) {
     EXPECT_EQ(noise.SquaredCorrelations(), 1.0);
   }
   EXPECT_GE(white, kSeeds * 9 / 10);
-  RecordProperty("white_of_200", white);
 }
 
 TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
@@ -147,7 +136,7 @@ Tally TallyOf(const std::vector<double>& coefficients, int loops) {
   constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
   constexpr double kNoise = 0.01;                                     // of Tc
   const History displacement = Cycling(Wave::kSine, 3e-6, 2.0, 400);  // twice gross slip
-  const Record clean = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  const Record clean = testing::LoopOf(kLaw, displacement);
   const double first = coefficients.empty() ? 0.0 : coefficients[0];
   const double unit = std::sqrt(1 - first * first);  // of the process
   FitOptions options;
@@ -182,9 +171,82 @@ TEST(NoiseModel, StandardErrorsAreTheScatterOfLoopsWithCorrelatedNoise) {
   EXPECT_NEAR(white.stated / white.scatter, 1.0, kWhite);
   // Noise of the same size taken as white would be off by more than this.
   EXPECT_GT(correlated.scatter / white.stated, 1.5);
-  RecordProperty("correlated", std::to_string(correlated.stated / correlated.scatter));
-  RecordProperty("white", std::to_string(white.stated / white.scatter));
-  RecordProperty("white_for_correlated", std::to_string(correlated.scatter / white.stated));
+}
+
+// ---
+// The one comparison of fits, by hand.
+
+constexpr double kRounding = 1e-13;  // of numbers up to a hundred
+
+TEST(Evidence, LikelihoodRatioIsThatOfTheEffectiveSamples) {
+  // n_eff·ln(SS₀/SS₁), whatever the samples' number.
+  EXPECT_NEAR(Evidence(100, 40.0).LikelihoodRatio(3.0, 2.0), 40 * std::log(1.5), kRounding);
+  EXPECT_NEAR(Evidence(50, 40.0).LikelihoodRatio(3.0, 2.0), 40 * std::log(1.5), kRounding);
+  EXPECT_LT(Evidence(100, 40.0).LikelihoodRatio(2.0, 3.0), 0.0) << "the larger sum loses";
+}
+
+TEST(Evidence, RoundingErrorsSayNothing) {
+  const Evidence evidence(100, 40.0);
+  const double floor = 100 * kRoundingRms * kRoundingRms;
+  EXPECT_EQ(evidence.LikelihoodRatio(floor / 2, 0.0), 0.0);
+  EXPECT_NEAR(evidence.LikelihoodRatio(4 * floor, floor / 8), 40 * std::log(4.0), 1e-10);
+  EXPECT_EQ(evidence.Aicc(floor / 2, 3), evidence.Aicc(0.0, 3));
+  EXPECT_LT(evidence.Aicc(floor, 3), evidence.Aicc(2 * floor, 3));
+}
+
+TEST(Evidence, FStatisticScalesWithFractionOfEffectiveSamples) {
+  // (3 − 2)/0.5·40/100
+  EXPECT_NEAR(Evidence(100, 40.0).FStatistic(3.0, 2.0, 0.5), 0.8, kRounding);
+  EXPECT_EQ(Evidence(100, 40.0).FStatistic(2.0, 3.0, 0.5), 0.0) << "a fit that is better by chance";
+}
+
+TEST(Evidence, AiccHasTheSmallSampleTermOfAllSamplesAndTheVarianceForAParameter) {
+  // k = 3 + 1: 8·ln(5/20) + 2·4 + 2·4·5/(20 − 4 − 1)
+  EXPECT_NEAR(Evidence(20, 8.0).Aicc(5.0, 3), 8 * std::log(0.25) + 8 + 40.0 / 15, kRounding);
+  // Nothing is divided by less than one.
+  EXPECT_NEAR(Evidence(5, 5.0).Aicc(5.0, 4), 10 + 60, kRounding);
+}
+
+TEST(Evidence, OfANoiseIsThatOfItsEffectiveSamples) {
+  Noise noise = testing::KnownNoise(1.0, 100);
+  noise.autocorrelation = testing::FirstOrder(0.5);
+  noise.repeating = 2.0;
+  // 1 + 2Σ0.25^k = 5/3
+  EXPECT_NEAR(Evidence(noise).LikelihoodRatio(std::exp(1.0), 1.0), 100 / (2 * 5.0 / 3), 1e-9);
+}
+
+TEST(Noise, DegreesOfFreedomAreEffectiveSamplesLessParameters) {
+  Noise noise = testing::KnownNoise(1.0, 1000);
+  EXPECT_GE(noise.degrees_of_freedom(5), 1e5) << "known is known";
+  noise.is_known = false;
+  EXPECT_EQ(noise.degrees_of_freedom(5), 995.0);
+  noise.autocorrelation = testing::FirstOrder(0.95);
+  const double share = (1 + 0.95 * 0.95) / (1 - 0.95 * 0.95);
+  EXPECT_NEAR(noise.effective_samples(), 1000 / share, 1e-6 * 1000 / share);
+  EXPECT_NEAR(noise.degrees_of_freedom(5), 1000 / share - 5, 1e-4);
+  noise.repeating = 4.0;
+  EXPECT_NEAR(noise.degrees_of_freedom(5), 1000 / share / 4 - 5, 1e-4);
+  noise.repeating = 1000.0;
+  EXPECT_EQ(noise.effective_samples(), 1.0);
+  EXPECT_EQ(noise.degrees_of_freedom(5), 1.0);
+}
+
+TEST(Distributions, AreThoseOfClosedForms) {
+  // F(1, ν) is Student's t squared. P(|t| > x) = 1 − 2/π·arctan x at ν = 1, 1 − x/√(2 + x²) at 2.
+  for (const double f : {0.1, 1.0, 3.84, 50.0}) {
+    EXPECT_NEAR(PValueOfF(f, 1.0), 1 - 2 / std::acos(-1.0) * std::atan(std::sqrt(f)), kRounding);
+    EXPECT_NEAR(PValueOfF(f, 2.0), 1 - std::sqrt(f / (2 + f)), kRounding);
+  }
+  EXPECT_EQ(PValueOfF(0.0, 7.0), 1.0);
+  EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11);
+  EXPECT_NEAR(StudentQuantile(2.0, 0.95), 0.95 * std::sqrt(2 / (1 - 0.95 * 0.95)), 1e-11);
+  EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11)
+      << "asked for again after another";
+  // Half a normal law within q: P(|z| < q).
+  EXPECT_NEAR(std::erf(kNormalQuantile95 / std::sqrt(2.0)), 0.95, kRounding);
+  for (const double confidence : {0.01, 0.5, 0.999999}) {
+    EXPECT_NEAR(std::erf(NormalQuantile(confidence) / std::sqrt(2.0)), confidence, kRounding);
+  }
 }
 
 }  // namespace

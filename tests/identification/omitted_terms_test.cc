@@ -20,13 +20,6 @@ using namespace models;
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip
 
-Record LoopOf(std::size_t samples_per_cycle, double cycles) {
-  const auto displacement =
-      testing::Cycling(testing::Wave::kSine, kReach, cycles, static_cast<int>(samples_per_cycle));
-  return testing::MakeRecord(displacement,
-                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
-}
-
 Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, Generator& generator) {
   Eigen::MatrixXd drawn(rows, columns);
   for (Eigen::Index j = 0; j < columns; ++j) {
@@ -73,7 +66,7 @@ TEST(Gram, StepsAsLeastSquaresOfAllColumnsDo) {
 }
 
 TEST(WidenByOmittedTerms, MovesEachEndByTheStepAndTwiceItsError) {
-  Stages stages(LoopOf(100, 2));
+  Stages stages(testing::LoopOf(kLaw, Cycling(Wave::kSine, kReach, 2, 100)));
   const Problem& problem = stages.problem;
   const auto& free = problem.parameters.free();
   const auto& reported = problem.parameters.reported();

@@ -1,11 +1,7 @@
 #include "mindahl/identification/plan.h"
 
-#include <random>
-
-#include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/models/excitation.h"
-#include "mindahl/models/response.h"
+#include "recovery/recovered.h"
 #include "support/prelude.h"
 
 namespace mindahl::identification::plan_test {
@@ -26,7 +22,7 @@ Expectation Quiet() {
   return expected;
 }
 
-Protocol Loop(double lambda, InitialState state = InitialState::kVirgin) {
+Protocol ProtocolOf(double lambda, InitialState state = InitialState::kVirgin) {
   Protocol protocol;
   protocol.amplitude = lambda * kSlip;
   protocol.initial_state = state;
@@ -43,38 +39,26 @@ using Deviations = std::array<double, 3>;  // of σ, α, Tc
 
 /// Standard deviations over fits of simulated loops, by the public interface alone.
 Deviations Scatter(const Expectation& expected, const Protocol& protocol, int loops) {
-  const models::Excitation sine =
-      models::MakeExcitation({.amplitude = protocol.amplitude,
-                              .cycles = protocol.cycles,
-                              .samples_per_cycle = protocol.samples_per_cycle});
-  std::vector<std::size_t> reversals;
-  const std::size_t quarter = protocol.samples_per_cycle / 4;
-  for (std::size_t at = quarter; at < sine.displacement.size(); at += 2 * quarter) {
-    reversals.push_back(at);
-  }
-  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
-  const models::LoadingPath path = models::MakeLoadingPath(
-      sine.displacement, reversals, model.memory, {.state = protocol.initial_state});
-  std::vector<double> force(sine.displacement.size());
-  models::EvaluateForce(model, expected.law, path, sine.displacement, force, expected.rig);
+  const History displacement = Cycling(Wave::kSine, protocol.amplitude, protocol.cycles,
+                                       static_cast<int>(protocol.samples_per_cycle));
+  const models::FrictionModel& model = Model("mindlin-dahl");
+  std::vector<double> force(displacement.size());
+  models::EvaluateForce(model, expected.law,
+                        PathOf(model, displacement, {.state = protocol.initial_state}),
+                        displacement, force, expected.rig);
   FitOptions options;
   options.initial_state = protocol.initial_state;
   options.preparation.displacement_noise = expected.displacement_noise;
   options.force_noise = expected.force_noise;
   if (std::isfinite(expected.rig.stiffness))
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
-  std::mt19937_64 generator(7);
-  std::normal_distribution<double> normal;
+  Generator generator(7);
   Deviations sums{};
   Deviations squares{};
   for (int k = 0; k < loops; ++k) {
-    Record record;
-    record.time = sine.time;
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      record.displacement.push_back(sine.displacement[i] +
-                                    expected.displacement_noise * normal(generator));
-      record.force.push_back(force[i] + expected.force_noise * normal(generator));
-    }
+    Record record =
+        WithForceNoise(MakeRecord(displacement, force), expected.force_noise, generator);
+    for (double& x : record.displacement) x += expected.displacement_noise * Normal(generator);
     const FitResult fit = Fit({&record, 1}, options, Depth::kEstimate);
     const std::array values = {fit.law.tangential_stiffness, fit.law.shape_exponent,
                                fit.law.slip_force};
@@ -108,7 +92,7 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
     Expectation expected = Quiet();
     expected.displacement_noise = c.displacement_noise;
     expected.rig.stiffness = c.rig_stiffness;
-    const Protocol protocol = Loop(c.lambda, c.state);
+    const Protocol protocol = ProtocolOf(c.lambda, c.state);
     const ExpectedFit fit = ExpectFit(expected, protocol);
     const Deviations scatter = Scatter(expected, protocol, kLoops);
     EXPECT_NEAR(ErrorOf(fit, "sigma") / scatter[0], 1.0, kTolerance) << c.lambda;
@@ -119,11 +103,11 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
 
 TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
   constexpr double kRounding = 1e-9;
-  const ExpectedFit once = ExpectFit(Quiet(), Loop(1.2, InitialState::kSteady));
+  const ExpectedFit once = ExpectFit(Quiet(), ProtocolOf(1.2, InitialState::kSteady));
   Expectation noisy = Quiet();
   noisy.force_noise *= 3;
-  const ExpectedFit thrice = ExpectFit(noisy, Loop(1.2, InitialState::kSteady));
-  Protocol longer = Loop(1.2, InitialState::kSteady);
+  const ExpectedFit thrice = ExpectFit(noisy, ProtocolOf(1.2, InitialState::kSteady));
+  Protocol longer = ProtocolOf(1.2, InitialState::kSteady);
   longer.cycles *= 16;
   const ExpectedFit sixteen = ExpectFit(Quiet(), longer);
   // The last sample of the last cycle is one more in 601.
@@ -137,7 +121,7 @@ TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
 TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
   Expectation expected = Quiet();
   expected.rig.stiffness = 8e7;
-  const Protocol protocol = Loop(5.0);
+  const Protocol protocol = ProtocolOf(5.0);
   FitOptions with_rig;
   with_rig.terms = {"rig_stiffness"};
   const ExpectedFit known = ExpectFit(expected, protocol);
@@ -149,19 +133,19 @@ TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
 }
 
 TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
-  EXPECT_EQ(ExpectFit(Quiet(), Loop(0.8, InitialState::kSteady)).law_evidence, 0.0);
-  const double evidence = ExpectFit(Quiet(), Loop(0.8)).law_evidence;
+  EXPECT_EQ(ExpectFit(Quiet(), ProtocolOf(0.8, InitialState::kSteady)).law_evidence, 0.0);
+  const double evidence = ExpectFit(Quiet(), ProtocolOf(0.8)).law_evidence;
   EXPECT_GT(evidence, 100);
   Expectation noisy = Quiet();
   noisy.force_noise *= 10;
   constexpr double kRounding = 1e-6;
-  EXPECT_NEAR(ExpectFit(noisy, Loop(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
+  EXPECT_NEAR(ExpectFit(noisy, ProtocolOf(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
 }
 
 TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};
-  const auto reached = LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
+  const auto reached = LeastAmplitude(Quiet(), ProtocolOf(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
   ASSERT_TRUE(reached);
   EXPECT_LE(CyclesFactor(*reached, wanted), 1.0);
   EXPECT_LE(ErrorOf(*reached, "alpha"), 0.01);
@@ -174,15 +158,15 @@ TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
 TEST(Plan, RefusesWhatMeansNothing) {
   Expectation expected = Quiet();
   expected.force_noise = 0.0;
-  EXPECT_THROW(ExpectFit(expected, Loop(1.0)), InvalidArgument);
-  EXPECT_THROW(ExpectFit(Quiet(), Loop(0.0)), InvalidArgument);
+  EXPECT_THROW(ExpectFit(expected, ProtocolOf(1.0)), InvalidArgument);
+  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(0.0)), InvalidArgument);
   FitOptions dahl;
   dahl.model = models::FindFrictionModel("dahl");
-  EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), dahl), InvalidArgument);
+  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), dahl), InvalidArgument);
   FitOptions late;
   late.terms = {"lag"};
-  EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), late), InvalidArgument);
-  const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
+  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), late), InvalidArgument);
+  const ExpectedFit fit = ExpectFit(Quiet(), ProtocolOf(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
 }
@@ -198,9 +182,9 @@ TEST(Plan, RefusesEveryTermButThoseThatItCanPlanFor) {
     Expectation expected = Quiet();
     expected.rig.stiffness = 8e7;
     if (is_planned) {
-      EXPECT_NO_THROW(ExpectFit(expected, Loop(1.2), options)) << name;
+      EXPECT_NO_THROW(ExpectFit(expected, ProtocolOf(1.2), options)) << name;
     } else {
-      EXPECT_THROW(ExpectFit(expected, Loop(1.2), options), InvalidArgument) << name;
+      EXPECT_THROW(ExpectFit(expected, ProtocolOf(1.2), options), InvalidArgument) << name;
     }
   }
 }

@@ -1,37 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
-#include "recovery/recovered.h"
+#include "support/prelude.h"
 
-// These tests concern priors on parameters and the log-likelihood
-// that a sampler takes.
+// Priors on parameters, and the log-likelihood that a sampler takes.
 namespace mindahl::identification::prior_test {
 namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::kLaw;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr double kNoise =
     0.002;  // of Tc: steps of a standard error are small, and cost is a parabola
@@ -40,13 +16,8 @@ constexpr double kNoise =
 Record TimedLoop(double reach = 1.5, double noise = kNoise) {
   const testing::History displacement = Cycling(Wave::kSine, reach * testing::kReach, 2.0, 240);
   Generator generator(7);
-  Record record =
-      WithForceNoise(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)),
-                     noise * kLaw.slip_force, generator);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.01 * static_cast<double>(i));
-  }
-  return record;
+  return Timed(WithForceNoise(LoopOf(kLaw, displacement), noise * kLaw.slip_force, generator),
+               0.01);
 }
 
 FitOptions Options() {
@@ -99,21 +70,9 @@ TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
   }
 }
 
-TEST(Prior, FarFromWhatTheRecordSaysIsReported) {
-  const Record record = TimedLoop();
-  FitOptions options = Options();
-  options.priors["slip_force"] = {1.2 * kLaw.slip_force, 0.01 * kLaw.slip_force};
-  const FitResult fit = FitOne(record, options);
-  const Finding* finding = fit.FindFinding("prior_contradicted");
-  ASSERT_NE(finding, nullptr);
-  EXPECT_EQ(finding->parameters, std::vector<std::string>{"slip_force"});
-}
-
 TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   const Record record = TimedLoop();
-  const auto refusal = [&](const FitOptions& options) -> std::string {
-    return MessageOf([&] { FitOne(record, options); });
-  };
+  const auto refusal = [&](const FitOptions& with) { return RefusalOf({record}, with); };
   FitOptions options = Options();
   options.priors["viscous"] = {1.0, 0.1};
   EXPECT_THAT(refusal(options), HasSubstr("a prior of viscous has no effect"));

@@ -16,9 +16,8 @@ constexpr double kGrossSlip = 1.5e-6;  // [m]
 Record NoisyLoop(double lambda, double noise, std::uint64_t seed) {
   Generator generator(seed);
   const auto displacement = Cycling(Wave::kSine, lambda * kGrossSlip, 2.0, 120);
-  return WithForceNoise(
-      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement)),
-      noise * kMindlin.slip_force, generator);
+  return WithForceNoise(testing::LoopOf(kMindlin, displacement), noise * kMindlin.slip_force,
+                        generator);
 }
 
 TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {

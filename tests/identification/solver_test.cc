@@ -13,11 +13,6 @@ namespace {
 using namespace loop;
 using namespace models;
 
-Record NoisyLoop(std::uint64_t seed = 4) {
-  Generator generator(seed);
-  return WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator);
-}
-
 /// The largest component of Jᵀr by unit columns, over |r|: 0 at a minimum.
 double GradientAt(Stages& stages, const Solution& solution) {
   const Eigen::VectorXd residual = stages.ResidualsAt(solution.theta);
@@ -37,11 +32,8 @@ double GradientAt(Stages& stages, const Solution& solution) {
 constexpr double kStationary = 1e-4;
 
 TEST(Solver, LeavesNoGradientInAnyParameter) {
-  Record record = NoisyLoop();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.01 * static_cast<double>(i));
-    record.force[i] += 0.5 * record.time[i];
-  }
+  Record record = Timed(NoisyLoop(4), 0.01);
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += 0.5 * record.time[i];
   for (const std::vector<std::string>& terms : {std::vector<std::string>{},
                                                 {"force_drift"},
                                                 {"plateau_slope", "force_drift"},
@@ -55,7 +47,7 @@ TEST(Solver, LeavesNoGradientInAnyParameter) {
     EXPECT_NEAR(solution.sum_of_squares / stages.ResidualsAt(solution.theta).squaredNorm(), 1.0,
                 1e-10);
   }
-  Stages two(std::vector<Record>{NoisyLoop(), testing::Scaled(NoisyLoop(9), 0.6, 0.9)});
+  Stages two(std::vector<Record>{NoisyLoop(4), testing::Scaled(NoisyLoop(9), 0.6, 0.9)});
   const Solution joint = two.Solve();
   EXPECT_LT(GradientAt(two, joint), kStationary);
 }
@@ -63,10 +55,10 @@ TEST(Solver, LeavesNoGradientInAnyParameter) {
 TEST(Solver, ReachesTheSameMinimumInNaturalCoordinates) {
   // Bounds that the user gives on σ make the solver search σ and Tc themselves; wide ones change
   // nothing else.
-  const Solution eliminated = Stages(NoisyLoop()).Solve();
+  const Solution eliminated = Stages(NoisyLoop(4)).Solve();
   FitOptions options;
   options.bounds["sigma"] = {1e6, 1e9};
-  const Solution natural = Stages(NoisyLoop(), options).Solve();
+  const Solution natural = Stages(NoisyLoop(4), options).Solve();
   EXPECT_NEAR(natural.sum_of_squares / eliminated.sum_of_squares, 1.0, 1e-9);
   for (std::size_t p = 0; p < natural.theta.size(); ++p) {
     EXPECT_NEAR(natural.theta[p], eliminated.theta[p], 1e-4);
@@ -100,7 +92,7 @@ TEST(Solver, HeldStiffnessRigOrSlipForceLeaveTheOthersAtTheirMinimum) {
 }
 
 TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
-  const Record record = testing::Shifted(NoisyLoop(), 0.0, 5.0);
+  const Record record = testing::Shifted(NoisyLoop(4), 0.0, 5.0);
   FitOptions options;
   options.bounds["force_offset"] = {-20.0, 3.0};
   Stages stages(record, options);
@@ -122,9 +114,8 @@ TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
 }
 
 TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
-  Record record = NoisyLoop();
+  Record record = Timed(NoisyLoop(4), 0.1);
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(0.1 * static_cast<double>(i));
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
   Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});

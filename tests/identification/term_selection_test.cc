@@ -25,11 +25,18 @@ double SpeedAt(std::size_t i) {
 }
 
 Record Clean() {
-  const auto displacement = testing::Cycling(Wave::kSine, kReach, kCycles, kSamplesPerCycle);
-  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  record.time.clear();
+  return Timed(LoopOf(kLaw, Cycling(Wave::kSine, kReach, kCycles, kSamplesPerCycle)),
+               kPeriod / kSamplesPerCycle);
+}
+
+constexpr double kFastest = kReach * 2 * std::numbers::pi / kPeriod;  // [m/s]
+
+/// A loop beside forces of the speed and of the position, over Tc at their largest.
+Record With(double of_speed, double of_position) {
+  Record record = Clean();
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.time.push_back(kPeriod * static_cast<double>(i) / kSamplesPerCycle);
+    record.force[i] += kLaw.slip_force * (of_speed * SpeedAt(i) / kFastest +
+                                          of_position * record.displacement[i] / kReach);
   }
   return record;
 }
@@ -63,10 +70,8 @@ TEST(TermSelection, AdequateLoopGetsNoTermAndKeepsEveryDigit) {
 }
 
 TEST(TermSelection, ViscousForceIsAddedAloneAndRecovered) {
-  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  const TermSelection selection = Select(Noisy(record, 2));
+  const double viscous = 0.1 * kLaw.slip_force / kFastest;
+  const TermSelection selection = Select(Noisy(With(0.1, 0.0), 2));
   EXPECT_THAT(selection.added, ElementsAre("viscous"));
   const ParameterEstimate& estimate = *selection.fit.Find("viscous");
   // Central differences of a sine take the rate for sin(ωΔt)/(ωΔt) of it.
@@ -83,10 +88,7 @@ TEST(TermSelection, ViscousForceIsAddedAloneAndRecovered) {
 TEST(TermSelection, LargeViscousForceIsNotLeftToASlipForceOfTheSpeedAndADrag) {
   // It is two fifths of the half gap, which a slip force of the speed leaves to Tc; with a drag in
   // proportion to the speed that is the same curve with two parameters more.
-  const double viscous = 0.6 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  const TermSelection selection = Select(Noisy(record, 12));
+  const TermSelection selection = Select(Noisy(With(0.6, 0.0), 12));
   EXPECT_THAT(selection.added, ElementsAre("viscous"));
   EXPECT_LT(selection.fit.rms, 1.2 * kNoise);
   const ParameterEstimate& slip_force = *selection.fit.Find("slip_force");
@@ -94,22 +96,9 @@ TEST(TermSelection, LargeViscousForceIsNotLeftToASlipForceOfTheSpeedAndADrag) {
   EXPECT_FALSE(TermOf(selection, "slip_speed").added);
 }
 
-TEST(TermSelection, ForceOfPositionIsAddedAlone) {
-  const double slope = 0.1 * kLaw.slip_force / kReach;
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += slope * record.displacement[i];
-  const TermSelection selection = Select(Noisy(record, 3));
-  EXPECT_THAT(selection.added, ElementsAre("plateau_slope"));
-  const ParameterEstimate& estimate = *selection.fit.Find("plateau_slope");
-  EXPECT_NEAR(estimate.value, slope, kStandardErrors * *estimate.standard_error);
-}
-
 TEST(TermSelection, ForceOfPositionThatClosesTheIntervalOfTheSlipForceIsAdded) {
   // A spring as stiff as Tc over the stroke makes the law's Tc an asymptote, open above.
-  const double slope = kLaw.slip_force / kReach;
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += slope * record.displacement[i];
-  const Record noisy = Noisy(record, 14);
+  const Record noisy = Noisy(With(0.0, 1.0), 14);
   ASSERT_FALSE(Fit(std::vector{noisy}, {}).Find("slip_force")->upper95);
   const TermSelection selection = Select(noisy);
   EXPECT_THAT(selection.added, ElementsAre("plateau_slope"));
@@ -118,21 +107,13 @@ TEST(TermSelection, ForceOfPositionThatClosesTheIntervalOfTheSlipForceIsAdded) {
 }
 
 TEST(TermSelection, TwoForcesAreAddedTheLargerFirst) {
-  const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  const double slope = 0.2 * kLaw.slip_force / kReach;
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] += viscous * SpeedAt(i) + slope * record.displacement[i];
-  }
-  const TermSelection selection = Select(Noisy(record, 4));
-  EXPECT_THAT(selection.added, ElementsAre("plateau_slope", "viscous"));
+  EXPECT_THAT(Select(Noisy(With(0.06, 0.2), 4)).added, ElementsAre("plateau_slope", "viscous"));
 }
 
 TEST(TermSelection, SlipForceOfTheSpeedIsAddedAndTcIsThatOfTheHalfGap) {
   Record record = Clean();
-  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] *= 1 + 0.6 * (std::sqrt(std::abs(SpeedAt(i)) / largest) - 1);
+    record.force[i] *= 1 + 0.6 * (std::sqrt(std::abs(SpeedAt(i)) / kFastest) - 1);
   }
   const TermSelection selection = Select(Noisy(record, 8));
   ASSERT_THAT(selection.added, ::testing::Not(IsEmpty()));
@@ -147,10 +128,10 @@ TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
   // Most of the force is of speed: a slip force at rest is a quarter of the half gap. No one term
   // leaves but noise, for the waves.
   Record record = Clean();
-  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.force[i] +=
-        std::copysign(3 * kLaw.slip_force * std::sqrt(std::abs(SpeedAt(i)) / largest), SpeedAt(i)) +
+        std::copysign(3 * kLaw.slip_force * std::sqrt(std::abs(SpeedAt(i)) / kFastest),
+                      SpeedAt(i)) +
         0.05 * kLaw.slip_force * std::sin(9 * record.displacement[i] / kReach);
   }
   const TermSelection selection = Select(Noisy(record, 10));
@@ -161,10 +142,7 @@ TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
 }
 
 TEST(TermSelection, NamedTermsAreAddedWithoutJudgementAndFitAsWellAsTogether) {
-  const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  const Record noisy = Noisy(record, 11);
+  const Record noisy = Noisy(With(0.06, 0.0), 11);
   FitOptions options;
   options.terms = {"viscous", "slip_trend"};  // of which nothing is in the record
   const RecordView view(noisy);
@@ -176,11 +154,7 @@ TEST(TermSelection, NamedTermsAreAddedWithoutJudgementAndFitAsWellAsTogether) {
 }
 
 TEST(TermSelection, NegativeDampingIsNotAdded) {
-  const double viscous = -0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  const TermSelection selection = Select(Noisy(record, 9));
-  EXPECT_FALSE(TermOf(selection, "viscous").added);
+  EXPECT_FALSE(TermOf(Select(Noisy(With(-0.1, 0.0), 9)), "viscous").added);
 }
 
 TEST(TermSelection, LagIsAddedAloneAndRecovered) {
@@ -221,11 +195,8 @@ TEST(TermSelection, CovariateIsAddedOnceThoughTwoColumnsHaveIt) {
 }
 
 TEST(TermSelection, ColumnThatFollowsTheContactIsConfoundedAndACopyIsNotTried) {
-  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  const std::vector<double> contact = record.force;
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  record = Noisy(record, 7);
+  const std::vector<double> contact = Clean().force;
+  Record record = Noisy(With(0.1, 0.0), 7);
   record.covariates = {{.name = "load cell", .unit = "V", .values = record.force},
                        {.name = "pressure", .unit = "bar", .values = Wandering(record.size())}};
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -238,25 +209,8 @@ TEST(TermSelection, ColumnThatFollowsTheContactIsConfoundedAndACopyIsNotTried) {
   EXPECT_EQ(TermOf(selection, "covariate_load_cell").gain, 0.0);
 }
 
-TEST(TermSelection, SpringIsAddedWhereAQuantitativeLawDoesNotKnowTheSlipForce) {
-  // A spring as stiff as the contact, and a loop that reaches 1.5 of gross slip: the law alone
-  // misses little, since it takes the spring for a larger Tc, which it leaves open.
-  const auto displacement = testing::Cycling(Wave::kSine, 3e-6, kCycles, kSamplesPerCycle);
-  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.force[i] += kLaw.tangential_stiffness * record.displacement[i];
-  }
-  const TermSelection selection = Select(Noisy(record, 5));
-  EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  const ParameterEstimate& slip_force = *selection.fit.Find("slip_force");
-  EXPECT_NEAR(slip_force.value, kLaw.slip_force, kStandardErrors * *slip_force.standard_error);
-}
-
 TEST(TermSelection, BoundOfTheUserIsKept) {
-  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  Record record = Clean();
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
-  record = Noisy(record, 2);
+  const Record record = Noisy(With(0.1, 0.0), 2);
   const ParameterEstimate free = *Select(record).fit.Find("slip_force");
   const double lowest = free.value + 0.5 * *free.standard_error;  // which noise does not exclude
   FitOptions options;

@@ -2,6 +2,7 @@
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/residuals.h"
 #include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
@@ -83,23 +84,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
       .has_value();
 }
 
-// --- whole fits
-
-/// A fit that only evaluates: its residuals are what was added to the model's force.
-FitResult Evaluated(const Thresholds& thresholds, const History& displacement,
-                    const std::vector<double>& added) {
-  Record record = LoopOf(kMindlin, displacement);
-  for (std::size_t i = 0; i < added.size(); ++i) record.force[i] -= added[i];
-  FitOptions options = With(thresholds);
-  options.initial_state = InitialState::kVirgin;
-  options.fixed = {{"sigma", kMindlin.tangential_stiffness},
-                   {"alpha", kMindlin.shape_exponent},
-                   {"slip_force", kMindlin.slip_force},
-                   {"force_offset", 0.0},
-                   {"displacement_offset", 0.0}};
-  std::vector<RecordView> views = {record};
-  return Fitter(options).Fit(views, Depth::kIntervals);
-}
+// --- verdicts
 
 AdequacyTest TestWith(std::vector<DepartureFit> fits, double p_value = 1.0) {
   AdequacyTest test;
@@ -202,11 +187,13 @@ const std::vector<Row>& Cases() {
            for (int i = 1; i <= 20; ++i) displacement.push_back(3e-6 * top * i / 20);
            for (int i = 19; i >= 0; --i) displacement.push_back(3e-6 * top * i / 20);
          }
-         Generator generator(2);
-         std::vector<double> noise;
-         for (std::size_t i = 0; i < displacement.size(); ++i) noise.push_back(Normal(generator));
-         return Evaluated(t, displacement, noise).records[0].structure.strokes ==
-                std::array<std::size_t, 2>{3, 3};
+         ScaledRecord record;
+         record.displacement.assign(displacement.begin(), displacement.end());
+         record.force.resize(displacement.size());
+         record.counts.assign(displacement.size(), 1);
+         record.reversals = FindReversals(displacement, 0.0);
+         return DescribeStructure(record, std::vector<double>(displacement.size(), 1.0), t)
+                    .strokes == std::array<std::size_t, 2>{3, 3};
        }},
       {&Thresholds::widest_ratio,
        [](const Thresholds& t) {

@@ -32,8 +32,7 @@ double LargestErrorOfOvershoot(Wave wave, int samples_a_cycle) {
   double largest = 0.0;
   for (std::size_t begin = 0; begin < kFine; begin += 5) {
     const auto displacement = Cycling(wave, kReach, kCycles, samples_a_cycle * kFine);
-    const Record record = Sparse(
-        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), begin, kFine);
+    const Record record = Sparse(testing::LoopOf(kLaw, displacement), begin, kFine);
     const Stages stages(record);
     const ScaledRecord& scaled = stages.data.records[0];
     const auto [least, greatest] = std::ranges::minmax(displacement);
@@ -65,8 +64,7 @@ TEST(TurningPoints, BetweenSamplesLeaveIntervalsTheirCoverage) {
   constexpr int kLoops = 200;
   constexpr double kLeast = 0.95 - 3 * 0.0154;
   const auto dense = Cycling(Wave::kSine, kReach, 3.0, 25 * 64);
-  const Record exact =
-      Sparse(MakeRecord(dense, Respond(Model("mindlin-dahl"), kLaw, dense)), 0, 64);
+  const Record exact = Sparse(testing::LoopOf(kLaw, dense), 0, 64);
   for (const double noise : {0.003, 0.01}) {
     Generator generator(3);
     int covered = 0;
@@ -75,7 +73,7 @@ TEST(TurningPoints, BetweenSamplesLeaveIntervalsTheirCoverage) {
       const Record record = WithForceNoise(exact, noise * kLaw.slip_force, generator);
       const ParameterEstimate& estimate =
           *fitter.Fit(RecordView(record), Depth::kErrors).Find("slip_force");
-      if (estimate.lower95 <= kLaw.slip_force && kLaw.slip_force <= estimate.upper95) ++covered;
+      if (Covers(estimate, kLaw.slip_force)) ++covered;
     }
     EXPECT_GE(covered, kLeast * kLoops) << noise;
   }

@@ -1,5 +1,3 @@
-
-
 #include "../support/histories.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"

@@ -1,8 +1,5 @@
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
-
 #include "mindahl/loop/segments.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 namespace mindahl::loop::load_steps_test {
@@ -27,9 +24,8 @@ Record Cycled(double cycles, const std::function<double(double)>& load_at) {
 double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
 
 Record WithNoise(Record record, double share) {
-  boost::random::mt19937_64 generator(1);
-  boost::random::normal_distribution<double> normal;
-  for (double& load : record.normal_load) load *= 1 + share * normal(generator);
+  Generator generator(1);
+  for (double& load : record.normal_load) load *= 1 + share * Normal(generator);
   return record;
 }
 

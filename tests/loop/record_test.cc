@@ -23,10 +23,12 @@ TEST(Record, NamesColumnsOfDifferentLengths) {
             "displacement has 2 values and normal load has 3: must be equal");
 }
 
-TEST(Record, NamesTheColumnThatIsNotFinite) {
+TEST(Record, NamesTheColumnAndTheSampleThatIsNotFinite) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(RefusalOf({{1, none}, {3, 4}, {}, {}}),
             "displacement [m] of sample 1 = nan is invalid: must be finite");
+  EXPECT_EQ(RefusalOf({{1, 2}, {3, std::numeric_limits<double>::infinity()}, {}, {}}),
+            "force [N] of sample 1 = inf is invalid: must be finite");
   EXPECT_EQ(RefusalOf({{1, 2}, {3, 4}, {none, 1}, {5, 5}}),
             "time [s] of sample 0 = nan is invalid: must be finite");
   EXPECT_EQ(RefusalOf({{1, 2}, {3, 4}, {0, 1}, {5, none}}),
@@ -37,11 +39,6 @@ TEST(Record, NamesTheColumnThatIsNotFinite) {
   EXPECT_EQ(RefusalOf(record), "wear of sample 0 = nan is invalid: must be finite");
   record.covariates[0].values = {1};
   EXPECT_EQ(RefusalOf(record), "displacement has 2 values and heat has 1: must be equal");
-}
-
-TEST(Record, NamesTheSampleThatIsNotFinite) {
-  EXPECT_EQ(RefusalOf({{1, 2}, {3, std::numeric_limits<double>::infinity()}, {}, {}}),
-            "force [N] of sample 1 = inf is invalid: must be finite");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include "../support/histories.h"
 #include "../support/measured.h"
+#include "loop/strokes.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 namespace mindahl::loop::reversals_test {
@@ -11,54 +13,31 @@ using Indices = std::vector<std::size_t>;
 
 std::size_t CountGated(const History& history) { return ChooseReversalGate(history).count; }
 
-TEST(FindReversals, FindsEveryChangeOfDirectionWithoutAGate) {
-  EXPECT_EQ(FindReversals(History{0, 2, 1, 3, -1, 0}, 0.0), (Indices{1, 2, 3, 4}));
-}
-
-TEST(FindReversals, FindsThemStartingDownwards) {
-  EXPECT_EQ(FindReversals(History{0, -2, -1, -3, 1, 0}, 0.0), (Indices{1, 2, 3, 4}));
-}
-
-TEST(FindReversals, FindsNoneOnAMonotoneRecord) {
-  EXPECT_TRUE(FindReversals(History{1, 2, 2, 5, 9}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{1, -2, -2, -5, -9}, 0.0).empty());
-}
-
-TEST(FindReversals, FindsNoneWhereNothingMoves) {
-  EXPECT_TRUE(FindReversals(History{}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{3}, 0.0).empty());
-  EXPECT_TRUE(FindReversals(History{3, 3, 3, 3}, 0.0).empty());
-}
-
-TEST(FindReversals, TakesTheFirstSampleOfADwell) {
-  EXPECT_EQ(FindReversals(History{0, 0, 2, 2, 2, 1, 1, 4}, 0.0), (Indices{2, 5}));
-}
-
-TEST(FindReversals, ADwellWithinAStrokeIsNoReversal) {
-  EXPECT_EQ(FindReversals(History{0, 1, 1, 2, 1, 1, 0}, 0.0), (Indices{3}));
-}
-
-TEST(FindReversals, TheEndsOfTheRecordAreNone) {
-  EXPECT_EQ(FindReversals(History{5, 1, 4}, 0.0), (Indices{1}));
-}
-
-TEST(FindReversals, IgnoresRetreatsUpToTheGate) {
-  const History history = {0, 5, 4, 6, 0};
-  EXPECT_EQ(FindReversals(history, 1.0), (Indices{3}));  // a retreat of just the gate is none
-  EXPECT_EQ(FindReversals(history, 0.999), (Indices{1, 2, 3}));
-}
-
-TEST(FindReversals, TheExtremumIsTheFarthestSampleNotTheOneThatLeavesTheGate) {
-  EXPECT_EQ(FindReversals(History{0, 8, 10, 9.5, 9.8, 6, 3, 3.5, 2, 9}, 1.0), (Indices{2, 8}));
-}
-
-TEST(FindReversals, TheSideOfTheFirstOneIsFoundBeyondTheGateOnly) {
-  // Within ±1 at first; then down and up again.
-  EXPECT_EQ(FindReversals(History{0, 0.6, -0.3, 0.5, -3, 2}, 1.0), (Indices{4}));
-}
-
-TEST(FindReversals, AGateBeyondTheRangeLeavesNone) {
-  EXPECT_TRUE(FindReversals(Sine(3, 100), 2.5).empty());
+TEST(FindReversals, FindsTheFarthestSampleOfEachTurnBeyondTheGate) {
+  struct Turns {
+    std::string_view name;
+    History history;
+    double gate;
+    Indices reversals;
+  };
+  for (const Turns& turns : std::initializer_list<Turns>{
+           {"every change of direction", {0, 2, 1, 3, -1, 0}, 0.0, {1, 2, 3, 4}},
+           {"none of a monotone record", {1, 2, 2, 5, 9}, 0.0, {}},
+           {"nor downwards", {1, -2, -2, -5, -9}, 0.0, {}},
+           {"none of nothing", {}, 0.0, {}},
+           {"none of one sample", {3}, 0.0, {}},
+           {"none at rest", {3, 3, 3, 3}, 0.0, {}},
+           {"the first sample of a dwell", {0, 0, 2, 2, 2, 1, 1, 4}, 0.0, {2, 5}},
+           {"no dwell within a stroke", {0, 1, 1, 2, 1, 1, 0}, 0.0, {3}},
+           {"no retreat of just the gate", {0, 5, 4, 6, 0}, 1.0, {3}},
+           {"but one beyond it", {0, 5, 4, 6, 0}, 0.999, {1, 2, 3}},
+           {"not the sample that leaves the gate",
+            {0, 8, 10, 9.5, 9.8, 6, 3, 3.5, 2, 9},
+            1.0,
+            {2, 8}},
+           {"the side beyond the gate only", {0, 0.6, -0.3, 0.5, -3, 2}, 1.0, {4}}}) {
+    EXPECT_EQ(FindReversals(turns.history, turns.gate), turns.reversals) << turns.name;
+  }
 }
 
 TEST(FindReversals, MaximaAndMinimaAlternateByMoreThanTheGate) {
@@ -104,7 +83,7 @@ TEST(FindReversals, RejectsAGateThatIsNoDistance) {
 }
 
 TEST(ChooseReversalGate, IsZeroOnCleanLoops) {
-  for (const std::size_t samples : {20, 50, 200, 1000}) {
+  for (const double samples : {20, 50, 200, 1000}) {
     for (const double cycles : {0.5, 1.0, 1.3, 5.0, 20.0}) {
       EXPECT_EQ(ChooseReversalGate(Sine(cycles, samples)).gate, 0.0) << samples << ' ' << cycles;
     }
@@ -155,20 +134,13 @@ TEST(ChooseReversalGate, CountsTheReversalsOfANoisySineAsOfTheCleanOne) {
   Generator generator(6);
   for (int i = 0; i < kRecords; ++i) {
     const double noise = testing::LogUniform(generator, 1e-5, 3e-2);
-    const auto samples = static_cast<std::size_t>(testing::LogUniform(generator, 50, 2000));
+    const auto samples = std::floor(testing::LogUniform(generator, 50, 2000));
     const auto cycles = static_cast<double>(1 + generator() % 10);
     const double half_turns = static_cast<double>(generator() % 2) * std::numbers::pi;
     const History clean = Sine(cycles, samples, half_turns + Uniform(generator, -0.5, 0.5));
     ASSERT_EQ(CountGated(WithNoise(generator, clean, noise)), FindReversals(clean, 0.0).size())
         << "noise " << noise << ", " << samples << " samples a cycle, " << cycles << " cycles";
   }
-}
-
-TEST(ChooseReversalGate, WithoutItNoiseWouldMakeReversals) {
-  Generator generator(7);
-  const History noisy = WithNoise(generator, Sine(5, 1000), 0.01);
-  EXPECT_GT(FindReversals(noisy, 0.0).size(), 1000U);
-  EXPECT_EQ(CountGated(noisy), 10U);
 }
 
 TEST(ChooseReversalGate, SeesThroughEncoderSteps) {
@@ -192,11 +164,6 @@ TEST(ChooseReversalGate, ASlowDipOfTwoEncoderStepsIsNoise) {
   EXPECT_EQ(CountGated(history), 6U);
 }
 
-TEST(ChooseReversalGate, AQuantisedSineNeedsNone) {
-  EXPECT_EQ(FindReversals(Quantised(Sine(5, 400), 1e-3), 0.0).size(), 10U);
-  EXPECT_EQ(CountGated(Quantised(Sine(5, 400), 1e-3)), 10U);
-}
-
 TEST(ChooseReversalGate, ScalesWithTheUnit) {
   Generator generator(9);
   const History noisy = WithNoise(generator, Sine(5, 500), 0.01);
@@ -207,7 +174,7 @@ TEST(ChooseReversalGate, ScalesWithTheUnit) {
 }
 
 /// Drives whose every turn counts, and what a gauge makes of them.
-History TwoAmplitudes(double small, std::size_t samples_per_cycle) {
+History TwoAmplitudes(double small, double samples_per_cycle) {
   History history = {0.0};
   for (int block = 0; block < 6; ++block) {
     const double amplitude = block % 2 == 0 ? 1.0 : small;
@@ -232,7 +199,7 @@ TEST(ChooseReversalGate, KeepsTheSmallCyclesOfANoisyDriveOfTwoAmplitudes) {
   Generator generator(10);
   for (int i = 0; i < 200; ++i) {
     const double small = testing::LogUniform(generator, 0.1, 0.7);
-    const auto samples = static_cast<std::size_t>(testing::LogUniform(generator, 50, 1000));
+    const auto samples = std::floor(testing::LogUniform(generator, 50, 1000));
     const History clean = TwoAmplitudes(small, samples);
     ASSERT_EQ(ChooseReversalGate(clean).gate, 0.0);
     const double noise = small * testing::LogUniform(generator, 1e-4, 1e-2);
@@ -247,13 +214,9 @@ TEST(ChooseReversalGate, IsZeroOnFewSamplesACycle) {
   Generator generator(12);
   for (int i = 0; i < 500; ++i) {
     const double samples = Uniform(generator, 5, 12);
-    History history;
-    const auto count = static_cast<std::size_t>(samples * Uniform(generator, 2, 60));
     const double phase = Uniform(generator, 0, 6.28);
-    for (std::size_t k = 0; k < count; ++k) {
-      history.push_back(std::sin(phase + 2 * std::numbers::pi * static_cast<double>(k) / samples));
-    }
-    ASSERT_EQ(ChooseReversalGate(history).gate, 0.0) << samples << ' ' << phase;
+    ASSERT_EQ(ChooseReversalGate(Sine(Uniform(generator, 2, 60), samples, phase)).gate, 0.0)
+        << samples << ' ' << phase;
   }
 }
 
@@ -266,7 +229,7 @@ TEST(ChooseReversalGate, SeesThroughStepsBackOfAGaugeOrIsNotSure) {
   int miscounted = 0;
   int sure = 0;
   for (int i = 0; i < kRecords; ++i) {
-    const auto samples = static_cast<std::size_t>(testing::LogUniform(generator, 200, 1500));
+    const auto samples = std::floor(testing::LogUniform(generator, 200, 1500));
     const History clean = Sine(5, samples, Uniform(generator, -0.5, 0.5));
     const double depth = testing::LogUniform(generator, 0.005, 0.05);
     const History read = WithStepsBack(generator, WithNoise(generator, clean, 1e-4), depth, 100);
@@ -306,32 +269,37 @@ TEST(ChooseReversalGate, SaysBothCountsWhereItIsNotSure) {
   EXPECT_EQ(FindReversals(history, choice.other_gate).size(), choice.other_count);
 }
 
-class MeasuredReversals : public ::testing::Test {
- protected:
-  /// Rows of a measured record, or a skip.
-  std::vector<std::vector<double>> Read(const std::string& file, char separator) {
-    auto rows = testing::ReadMeasured(file, separator);
-    if (!rows) {
-      absent_ = "no " + testing::MeasuredPath(file);
-      return {};
-    }
-    return *rows;
+TEST(MeasuredReversals, AreAsManyAsTheTestsWereRunWith) {
+  struct Measured {
+    const char* file;
+    char separator;
+    std::size_t column;
+    std::size_t reversals;
+  };
+  for (const Measured& measured : {
+           // 50 cycles from rest at one end, where the position settles by three steps of its
+           // encoder, to rest at the same: the ends turn nothing.
+           Measured{"tribometer/test_data_2.txt", '\t', 2, 99},
+           // Eight ramps up and down: five of ±4 Nm, three of ±40 Nm; the second runs in jerks.
+           {"cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv", ',', 1, 16},
+           {"cycloidal/2024-07-10__16-31-56__torqueramp__split_runin5.csv", ',', 1, 16},
+           // 0.5 Hz for 18 s and a ramp at either end.
+           {"band_brake/dataset-1_0.5Hz70lbtension.csv", ',', 1, 17},
+       }) {
+    const auto rows = ReadMeasured(measured.file, measured.separator);
+    if (!rows) GTEST_SKIP() << "no " << MeasuredPath(measured.file);
+    EXPECT_EQ(CountGated(Column(*rows, measured.column)), measured.reversals) << measured.file;
   }
-  std::string absent_;
-};
+}
 
-#define SKIP_WHERE_ABSENT() \
-  if (!absent_.empty()) GTEST_SKIP() << absent_
-
-TEST_F(MeasuredReversals, TribometerTurnsTwiceACycleDespiteDwells) {
-  const auto rows = Read("tribometer/test_data_2.txt", '\t');
-  SKIP_WHERE_ABSENT();
+TEST(MeasuredReversals, OfTheTribometerAreACycleApartDespiteDwells) {
+  const auto rows = ReadMeasured("tribometer/test_data_2.txt", '\t');
+  if (!rows) GTEST_SKIP() << "no measured record";
   History position;
-  for (const auto& row : rows) {
+  for (const auto& row : *rows) {
     if (row[0] >= 20 && row[0] <= 60) position.push_back(row[2]);
   }
-  // 10 cycles of 4 s, ±115 µm, from rest at the lower end, where the position settles by three
-  // steps of its encoder, to rest there.
+  // 10 cycles of 4 s, ±115 µm, from rest at the lower end to rest there.
   const Indices reversals = FindReversals(position, ChooseReversalGate(position).gate);
   EXPECT_EQ(reversals.size(), 19U);
   for (std::size_t k = 1; k < reversals.size(); ++k) {
@@ -339,56 +307,22 @@ TEST_F(MeasuredReversals, TribometerTurnsTwiceACycleDespiteDwells) {
   }
 }
 
-TEST_F(MeasuredReversals, TribometerTurnsAtBothEndsOfAllItsCycles) {
-  const auto rows = Read("tribometer/test_data_2.txt", '\t');
-  SKIP_WHERE_ABSENT();
-  // 50 cycles from rest at one end, where the position settles by three steps of its encoder, to
-  // rest at the same: the ends turn nothing.
-  EXPECT_EQ(CountGated(testing::Column(rows, 2)), 99U);
-}
-
-TEST_F(MeasuredReversals, SealsReverseNineteenTimesDespiteBackwardStepsOfTheLaser) {
-  std::size_t steps_back = 0;
+TEST(MeasuredReversals, OfSealsAreNineteenDespiteBackwardStepsOfTheLaser) {
   for (const char* seal :
        {"Circle_1bar", "Circle_2bar", "KDN_5bar", "Kidney_lc_7bar", "NAP310_5bar", "O-ring257_3bar",
         "Stadium_1bar", "rerun_1_O-ring257_5bar", "rerun_2_O-ring257_5bar",
         "rerun_3_O-ring257_5bar"}) {
-    SCOPED_TRACE(seal);
-    const auto rows = Read("seals/" + std::string(seal) + ".csv", '\t');
-    SKIP_WHERE_ABSENT();
-    const History position = testing::Column(rows, 4);
+    const auto rows = ReadMeasured("seals/" + std::string(seal) + ".csv", '\t');
+    if (!rows) GTEST_SKIP() << "no measured record";
+    const History position = Column(*rows, 4);
     const ReversalGate choice = ChooseReversalGate(position);
-    EXPECT_EQ(choice.count, 19U);  // 9.5 cycles, out from rest
-    EXPECT_TRUE(choice.certain);
+    EXPECT_EQ(choice.count, 19U) << seal;  // 9.5 cycles, out from rest
+    EXPECT_TRUE(choice.certain) << seal;
     const Indices reversals = FindReversals(position, choice.gate);
     for (std::size_t k = 1; k < reversals.size(); ++k) {
       EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 35.0);  // mm
     }
-    steps_back += (FindReversals(position, 0.0).size() - reversals.size()) / 2;
   }
-  EXPECT_GT(steps_back, 500U) << "the gate has nothing to do";
-}
-
-TEST_F(MeasuredReversals, CycloidalRampsReverseAsTheTestsWereRun) {
-  const auto rows = Read("cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv", ',');
-  SKIP_WHERE_ABSENT();
-  // Eight ramps up and down: five of ±4 Nm, three of ±40 Nm.
-  EXPECT_EQ(CountGated(testing::Column(rows, 1)), 16U);
-}
-
-TEST_F(MeasuredReversals, CycloidalThatRunsInJerksAndReversesNoMoreForIt) {
-  const auto rows = Read("cycloidal/2024-07-10__16-31-56__torqueramp__split_runin5.csv", ',');
-  SKIP_WHERE_ABSENT();
-  EXPECT_EQ(CountGated(testing::Column(rows, 1)), 16U);  // the same eight ramps
-}
-
-TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
-  const auto rows = Read("band_brake/dataset-1_0.5Hz70lbtension.csv", ',');
-  SKIP_WHERE_ABSENT();
-  const History position = testing::Column(rows, 1);
-  // 0.5 Hz for 18 s and a ramp at either end.
-  EXPECT_EQ(CountGated(position), 17U);
-  EXPECT_GT(FindReversals(position, 0.0).size(), 1000U) << "the gate has nothing to do";
 }
 
 TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
@@ -405,6 +339,49 @@ TEST(ReversalGate, IsAboveTheFlickerOfAnEncoderOfFewCountsAStroke) {
     EXPECT_GE(gate.gate, 1.5 * kCount);
     EXPECT_EQ(gate.count, 4U) << record;
   }
+}
+
+// ---
+// The staircase of the number of reversals over the gate.
+
+std::vector<Excursion> Excursions(const History& history) { return FindExcursions(history); }
+
+TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
+  Generator generator(1);
+  for (int i = 0; i < 2000; ++i) {
+    const History history = testing::RandomHistory(generator);
+    const auto excursions = Excursions(history);
+    ASSERT_EQ(CountReversals(excursions, 0.0), FindReversals(history, 0.0).size());
+    for (const Excursion& excursion : excursions) {
+      for (const double gate :
+           {excursion.range * (1 - 1e-12), excursion.range, excursion.range * (1 + 1e-12)}) {
+        ASSERT_EQ(CountReversals(excursions, gate), FindReversals(history, gate).size())
+            << "history " << i << ", gate " << gate;
+      }
+    }
+  }
+}
+
+TEST(FindExcursions, AreClosedLoopsAndTheTravelFromEndToEnd) {
+  // 0 → 5 → 4 → 6 → −6 → −5: the loop 5 → 4, then three strokes.
+  const auto excursions = Excursions({0, 5, 4, 6, -6, -5});
+  ASSERT_EQ(excursions.size(), 4U);
+  EXPECT_EQ(excursions[0].range, 1.0);
+  EXPECT_EQ(excursions[0].reversals, 2U);
+  EXPECT_EQ(excursions[0].first, 1U);
+  EXPECT_EQ(excursions[0].duration(), 1U);
+  EXPECT_EQ(excursions[1].range, 1.0);
+  EXPECT_EQ(excursions[1].reversals, 1U);
+  EXPECT_EQ(excursions[2].range, 6.0);
+  EXPECT_EQ(excursions[2].duration(), 3U);
+  EXPECT_EQ(excursions[3].range, 12.0);
+}
+
+TEST(FindExcursions, AreNoneWhereNothingTurnsOrMoves) {
+  EXPECT_TRUE(Excursions({}).empty());
+  EXPECT_EQ(CountReversals(Excursions({1}), 0.0), 0U);
+  EXPECT_EQ(CountReversals(Excursions({1, 2, 3}), 0.0), 0U);
+  EXPECT_EQ(CountReversals(Excursions({2, 2, 2}), 0.0), 0U);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "mindahl/methods/method.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include "../support/histories.h"
 #include "responses.h"
 #include "support/prelude.h"
@@ -10,8 +8,6 @@ namespace mindahl::methods::method_test {
 namespace {
 
 using namespace models;
-
-using Digits100 = boost::multiprecision::cpp_bin_float_100;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kShapeExponents[] = {0.0, 1e-8, 1.0 / 3, 0.5, 1.0, 2.0};
@@ -37,75 +33,70 @@ std::vector<Service> Services() {
   return services;
 }
 
-class EveryService : public ::testing::TestWithParam<Service> {
- protected:
-  /// Largest |T| over Tc beyond what is allowed, <= 0; NaN where a force is.
-  [[nodiscard]] static double Excess(const BranchLaw& law, const History& history,
-                                     std::size_t steps) {
-    const auto& [method, model] = GetParam();
-    // Slip forces of elements are rounded, and their sum.
-    const double rounding = method->masing_only ? static_cast<double>(2 * steps) * kEpsilon : 0.0;
-    const double limit = model->bounded ? 1 + rounding : 2.0;
-    double excess = -limit;
-    for (const double force :
-         RespondBy(method->name, model->name, law, {.displacement = history}, {.steps = steps})) {
-      const double beyond = std::abs(force) / law.slip_force - limit;
-      if (!(beyond <= excess)) excess = beyond;
-      if (std::isnan(excess)) break;
-    }
-    return excess;
-  }
+std::string NameOf(const Service& service) {
+  return std::string(service.method->name) + " " + std::string(service.model->name);
+}
 
-  [[nodiscard]] static BranchLaw LawWith(double shape_exponent) {
-    return {1.0, GetParam().model->shape_exponent.value_or(shape_exponent), 1.0};
-  }
-};
+BranchLaw LawOf(const Service& service, double shape_exponent) {
+  return {1.0, service.model->shape_exponent.value_or(shape_exponent), 1.0};
+}
 
-TEST_P(EveryService, IsGuardedOverRandomHistoriesOfAnySize) {
+/// Largest |T| over Tc beyond what is allowed, <= 0; NaN where a force is.
+double Excess(const Service& service, const BranchLaw& law, const History& history,
+              std::size_t steps) {
+  const auto& [method, model] = service;
+  // Slip forces of elements are rounded, and their sum.
+  const double rounding = method->masing_only ? static_cast<double>(2 * steps) * kEpsilon : 0.0;
+  const double limit = model->bounded ? 1 + rounding : 2.0;
+  double excess = -limit;
+  for (const double force :
+       RespondBy(method->name, model->name, law, {.displacement = history}, {.steps = steps})) {
+    const double beyond = std::abs(force) / law.slip_force - limit;
+    if (!(beyond <= excess)) excess = beyond;
+    if (std::isnan(excess)) break;
+  }
+  return excess;
+}
+
+TEST(EveryService, IsGuardedOverRandomHistoriesOfAnySize) {
   constexpr int kHistories = 60;
-  Generator generator(20171);
-  for (const double shape_exponent : kShapeExponents) {
-    const BranchLaw law = LawWith(shape_exponent);
-    for (int i = 0; i < kHistories; ++i) {
-      History history = RandomHistory(generator);
-      const double size = LogUniform(generator, 1e-6, 1e6) * ReferenceDisplacement(law);
-      const double reach = Largest(history);
-      for (double& at : history) at *= reach > 0 ? size / reach : 0.0;
-      EXPECT_LE(Excess(law, history, 1 + generator() % 3), 0.0)
-          << "alpha = " << shape_exponent << ", history " << i << " of size " << size;
+  for (const Service& service : Services()) {
+    Generator generator(20171);
+    for (const double shape_exponent : kShapeExponents) {
+      const BranchLaw law = LawOf(service, shape_exponent);
+      for (int i = 0; i < kHistories; ++i) {
+        History history = RandomHistory(generator);
+        const double size = LogUniform(generator, 1e-6, 1e6) * ReferenceDisplacement(law);
+        const double reach = Largest(history);
+        for (double& at : history) at *= reach > 0 ? size / reach : 0.0;
+        EXPECT_LE(Excess(service, law, history, 1 + generator() % 3), 0.0)
+            << NameOf(service) << ", alpha = " << shape_exponent << ", history " << i << " of size "
+            << size;
+      }
     }
   }
 }
 
-TEST_P(EveryService, IsGuardedOverStepsOfNoLengthAndGiantOnes) {
+TEST(EveryService, IsGuardedOverStepsOfNoLengthAndGiantOnes) {
+  // Ten times the tolerance of the adaptive one.
+  constexpr double kTolerance = 1e-5;
   const History histories[] = {
       {0, 0, 0},           {1e-300, 1e-300, 0, -1e-300},   {0, 1e-9, 1e-9, 1e-9},
       {1e12, -1e12, 0, 0}, {0, 0.5, 1e9, 0.5, -1e9, -1e9}, {1.5, 1.5, -1.5, -1.5, 1.5}};
-  for (const double shape_exponent : kShapeExponents) {
-    for (const History& history : histories) {
-      EXPECT_LE(Excess(LawWith(shape_exponent), history, 1), 0.0) << "alpha = " << shape_exponent;
+  for (const Service& service : Services()) {
+    for (const double shape_exponent : kShapeExponents) {
+      for (const History& history : histories) {
+        EXPECT_LE(Excess(service, LawOf(service, shape_exponent), history, 1), 0.0)
+            << NameOf(service) << ", alpha = " << shape_exponent;
+      }
     }
+    const History giant = {3e6, -3e6};
+    const std::vector<double> force = RespondBy(service.method->name, service.model->name,
+                                                LawOf(service, 0.5), {.displacement = giant});
+    EXPECT_NEAR(force[0], 1, kTolerance) << NameOf(service);
+    EXPECT_NEAR(force[1], -1, kTolerance) << NameOf(service);
   }
 }
-
-TEST_P(EveryService, SlipsAfterOneGiantStep) {
-  // Ten times the tolerance of the adaptive one.
-  constexpr double kTolerance = 1e-5;
-  const auto& [method, model] = GetParam();
-  const History history = {3e6, -3e6};
-  const std::vector<double> force =
-      RespondBy(method->name, model->name, LawWith(0.5), {.displacement = history});
-  EXPECT_NEAR(force[0], 1, kTolerance);
-  EXPECT_NEAR(force[1], -1, kTolerance);
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods, EveryService, ::testing::ValuesIn(Services()),
-                         [](const auto& service) {
-                           std::string name = std::string(service.param.method->name) + "_" +
-                                              std::string(service.param.model->name);
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
 
 TEST(Dopri5, CrossesAStepOfAnyLength) {
   const History history = {1e100, -1e100, 1e100};
@@ -119,33 +110,14 @@ TEST(Dopri5, CrossesAStepOfAnyLength) {
 
 // --- exact -------------------------------------------------------------------
 
-std::vector<History> NamedHistories(const BranchLaw& law) {
-  const double unit = ReferenceDisplacement(law);
-  const auto make = [&](Waveform waveform, double lambda, double cycles) {
-    return Displacements({.waveform = waveform,
-                          .amplitude = lambda * unit,
-                          .cycles = cycles,
-                          .samples_per_cycle = 22,
-                          .seed = 7});
-  };
-  return {make(Waveform::kSine, 1e-6, 2),       make(Waveform::kSine, 0.8, 3),
-          make(Waveform::kSine, 1.2, 3),        make(Waveform::kSine, 1e6, 2),
-          make(Waveform::kGrowingSine, 1.5, 5), make(Waveform::kRandom, 1.4, 6),
-          make(Waveform::kNested, 0.9, 6),      make(Waveform::kTriangle, 3.0, 2)};
-}
-
-TEST(Exact, IsTheLawAsDefinedInHundredDigits) {
-  constexpr double kAccuracy = 1e-12;  // of the peak force: twenty times the bound of response.h
-  for (const double shape_exponent : kShapeExponents) {
-    const BranchLaw law{3.0, shape_exponent, 0.5};
-    std::size_t number = 0;
-    for (const History& history : NamedHistories(law)) {
-      const auto defined = DefinedForce<Digits100>(law, history);
-      const auto exact = RespondBy("exact", "mindlin-dahl", law, {.displacement = history});
-      EXPECT_LE(LargestDifference(exact, defined), kAccuracy * Largest(defined))
-          << "alpha = " << shape_exponent << ", history " << number;
-      ++number;
-    }
+TEST(Exact, IsTheModelsOwnForce) {
+  Generator generator(7);
+  for (const FrictionModel& model : FrictionModels()) {
+    const BranchLaw law{3.0, model.shape_exponent.value_or(0.7), 0.5};
+    const History history = RandomHistory(generator);
+    EXPECT_EQ(RespondBy("exact", model.name, law, {.displacement = history}),
+              Respond(model, law, history))
+        << model.name;
   }
 }
 
@@ -236,14 +208,12 @@ TEST(CostOf, IsWhatAMethodDoesAlongTheDrive) {
 // --- Preconditions --------------------------------------------------------------------------
 
 TEST(Method, RefusesAModelThatItsElementsCannotRemember) {
-  for (const std::string_view method : {"iwan"}) {
-    for (const std::string_view model : {"dahl", "simplified-dahl"}) {
-      const std::string message = MessageOf([&] {
-        Prepare(*FindMethod(method), *FindFrictionModel(model), {1, 0.5, 1}, {});
-      });
-      EXPECT_THAT(message, HasSubstr("method " + std::string(method) + " "));
-      EXPECT_THAT(message, HasSubstr("model " + std::string(model) + ":"));
-    }
+  for (const std::string_view model : {"dahl", "simplified-dahl"}) {
+    const std::string message = MessageOf([&] {
+      Prepare(*FindMethod("iwan"), *FindFrictionModel(model), {1, 0.5, 1}, {});
+    });
+    EXPECT_THAT(message, HasSubstr("method iwan "));
+    EXPECT_THAT(message, HasSubstr("model " + std::string(model) + ":"));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
+#include "support/histories.h"
 
 /// Responses by a method, and by the literal definition of the law.
 namespace mindahl::testing {
@@ -52,12 +53,6 @@ inline double LargestDifference(std::span<const double> a, std::span<const doubl
     if (!(difference <= largest)) largest = difference;  // also where it is not a number
     if (std::isnan(largest)) return largest;
   }
-  return largest;
-}
-
-inline double Largest(std::span<const double> values) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
   return largest;
 }
 

@@ -24,52 +24,12 @@ TEST(BranchLaw, WithAThirdIsMindlin) {
   }
 }
 
-TEST(BranchLaw, WithZeroIsElasticThenPlastic) {
-  const BranchLaw law{2.0, 0.0, 3.0};
-  EXPECT_EQ(BackboneForce(law, 1.0), 2.0);
-  EXPECT_EQ(BackboneForce(law, 1.5), 3.0);
-  EXPECT_EQ(BackboneForce(law, 7.0), 3.0);
-  EXPECT_EQ(BackboneSlope(law, 1.0), 2.0);
-  EXPECT_EQ(BackboneSlope(law, 2.0), 0.0);
-}
-
 TEST(BranchLaw, WithOneIsExponential) {
   const BranchLaw law{2.0, 1.0, 3.0};
-  EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * (1 - std::exp(-0.8)), 3 * kClosedForm);
-  EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 * std::exp(-0.8), 2 * kClosedForm);
-}
-
-TEST(BranchLaw, WithTwoIsHyperbolic) {
-  const BranchLaw law{2.0, 2.0, 3.0};
-  EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * 0.8 / 1.8, 3 * kClosedForm);
-  EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 / (1.8 * 1.8), 2 * kClosedForm);
-}
-
-TEST(BranchLaw, SolvesItsDifferentialEquation) {
-  // dT/dx = σ(1 − T/Tc)^α: slope against force.
-  for (const double alpha : {0.1, 1.0 / 3.0, 0.7, 1.0, 1.5, 4.0}) {
-    const BranchLaw law{5.0, alpha, 2.0};
-    for (const double x : {1e-3, 0.1, 0.3, 0.45}) {
-      const double remaining = 1 - BackboneForce(law, x) / 2.0;
-      EXPECT_NEAR(BackboneSlope(law, x), 5.0 * std::pow(remaining, alpha), 1e-13) << alpha;
-    }
-  }
-}
-
-TEST(BranchLaw, WorkIsTheIntegralOfTheForce) {
-  // Simpson's rule in 2000 steps away from slip: h⁴/180·f⁗ < 1e-13 here.
-  constexpr int kSteps = 2000;
-  constexpr double kSimpson = 1e-12;
-  for (const double alpha : {0.1, 1.0 / 3.0, 1.0, 2.0, 5.0}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    for (const double x : {0.3, 0.9}) {
-      double integral = BackboneForce(law, 0) + BackboneForce(law, x);
-      for (int i = 1; i < kSteps; ++i) {
-        integral += (i % 2 == 0 ? 2 : 4) * BackboneForce(law, x * i / kSteps);
-      }
-      EXPECT_NEAR(BackboneWork(law, x), integral * x / (3 * kSteps), kSimpson) << alpha;
-    }
-  }
+  const double remaining = std::exp(-0.8);
+  EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * (1 - remaining), 3 * kClosedForm);
+  EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 * remaining, 2 * kClosedForm);
+  EXPECT_NEAR(BackboneWork(law, 1.2), 3.0 * (1.2 - 1.5 * (1 - remaining)), 9 * kClosedForm);
 }
 
 TEST(BranchLaw, ForceIsOddSlopeAndWorkAreEven) {
@@ -108,9 +68,59 @@ TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
   EXPECT_EQ(message({1.0, -0.1, 1.0}),
             "shape exponent [-] = -0.1 is invalid: must be finite and >= 0");
   EXPECT_EQ(message({1.0, 1e101, 1.0}), "shape exponent [-] = 1e+101 is invalid: must be <= 1e100");
-  EXPECT_NE(message({1e300, 0.5, 1e-300}).find("stiffness over slip force [1/m]"),
-            std::string::npos);
+  EXPECT_THAT(message({1e300, 0.5, 1e-300}), HasSubstr("stiffness over slip force [1/m]"));
   EXPECT_NE(message({1.0, std::nan(""), 1.0}), "");
+}
+
+constexpr BranchLaw kLaw{.tangential_stiffness = 4.0, .slip_force = 3.0};
+
+std::vector<double> Respond(std::string_view name, const std::vector<double>& displacement) {
+  std::vector<double> force(displacement.size());
+  FindLimitLaw(name)->evaluate_force(kLaw, displacement, force);
+  return force;
+}
+
+TEST(LimitLaw, SpringIsProportionalAndNotBounded) {
+  EXPECT_EQ(Respond("spring", {0, 0.5, -0.25, 100}), (std::vector<double>{0, 2, -1, 400}));
+}
+
+TEST(LimitLaw, CoulombOpposesTheMotionAndHoldsAtRest) {
+  EXPECT_EQ(Respond("coulomb", {0, 0, 1e-300, 1e-300, 0, 0, -1, -0.5}),
+            (std::vector<double>{0, 0, 3, 3, -3, -3, -3, 3}));
+}
+
+TEST(LimitLaw, TravelFromReferencePositionToFirstSampleIsAMotion) {
+  EXPECT_EQ(Respond("coulomb", {-1, -1}), (std::vector<double>{-3, -3}));
+}
+
+TEST(LimitLaw, IsFoundByItsNameOnly) {
+  ASSERT_EQ(LimitLaws().size(), 2U);
+  for (const LimitLaw& law : LimitLaws()) EXPECT_EQ(FindLimitLaw(law.name), &law);
+  EXPECT_EQ(FindLimitLaw("Spring"), nullptr);
+  EXPECT_EQ(FindLimitLaw(""), nullptr);
+}
+
+TEST(LimitLaw, RefusesWhatItCannotServe) {
+  std::vector<double> force(2);
+  const std::vector<double> three = {0, 1, 2};
+  const std::vector<double> not_finite = {0, std::numeric_limits<double>::infinity()};
+  for (const LimitLaw& law : LimitLaws()) {
+    EXPECT_THAT(MessageOf([&] { law.evaluate_force(kLaw, three, force); }),
+                HasSubstr("displacement"));
+    EXPECT_THAT(MessageOf([&] { law.evaluate_force(kLaw, not_finite, force); }),
+                HasSubstr("displacement [m] of sample 1"));
+    EXPECT_THAT(MessageOf([&] {
+                  law.evaluate_force({.tangential_stiffness = 1, .slip_force = -1}, force, force);
+                }),
+                HasSubstr("slip force [N]"));
+  }
+  const std::vector<double> far = {0, 1e308};
+  const std::vector<double> far_and_back = {1e308, 0};
+  EXPECT_THAT(MessageOf([&] { FindLimitLaw("spring")->evaluate_force(kLaw, far_and_back, force); }),
+              HasSubstr("exceeds the largest double"));
+  EXPECT_THAT(MessageOf([&] { FindLimitLaw("spring")->evaluate_force(kLaw, far, force); }),
+              HasSubstr("exceeds the largest double"));
+  EXPECT_EQ(MessageOf([&] { FindLimitLaw("coulomb")->evaluate_force(kLaw, far, force); }), "");
 }
 
 }  // namespace

@@ -1,18 +1,14 @@
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
-#include "../support/message_of.h"
-#include "contact/printed_equations.h"
-#include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/models/response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::imposed_force_test {
 namespace {
 
-using Real = boost::multiprecision::cpp_bin_float_100;
+using Real = boost::multiprecision::cpp_bin_float_50;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kExponents[] = {0.0, 1e-9, 0.2, 1.0 / 3, 0.5, 0.9, 1 - 1e-12, 1.0, 1.5, 3.0};
@@ -102,38 +98,16 @@ Expected DahlDisplacement(const reference::Law<Real>& law, const std::vector<Rea
   return expected;
 }
 
-TEST(ImposedForce, IsMindlinsVirginUnloadingAndReloadingDisplacement) {
-  const contact::MindlinContact contact{0.0027, 4.42e-11, 30.0};
-  const BranchLaw law{contact::MindlinTangentialStiffness(0.0027, 4.42e-11), 1.0 / 3, 30.0};
-  // 24 ulp by eqs 8 and 9, as many here.
-  constexpr double kRounding = 48 * kEpsilon;  // of δ*
-  for (const double peak : {0.01, 12.0, 29.9, 29.999999}) {
-    History force;
-    for (int i = 0; i <= 20; ++i) force.push_back(peak * (i / 20.0));
-    for (int i = 19; i >= -20; --i) force.push_back(peak * (i / 20.0));
-    for (int i = -19; i <= 20; ++i) force.push_back(peak * (i / 20.0));
-    const std::vector<double> displacement = Displacements(Model("mindlin"), law, force);
-    const printed::Contact exact(contact);
-    const double bound = kRounding * static_cast<double>(exact.VirginDisplacement(peak));
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      const printed::Real expected = i <= 20   ? exact.VirginDisplacement(force[i])
-                                     : i <= 60 ? exact.UnloadingDisplacement(force[i], peak)
-                                               : exact.ReloadingDisplacement(force[i], peak);
-      EXPECT_NEAR(displacement[i], static_cast<double>(expected), bound)
-          << "T* = " << peak << ", sample " << i;
-    }
-  }
-}
-
 TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
   Generator generator(2211);
   for (const double exponent : kExponents) {
-    for (int i = 0; i < 25; ++i) {
+    for (int i = 0; i < 15; ++i) {
       const BranchLaw law{LogUniform(generator, 1e-3, 1e9), exponent,
                           LogUniform(generator, 1e-6, 1e6)};
       const reference::Law<Real> exact{law.tangential_stiffness, exponent, law.slip_force};
       const History force = RandomForces(generator, law.slip_force);
       const std::vector<double> masing = Displacements(Model("mindlin-dahl"), law, force);
+      const std::vector<double> dahl = Displacements(Model("dahl"), law, force);
       std::vector<Real> past;
       for (std::size_t k = 0; k < force.size(); ++k) {
         past.emplace_back(force[k]);
@@ -141,76 +115,11 @@ TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
         ASSERT_LE(std::abs(static_cast<double>(masing[k] - expected.displacement)), expected.bound)
             << "alpha = " << exponent << ", history " << i << ", sample " << k;
       }
-    }
-  }
-}
-
-TEST(ImposedForce, IsExactForDahlsLawWithinRoundingOfForces) {
-  Generator generator(2212);
-  for (const double exponent : kExponents) {
-    for (int i = 0; i < 25; ++i) {
-      const BranchLaw law{LogUniform(generator, 1e-3, 1e9), exponent,
-                          LogUniform(generator, 1e-6, 1e6)};
-      const reference::Law<Real> exact{law.tangential_stiffness, exponent, law.slip_force};
-      const History force = RandomForces(generator, law.slip_force);
-      const std::vector<double> dahl = Displacements(Model("dahl"), law, force);
-      const std::vector<Real> past(force.begin(), force.end());
       const Expected expected = DahlDisplacement(exact, past);
       ASSERT_LE(std::abs(static_cast<double>(dahl.back() - expected.displacement)), expected.bound)
           << "alpha = " << exponent << ", history " << i;
     }
   }
-}
-
-/// Largest |T(δ(T)) − T| of a history, over what rounding makes of it.
-double RoundTrip(const FrictionModel& model, const BranchLaw& law, const History& force,
-                 const SeriesSpring& rig = {}) {
-  const std::vector<double> displacement = Displacements(model, law, force, rig);
-  const std::vector<double> back = [&] {
-    std::vector<double> result(force.size());
-    EvaluateForce(model, law, testing::PathOf(model, displacement), displacement, result, rig);
-    return result;
-  }();
-  double farthest = 0.0;
-  for (const double at : displacement) farthest = std::max(farthest, std::abs(at));
-  // Of a branch the way there errs by up to 16 ε of δ and the way back by 6 ε of Tc; the stiffest
-  // branch of Dahl's law has σ·2^α. No more branches follow one another than there are samples.
-  const double stiffest = law.tangential_stiffness * std::exp2(law.shape_exponent);
-  const double bound = 16 * kEpsilon * static_cast<double>(force.size() + 1) *
-                       (law.slip_force + stiffest * farthest);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    worst = std::max(worst, std::abs(back[i] - force[i]) / bound);
-  }
-  return worst;
-}
-
-TEST(ImposedForce, GivesBackTheForceThroughTheDisplacement) {
-  Generator generator(2213);
-  for (const FrictionModel& model : FrictionModels()) {
-    if (model.scaled_by_peak) continue;
-    for (const double exponent : kExponents) {
-      for (int i = 0; i < 200; ++i) {
-        const BranchLaw law{LogUniform(generator, 1e-3, 1e9),
-                            model.shape_exponent.value_or(exponent),
-                            LogUniform(generator, 1e-6, 1e6)};
-        const History force = RandomForces(generator, law.slip_force);
-        ASSERT_LE(RoundTrip(model, law, force), 1.0)
-            << model.name << ", alpha = " << law.shape_exponent << ", history " << i;
-        const SeriesSpring rig{law.tangential_stiffness * LogUniform(generator, 0.1, 100)};
-        ASSERT_LE(RoundTrip(model, law, force, rig), 1.0)
-            << model.name << " in a rig, alpha = " << law.shape_exponent << ", history " << i;
-      }
-    }
-  }
-}
-
-TEST(ImposedForce, LeavesNothingOfAnInnerLoopBehind) {
-  const BranchLaw law{2.0, 1.0 / 3, 1.0};
-  const History without = {0.8, -0.3, 0.6};
-  const History with = {0.8, -0.3, 0.2, 0.0, 0.1, 0.05, 0.6};
-  EXPECT_EQ(Displacements(Model("mindlin"), law, with).back(),
-            Displacements(Model("mindlin"), law, without).back());
 }
 
 TEST(ImposedForce, ASpringInSeriesAddsItsOwnTravel) {

@@ -1,5 +1,3 @@
-
-
 #include "../support/histories.h"
 #include "mindahl/models/variable_load.h"
 #include "models/normalized_response.h"
@@ -183,10 +181,10 @@ TEST(NormalizedLoadedResponse, RefusesWhatTheLawDoesNotModel) {
   const auto message = [&](const NormalizedLaw& law) {
     return MessageOf([&] { response.Evaluate(law, history, 0.0, t); });
   };
-  EXPECT_NE(message({.rate = 1.0, .shape_exponent = 1.0}).find("must be < 1"), std::string::npos);
-  EXPECT_NE(message({.rate = 1.0, .spring_travel = 0.1}).find("must be 0"), std::string::npos);
+  EXPECT_THAT(message({.rate = 1.0, .shape_exponent = 1.0}), HasSubstr("must be < 1"));
+  EXPECT_THAT(message({.rate = 1.0, .spring_travel = 0.1}), HasSubstr("must be 0"));
   t.pop_back();
-  EXPECT_NE(message({.rate = 1.0}).find("response"), std::string::npos);
+  EXPECT_THAT(message({.rate = 1.0}), HasSubstr("response"));
   LoadedHistory other;
   EXPECT_THROW(MakeLoadedHistory(History{0, 1}, History{1, -1}, {}, InitialState::kVirgin, other),
                InvalidArgument);

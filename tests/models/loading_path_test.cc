@@ -47,47 +47,45 @@ TEST(LoadingPath, AReversalOpensABranchFromTheExtremum) {
   EXPECT_EQ(path.branches.back().start, BranchStart::kReversal);
 }
 
-TEST(LoadingPath, RemembersEveryExtremumOfANestedHistory) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 0.5})), (Origins{-1, 2, -3, 4, 0}));
-}
-
-TEST(LoadingPath, ErasesInnerLoopWhenPassed) {
-  // 4, 0, 2, then on below 0: the loop 0-2 is gone and the branch from 4 goes on.
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, 0.1})), (Origins{2, 0, 4, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, -0.1})), (Origins{4, 0}));
-}
-
-TEST(LoadingPath, ReachingTheExtremumExactlyCountsAsPassing) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, 0})), (Origins{4, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({-4, 0, -2, 0})), (Origins{-4, 0}));
-}
-
-TEST(LoadingPath, ErasesSeveralLoopsInOneStep) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 1, -2})), (Origins{2, -3, 4, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 1, -3.5})), (Origins{4, 0}));
-}
-
-TEST(LoadingPath, RejoinsTheVirginCurveAtItsFirstExtremum) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 3.999})), (Origins{1, 4, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 4})), (Origins{0}));
-}
-
-TEST(LoadingPath, RejoinsTheVirginCurveAtTheMirrorImageOfItsFirstExtremum) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3.999})), (Origins{4, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -4})), (Origins{0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 2, -1, 0, -5})), (Origins{0}));
+TEST(LoadingPath, GoesBackToTheExtremaThatMadelungsRulesLeave) {
+  struct Rule {
+    std::string_view name;
+    History history;
+    Origins origins;
+  };
+  for (const Rule& rule : std::initializer_list<Rule>{
+           {"every extremum of a nested history", {4, -3, 2, -1, 0.5}, {-1, 2, -3, 4, 0}},
+           {"an inner loop stays until it is passed", {4, 0, 2, 0.1}, {2, 0, 4, 0}},
+           {"an inner loop is erased when passed", {4, 0, 2, -0.1}, {4, 0}},
+           {"reaching the extremum exactly is passing it", {4, 0, 2, 0}, {4, 0}},
+           {"so it is downwards", {-4, 0, -2, 0}, {-4, 0}},
+           {"one of several loops in a step", {4, -3, 2, -1, 1, -2}, {2, -3, 4, 0}},
+           {"several loops in a step", {4, -3, 2, -1, 1, -3.5}, {4, 0}},
+           {"short of the first extremum", {4, 1, 3.999}, {1, 4, 0}},
+           {"the virgin curve is rejoined at its first extremum", {4, 1, 4}, {0}},
+           {"short of its mirror image", {4, -3.999}, {4, 0}},
+           {"or at its mirror image", {4, -4}, {0}},
+           {"or beyond, with loops on the way", {4, 1, 2, -1, 0, -5}, {0}},
+           {"the new extremum is the first then", {2, -3, 2.9}, {-3, 0}},
+           {"whose mirror image counts", {2, -3, 3}, {0}},
+           // Up to 2 before the record, then down: 2 is an extremum although no sample turns there.
+           {"a first row away from the unloaded contact is a step", {2, 1, 0}, {2, 0}},
+           {"which may go on", {2, 3}, {0}},
+           {"or turn", {-2, -1, -1.5}, {-1, -2, 0}},
+           {"a first row at the unloaded contact is none", {0, -1, -2}, {0}},
+           {"a dwell at an extremum opens nothing", {3, 3, 3, 1, 1, 2}, {1, 3, 0}},
+           {"a single sample", {0.7}, {0}},
+           {"a constant record", {0.7, 0.7, 0.7}, {0}}}) {
+    EXPECT_EQ(OriginsAtTheEnd(MasingPath(rule.history)), rule.origins) << rule.name;
+  }
+  EXPECT_EQ(MasingPath({0, -1, -2}).branches.front().direction, -1.0);
+  EXPECT_EQ(MasingPath({3, 3, 3, 1, 1, 2}).branches.size(), 3U);
 }
 
 TEST(LoadingPath, TheMirrorImageIsTakenAboutTheUnloadedDisplacement) {
   const InitialContact at_one{.unloaded_displacement = 1.0};
   EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -1.9}, at_one)), (Origins{4, 1}));
   EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -2}, at_one)), (Origins{1}));
-}
-
-TEST(LoadingPath, AfterRejoiningTheNewExtremumIsTheFirst) {
-  // 2, then −3 on the virgin curve, then back: the mirror image is now 3.
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, -3, 2.9})), (Origins{-3, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, -3, 3})), (Origins{0}));
 }
 
 TEST(LoadingPath, StartingDownwardIsTheMirrorImage) {
@@ -104,28 +102,6 @@ TEST(LoadingPath, StartingDownwardIsTheMirrorImage) {
       ASSERT_EQ(up.branches[k].parent, down.branches[k].parent);
     }
   }
-}
-
-TEST(LoadingPath, AFirstRowAwayFromTheUnloadedContactIsTheFirstStep) {
-  // Up to 2 before the record, then down: 2 is an extremum although no sample turns there.
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, 1, 0})), (Origins{2, 0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, 3})), (Origins{0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({-2, -1, -1.5})), (Origins{-1, -2, 0}));
-}
-
-TEST(LoadingPath, AFirstRowAtTheUnloadedContactIsNoStep) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0, -1, -2})), (Origins{0}));
-  EXPECT_EQ(MasingPath({0, -1, -2}).branches.front().direction, -1.0);
-}
-
-TEST(LoadingPath, ADwellAtAnExtremumOpensNothing) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({3, 3, 3, 1, 1, 2})), (Origins{1, 3, 0}));
-  EXPECT_EQ(MasingPath({3, 3, 3, 1, 1, 2}).branches.size(), 3U);
-}
-
-TEST(LoadingPath, ASingleSampleOrAConstantRecordIsOnTheVirginCurve) {
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0.7})), (Origins{0}));
-  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0.7, 0.7, 0.7})), (Origins{0}));
 }
 
 TEST(LoadingPath, GatedNoiseOpensNothing) {

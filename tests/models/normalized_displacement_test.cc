@@ -1,5 +1,3 @@
-
-
 #include "mindahl/models/response.h"
 #include "models/normalized_response.h"
 #include "support/histories.h"

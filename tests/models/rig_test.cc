@@ -1,12 +1,8 @@
 // A spring in series with the contact: against the contact's own response taken as a parameter of
-// the path, and against the laws as they are defined at 50 digits.
+// the path.
 
-#include <boost/math/tools/toms748_solve.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <ostream>
 
-#include "../../tools/reference/exact_history.h"
-#include "../../tools/reference/force_and_gradient.h"
 #include "../support/histories.h"
 #include "../support/worst.h"
 #include "mindahl/models/backbone.h"
@@ -18,7 +14,6 @@ namespace mindahl::models::rig_test {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
-using Law = reference::Law<Real>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -142,39 +137,6 @@ TEST(Rig, LeavesTheForceThatTheContactHasAtItsOwnDisplacement) {
   EXPECT_LE(worst.value, kBound) << worst.where;
 }
 
-TEST(Rig, OfASteadyContactIsItself) {
-  // A record that turns at both extremes first, off centre, and then has inner loops: the steady
-  // amplitude of δ is that of x and T*/k_r together.
-  constexpr double kBound = 1.1e-13;
-  for (const FrictionModel& model : Models()) {
-    for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 0.8, 1.0, 2.0}) {
-      if (model.shape_exponent && alpha != *model.shape_exponent) continue;
-      for (const double size : {1e-9, 0.05, 0.6, 1.4, 4.0}) {
-        for (const double stiffness : {1e-6, 0.2, 1.0, 7.0, 1e6}) {
-          for (const double sense : {1.0, -1.0}) {
-            History contact;
-            for (const double x :
-                 {-0.4, 0.3, 1.0, 0.1, -1.0, 0.2, 0.7, 0.1, 0.5, -0.6, -0.9, 0.8}) {
-              contact.push_back(sense * size * x + 0.3 * size);
-            }
-            const BranchLaw law{1.0, alpha, 1.0};
-            const InitialContact steady{.state = InitialState::kSteady};
-            const std::vector<double> expected = Respond(model, law, contact, steady);
-            const SeriesSpring rig{stiffness};
-            const std::vector<double> force =
-                RespondWithRig(model, law, rig, WithRig(contact, expected, rig), steady);
-            for (std::size_t i = 0; i < force.size(); ++i) {
-              EXPECT_NEAR(force[i], expected[i], kBound * std::min(1.0, 10 * size))
-                  << model.name << " alpha " << alpha << " size " << size << " spring " << stiffness
-                  << " sample " << i;
-            }
-          }
-        }
-      }
-    }
-  }
-}
-
 TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
   Generator generator(64);
   for (const FrictionModel& model : FrictionModels()) {
@@ -203,183 +165,6 @@ TEST(Rig, IsRefusedWhereItMeansNothing) {
   EXPECT_THROW(RespondWithRig(Model("dahl"), {1.0, 400.0, 1.0}, {1e-70}, {1e75, 9e74}),
                InvalidArgument);
 }
-
-// ---- Derivatives ----------------------------------------------------------------------------
-
-struct Point {
-  Real log_stiffness, exponent, log_slip_force, unloaded, log_spring;
-};
-
-/// The root of an increasing function.
-Real Solve(const std::function<Real(const Real&)>& function, const Real& low, const Real& high) {
-  std::uintmax_t iterations = 200;
-  const auto close = [](const Real& a, const Real& b) {
-    return abs(Real(b - a)) <= Real("1e-42") * std::max(Real(abs(a)), Real(abs(b)));
-  };
-  const auto [left, right] =
-      boost::math::tools::toms748_solve(function, low, high, close, iterations);
-  return (left + right) / 2;
-}
-
-/// T along δ: for every sample the x of the contact is found for which x + T(x)/k_r = δ.
-std::vector<Real> ExactForces(const FrictionModel& model, InitialState state,
-                              const History& history, const Point& point) {
-  const Law law = {exp(point.log_stiffness), point.exponent, exp(point.log_slip_force)};
-  const Real spring = exp(point.log_spring);
-  const Real travel = law.slip_force / spring;
-  const bool masing = model.memory == Memory::kReturnPoint;
-  const auto [lowest, highest] = std::ranges::minmax(history);
-  const bool steady = state == InitialState::kSteady;
-  const Real origin = steady ? Real((Real(lowest) + Real(highest)) / 2) : point.unloaded;
-  const Real amplitude = (Real(highest) - Real(lowest)) / 2;
-  std::vector<Real> past;
-  Real at = 0;
-  Real force = 0;
-  if (steady && masing) {
-    const Real contact = Solve(
-        [&](const Real& x) { return Real(x + reference::Backbone(law, x) / spring - amplitude); },
-        0, amplitude);
-    past = {contact, -contact};
-  } else if (steady) {  // from the lower extreme, where the histories set out: −T* to T* over 2X
-    const Real peak = Solve(
-        [&](const Real& t) {
-          const Real contact = std::max(Real(amplitude - t / spring), Real(0));
-          return Real(t - reference::DahlStep(law, Real(-t), Real(2 * contact)));
-        },
-        0, law.slip_force);
-    at = -amplitude + peak / spring;
-    force = -peak;
-  }
-  std::vector<Real> forces;
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const Real displacement = Real(history[i]) - origin;
-    if (i > 0 && history[i] == history[i - 1]) {
-      forces.push_back(forces.back());
-      continue;
-    }
-    const auto force_at = [&](const Real& x) {
-      if (!masing) return x == at ? force : reference::DahlStep(law, force, Real(x - at));
-      past.push_back(x);
-      const Real result = reference::MasingForce(law, past);
-      past.pop_back();
-      return result;
-    };
-    const Real x = Solve(
-        [&](const Real& trial) { return Real(trial + force_at(trial) / spring - displacement); },
-        Real(displacement - 2 * travel), Real(displacement + 2 * travel));
-    const Real result = force_at(x);
-    forces.push_back(result);
-    past.push_back(x);
-    at = x;
-    force = result;
-  }
-  return forces;
-}
-
-/// Off centre, unequal reversals, an inner loop, a dwell, no sample on a corner; sets out upwards.
-History UpwardHistory(double size) {
-  History history;
-  for (const double x : {-0.31, 0.61, 0.61, 0.93, 0.11, 0.57, -0.49, -1.02, 0.03, 1.13, -0.23}) {
-    history.push_back(size * (x + 0.06));
-  }
-  return history;
-}
-
-struct Case {
-  std::string model;
-  InitialState state;
-  double shape_exponent;
-  double size;       // of the history over the elastic limit
-  double stiffness;  // of the spring over σ
-};
-
-std::string NameOf(const ::testing::TestParamInfo<Case>& info) {
-  std::string name =
-      info.param.model + (info.param.state == InitialState::kVirgin ? "_virgin" : "_steady");
-  std::ranges::replace(name, '-', '_');
-  return name + "_" + std::to_string(info.index);
-}
-
-std::vector<Case> Cases() {
-  std::vector<Case> cases;
-  for (const char* model : {"mindlin-dahl", "dahl"}) {
-    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-      for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 1 - 1e-15, 1.0, 2.0, 20.0}) {
-        for (const auto& [size, stiffness] :
-             {std::pair{0.05, 0.3}, {0.9, 40.0}, {3.1, 1.0}, {17.0, 0.08}}) {
-          cases.push_back({model, state, alpha, size, stiffness});
-        }
-      }
-    }
-  }
-  return cases;
-}
-
-class RigGradient : public ::testing::TestWithParam<Case> {};
-
-TEST_P(RigGradient, AgreesWithDifferencesOfTheExactLaws) {
-  // As in gradient_test.cc: a dozen roundings a branch, amplified by a few dozen where a branch
-  // starts near slip. Differences at 50 digits over 1e-16 are good to 1e-16, forward in α = 0.
-  constexpr double kForce = 5e-14;     // of Tc
-  constexpr double kGradient = 2e-13;  // of the column's largest entry
-  constexpr double kLogRemaining = 4 * kEpsilon;
-  const Case& test = GetParam();
-  const BranchLaw law{4.839e8, test.shape_exponent, 30.0};
-  const SeriesSpring rig{test.stiffness * law.tangential_stiffness};
-  const History history = UpwardHistory(test.size * law.slip_force / law.tangential_stiffness);
-  const FrictionModel& model = Model(test.model);
-  std::vector<double> force(history.size());
-  std::vector<double> gradient(history.size() * kGradientColumns);
-  EvaluateForceAndGradient(model, law, PathOf(model, history, {.state = test.state}), history,
-                           force, gradient, rig);
-
-  const Point point = {log(Real(law.tangential_stiffness)), Real(law.shape_exponent),
-                       log(Real(law.slip_force)), Real(0), log(Real(rig.stiffness))};
-  const std::vector<Real> exact_force = ExactForces(model, test.state, history, point);
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    EXPECT_NEAR(force[i], static_cast<double>(exact_force[i]), kForce * law.slip_force) << i;
-  }
-  const Real step("1e-16");
-  const auto largest_of = [](const std::vector<Real>& values) {
-    Real largest = 0;
-    for (const Real& value : values) largest = std::max(largest, Real(abs(value)));
-    return largest;
-  };
-  for (const auto& [column, member] : {std::pair{kPerLogStiffness, &Point::log_stiffness},
-                                       {kPerShapeExponent, &Point::exponent},
-                                       {kPerLogSlipForce, &Point::log_slip_force},
-                                       {kPerUnloadedDisplacement, &Point::unloaded},
-                                       {kPerLogSeriesStiffness, &Point::log_spring}}) {
-    if (column == kPerUnloadedDisplacement && test.state == InitialState::kSteady) continue;
-    const bool in_displacement = column == kPerUnloadedDisplacement;
-    // δ₀ in units of the elastic limit, as the other parameters are of order 1.
-    const Real change =
-        in_displacement ? Real(step * law.slip_force / law.tangential_stiffness) : step;
-    Point above = point;
-    Point below = point;
-    above.*member += change;
-    if (below.*member > 0 || member != &Point::exponent) below.*member -= change;
-    const std::vector<Real> high = ExactForces(model, test.state, history, above);
-    const std::vector<Real> low = ExactForces(model, test.state, history, below);
-    std::vector<Real> exact;
-    for (std::size_t i = 0; i < high.size(); ++i) {
-      exact.push_back((high[i] - low[i]) / (above.*member - below.*member));
-    }
-    // ∂T/∂ln Tc is a difference of T and others, and has the digits of these.
-    const Real largest = column == kPerLogSlipForce
-                             ? std::max(largest_of(exact), largest_of(exact_force))
-                             : largest_of(exact);
-    const bool holds_log = column == kPerShapeExponent && model.memory == Memory::kNone;
-    const double bound = holds_log ? std::max(kGradient, kLogRemaining / test.size) : kGradient;
-    for (std::size_t i = 0; i < history.size(); ++i) {
-      const Real error = abs(Real(gradient[i * kGradientColumns + column]) - exact[i]);
-      EXPECT_LE(static_cast<double>(error), bound * static_cast<double>(largest))
-          << "column " << column << ", sample " << i;
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(EveryModel, RigGradient, ::testing::ValuesIn(Cases()), NameOf);
 
 }  // namespace
 }  // namespace mindahl::models::rig_test

@@ -1,6 +1,5 @@
 // Dense sweeps across every switch between formulas: no jump, no step back, no force beyond Tc.
 
-#include "../../tools/reference/box.h"
 #include "../support/histories.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
@@ -111,32 +110,6 @@ TEST(Seams, AreNotSeenAlongADisplacement) {
         if (i > 0) {
           EXPECT_LE(curve.slope[i], curve.slope[i - 1] * (1 + kScalarStep)) << alpha;
         }
-      }
-    }
-  }
-}
-
-TEST(Seams, AreNotSeenWhereThePeakForceReachesTheSlipForce) {
-  // Loops whose extreme is δc to the ulp, on every scale: the peak within rounding of Tc, never
-  // above it, the branch back from it to −T* exactly or within rounding.
-  for (const reference::Scale& scale : reference::kBoxScales) {
-    for (const double alpha : {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
-      const BranchLaw law{scale.stiffness, alpha, scale.slip_force};
-      const double slip = GrossSlipDisplacement(law);
-      double at = slip;
-      for (int i = 0; i < 3; ++i) at = std::nextafter(at, 0.0);
-      for (int i = -3; i <= 3; ++i) {
-        for (const char* name : {"mindlin-dahl", "dahl"}) {
-          const std::vector<double> force =
-              testing::Respond(Model(name), law, {{at, 0.5 * at, -at, 0.0, at}});
-          for (const double value : force) {
-            ASSERT_LE(std::abs(value), scale.slip_force) << name << ' ' << alpha;
-          }
-          EXPECT_NEAR(force[0], scale.slip_force, kKernelStep * scale.slip_force);
-          EXPECT_NEAR(force[4], force[0], 2 * kKernelStep * scale.slip_force)
-              << name << ' ' << alpha;
-        }
-        at = std::nextafter(at, std::numeric_limits<double>::infinity());
       }
     }
   }

@@ -1,6 +1,9 @@
 #include "mindahl/models/steady_loop.h"
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
 #include "../support/histories.h"
+#include "../support/worst.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::steady_loop_test {
@@ -84,32 +87,6 @@ INSTANTIATE_TEST_SUITE_P(EveryModel, SteadyLoop,
                          ::testing::ValuesIn(FrictionModels().begin(), FrictionModels().end()),
                          NameOf);
 
-TEST(SteadyLoop, OfMindlinLosesWhatJohnsonSays) {
-  // Johnson 7.57, with G* the compliance: (9Tc²G*/10a){1 − (1−r)^{5/3} − (5r/6)[1 + (1−r)^{2/3}]}.
-  const double a = 0.0027, compliance = 4.42e-11, slip_force = 30.0;
-  const BranchLaw law{8 * a / compliance, 1.0 / 3.0, slip_force};
-  constexpr double kCancellation = 1e-13;  // 1e-16 over the bracket, 1e-3 at the least
-  for (const double lambda : {0.3, 0.8, 1.0}) {
-    const double amplitude = lambda * GrossSlipDisplacement(law);
-    const double r = SteadyPeakForce(Model("mindlin"), law, amplitude) / slip_force;
-    const double bracket =
-        1 - std::pow(1 - r, 5.0 / 3.0) - 5 * r / 6 * (1 + std::pow(1 - r, 2.0 / 3.0));
-    const double johnson = 9 * slip_force * slip_force * compliance / (10 * a) * bracket;
-    EXPECT_NEAR(SteadyLoopEnergy(Model("mindlin"), law, amplitude), johnson,
-                kCancellation / bracket * johnson)
-        << lambda;
-  }
-}
-
-TEST(SteadyLoop, OfDahlIsATanhForOne) {
-  constexpr double kFewRoundings = 2e-15;  // sinh, pow and the tanh of the solution
-  for (const double y : {1e-9, 0.1, 1.0, 5.0}) {
-    EXPECT_NEAR(SteadyPeakForce(Model("dahl"), {1.0, 1.0, 1.0}, y), std::tanh(y),
-                kFewRoundings * std::tanh(y));
-  }
-  EXPECT_EQ(SteadyPeakForce(Model("dahl"), {1.0, 1.0, 1.0}, 50.0), 1.0);
-}
-
 TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
   const BranchLaw law{4e7, 1.0 / 3, 40.0};
@@ -121,19 +98,6 @@ TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
     EXPECT_NEAR(ContactAmplitude(model, law, {kRig}, whole) / contact, 1, kBisected);
   }
   EXPECT_THROW(ContactAmplitude(model, law, {}, -1.0), InvalidArgument);
-}
-
-TEST(SteadyLoop, GrossSlipStartsAtTheFrettingCommunitysRatio) {
-  // α/(2 − α), 0.2 for Mindlin (Fouvry).
-  constexpr double kRounding = 1e-14;
-  for (const double alpha : {0.1, 1.0 / 3.0, 0.5, 0.9}) {
-    const BranchLaw law{1.0, alpha, 1.0};
-    const double amplitude = GrossSlipDisplacement(law);
-    const auto& model = Model("mindlin-dahl");
-    EXPECT_NEAR(SteadyLoopEnergy(model, law, amplitude) /
-                    (4 * amplitude * SteadyPeakForce(model, law, amplitude)),
-                alpha / (2 - alpha), kRounding);
-  }
 }
 
 TEST(SteadyLoop, SlipsGrosslyFromTheAmplitudeThatItsBranchesReachSlipAt) {
@@ -154,6 +118,98 @@ TEST(SteadyLoop, SlipsGrosslyFromTheAmplitudeThatItsBranchesReachSlipAt) {
   EXPECT_TRUE(std::isinf(SteadyGrossSlipAmplitude(Model("dahl"), {4e7, 1.0, 40.0})));
 }
 
-}  // namespace
+/// 60 digits: α = 100 at y = 1e12 leaves 50 of them.
+using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>>;
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kExponents[] = {0.0, 1e-16,    1e-8, 0.1, 1.0 / 3, 0.5,  1 - 1e-8,
+                                 1.0, 1 + 1e-8, 1.5,  2.0, 10.0,    100.0};
+/// In elastic limits Tc/σ; with 1 and 1.5 the onset of slip of α = 0 and α = 1/3, and an ulp
+/// beside.
+const std::vector<double> kLoopAmplitudes = {
+    1e-18, 1e-9, 1e-3, 0.3, 1.0, std::nextafter(1.5, 0.0), 1.5, std::nextafter(1.5, 2.0),
+    3.0,   50.0, 1e12};
+
+std::string Say(const BranchLaw& law, double amplitude) {
+  return "alpha " + std::to_string(law.shape_exponent) + " amplitude " + std::to_string(amplitude);
+}
+
+template <typename Check>
+void ForEveryLoop(Check check) {
+  for (const double alpha : kExponents) {
+    for (const double amplitude : kLoopAmplitudes) check(BranchLaw{1.0, alpha, 1.0}, amplitude);
+  }
+}
+
+/// u = 1 − f/Tc of σ = Tc = 1.
+Exact Remaining(double shape_exponent, double y) {
+  const Exact beta = 1 - Exact(shape_exponent);
+  if (beta == 0) return exp(-Exact(y));
+  const Exact z = 1 - beta * Exact(y);
+  return z > 0 ? Exact(exp(log(z) / beta)) : Exact(0);
+}
+
+double Relative(double value, const Exact& exact) {
+  return static_cast<double>(abs(Exact(value) / exact - 1));
+}
+
+TEST(EquivalentLaw, OfMasingHasTheParametersOfEquation20) {
+  Worst stiffness;
+  Worst slip_force;
+  ForEveryLoop([&](const BranchLaw& law, double amplitude) {
+    const BranchLaw dahl = DahlEquivalent(law, amplitude);
+    const Exact peak = 1 - Remaining(law.shape_exponent, amplitude);
+    const auto say = [&] { return Say(law, amplitude); };
+    stiffness.Add(
+        Relative(dahl.tangential_stiffness, exp(Exact(law.shape_exponent) * log(1 - peak / 2))) /
+            (2 + law.shape_exponent),
+        say);
+    slip_force.Add(Relative(dahl.slip_force, 2 - peak), say);
+    EXPECT_EQ(dahl.shape_exponent, law.shape_exponent);
+  });
+  // u has one ε, (1 + u)/2 at most half of it, its power α times that; then one rounding each.
+  EXPECT_LT(stiffness.value, 1.0 * kEpsilon) << stiffness.where;
+  EXPECT_LT(slip_force.value, 2.0 * kEpsilon) << slip_force.where;
+}
+
+TEST(EquivalentLaw, RunsThroughTheSameSteadyLoop) {
+  // On either side a branch is off by its own 6 ε of Tc and by the 16 ε of T* in Dahl's case, which
+  // 2Tc' = 4Tc at the most doubles. An error of (2 + α) ε in σ' moves a force by y·u^α < 1/α of it.
+  constexpr double kTwoBranches = 64 * kEpsilon;
+  Worst worst;
+  ForEveryLoop([&](const BranchLaw& law, double amplitude) {
+    History loop;
+    for (const double share : {1.0, 0.999, 0.7, 0.2, -0.4, -0.9, -1.0, -0.8, 0.0, 0.5, 1.0}) {
+      loop.push_back(share * amplitude);
+    }
+    const BranchLaw dahl = DahlEquivalent(law, amplitude);
+    const auto masing_force =
+        Respond(Model("mindlin-dahl"), law, loop, {.state = InitialState::kSteady});
+    const auto dahl_force = Respond(Model("dahl"), dahl, loop, {.state = InitialState::kSteady});
+    const auto back_force = Respond(Model("mindlin-dahl"), MasingEquivalent(dahl, amplitude), loop,
+                                    {.state = InitialState::kSteady});
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      // Forces of a small loop are σδ: the error is one of them.
+      const double unit = std::min(1.0, amplitude);
+      worst.Add(std::abs(dahl_force[i] - masing_force[i]) / unit,
+                [&] { return Say(law, amplitude) + " sample " + std::to_string(i); });
+      worst.Add(std::abs(back_force[i] - masing_force[i]) / unit,
+                [&] { return "back: " + Say(law, amplitude) + " sample " + std::to_string(i); });
+    }
+  });
+  EXPECT_LT(worst.value, kTwoBranches) << worst.where;
+}
+
+TEST(EquivalentLaw, RefusesInvalidAmplitudeOrLaw) {
+  const BranchLaw law{1.0, 0.5, 1.0};
+  for (const auto convert : {DahlEquivalent, MasingEquivalent}) {
+    EXPECT_THROW(convert({-1.0, 0.5, 1.0}, 1.0), InvalidArgument);
+    EXPECT_THROW(convert(law, -1.0), InvalidArgument);
+    EXPECT_THROW(convert(law, std::nan("")), InvalidArgument);
+  }
+  // 2Tc is no force.
+  EXPECT_THROW(DahlEquivalent({1e308, 0.5, 1.7e308}, 0.0), InvalidArgument);
+}
+
+}  // namespace
 }  // namespace mindahl::models::steady_loop_test

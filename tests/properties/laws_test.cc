@@ -30,20 +30,6 @@ constexpr Exception kExceptions[] = {
     {"return-point memory", "simplified-dahl", "its only memory is the present force"},
     {"closed loops repeat", "dahl", "it creeps towards a steady loop over many cycles"},
     {"closed loops repeat", "simplified-dahl", "it starts wrong and converges, fivefold a cycle"},
-    {"steady energy rises with Tc", "mindlin-dahl", "less of a small loop slips under a larger Tc"},
-    {"steady energy rises with Tc", "mindlin", "less of a small loop slips under a larger Tc"},
-    {"steady energy rises with Tc", "jenkins", "a loop just past slip sticks under a larger Tc"},
-    {"steady energy rises with Tc", "dahl", "less of a small loop slips under a larger Tc"},
-    {"steady energy rises with Tc", "simplified-dahl", "as of the Masing loop it settles on"},
-    {"steady energy rises with alpha", "mindlin-dahl",
-     "gross slip is later, its rectangle smaller"},
-    {"steady energy rises with alpha", "dahl", "gross slip is later, its rectangle smaller"},
-    {"steady energy rises with alpha", "simplified-dahl", "as of the loop it settles on"},
-    {"any branch stiffens with sigma", "mindlin-dahl", "a stiffer contact unloads sooner"},
-    {"any branch stiffens with sigma", "mindlin", "a stiffer contact unloads sooner"},
-    {"any branch stiffens with sigma", "jenkins", "a stiffer contact unloads sooner"},
-    {"any branch stiffens with sigma", "dahl", "a stiffer contact unloads sooner"},
-    {"any branch stiffens with sigma", "simplified-dahl", "a stiffer contact unloads sooner"},
     {"bounded", "simplified-dahl", "the steady branch is run from forces off the steady loop"},
 };
 
@@ -51,53 +37,6 @@ const Exception* FindException(std::string_view law, std::string_view model) {
   const auto* found = std::ranges::find_if(
       kExceptions, [&](const Exception& e) { return e.law == law && e.model == model; });
   return found == std::end(kExceptions) ? nullptr : found;
-}
-
-/// How many random histories each law is tried on, by model.
-struct Budget {
-  std::string_view law;
-  int histories;
-};
-
-constexpr Budget kBudgets[] = {
-    {"odd", 3000},
-    {"bounded", 3000},
-    {"rate independence", 3000},
-    {"step splitting", 3000},
-    {"causality", 1000},
-    {"dissipation", 500},
-    {"Masing", 3000},
-    {"return-point memory", 3000},
-    {"closed loops repeat", 1000},
-    {"no drift", 30},
-    {"unit invariance", 3000},
-    {"translation", 1000},
-    {"monotone", 1000},
-    {"first loading stiffens with sigma", 3000},
-    {"first loading strengthens with Tc", 3000},
-    {"first loading softens with alpha", 3000},
-    {"steady peak rises with sigma", 1000},
-    {"steady peak rises with Tc", 1000},
-    {"steady peak falls with alpha", 1000},
-    {"steady energy rises with sigma", 1000},
-    {"steady energy rises with Tc", 1000},
-    {"steady energy rises with alpha", 1000},
-    {"any branch stiffens with sigma", 1000},
-};
-
-constexpr int HistoriesOfAllLaws() {
-  int sum = 0;
-  for (const Budget& budget : kBudgets) sum += budget.histories;
-  return sum;
-}
-constexpr int kModels = 5;
-static_assert(HistoriesOfAllLaws() * kModels >= 100'000);
-
-constexpr int HistoriesOf(std::string_view law) {
-  for (const Budget& budget : kBudgets) {
-    if (budget.law == law) return budget.histories;
-  }
-  return 0;
 }
 
 class EveryModel : public ::testing::TestWithParam<FrictionModel> {
@@ -112,14 +51,13 @@ class EveryModel : public ::testing::TestWithParam<FrictionModel> {
     return {1.0, model().shape_exponent.value_or(drawn), 1.0};
   }
 
-  /// `violation` [Tc] of the law over its budget of random cases: within rounding for a model that
+  /// `violation` [Tc] of the law over so many random histories: within rounding for a model that
   /// has it, beyond kBroken for one that is listed to lack it.
   template <typename Violation>
-  void Check(std::string_view law, std::uint64_t seed, Violation violation) {
-    ASSERT_GT(HistoriesOf(law), 0) << law;
+  void Check(std::string_view law, std::uint64_t seed, int histories, Violation violation) {
     Generator generator(seed);
     double worst = 0.0;
-    for (int i = 0; i < HistoriesOf(law); ++i) worst = std::max(worst, violation(generator));
+    for (int i = 0; i < histories; ++i) worst = std::max(worst, violation(generator));
     if (const Exception* exception = FindException(law, model().name)) {
       EXPECT_GT(worst, kBroken) << model().name << " is listed to break '" << law << "' ("
                                 << exception->reason << ") but does not";
@@ -162,7 +100,7 @@ History Refined(const History& corners, std::size_t steps) {
 }
 
 TEST_P(EveryModel, IsOdd) {
-  Check("odd", 101, [&](Generator& generator) {
+  Check("odd", 101, 3000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     History history = RandomHistory(generator);
     std::vector<double> force = Respond(model(), law, history);
@@ -183,7 +121,7 @@ History OneSidedHistory(Generator& generator) {
 }
 
 TEST_P(EveryModel, StaysWithinTheSlipForce) {
-  Check("bounded", 102, [&](Generator& generator) {
+  Check("bounded", 102, 3000, [&](Generator& generator) {
     double excess = 0.0;
     const BranchLaw law = DrawLaw(generator);
     const History history =
@@ -202,7 +140,7 @@ TEST_P(EveryModel, SaysWhetherItIsBounded) {
 
 TEST_P(EveryModel, DoesNotDependOnRate) {
   // Samples repeated at random are a change of speed, dwells included.
-  Check("rate independence", 103, [&](Generator& generator) {
+  Check("rate independence", 103, 3000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     const History history = RandomHistory(generator);
     const std::vector<double> force = Respond(model(), law, history);
@@ -219,7 +157,7 @@ TEST_P(EveryModel, DoesNotDependOnRate) {
 
 TEST_P(EveryModel, DoesNotDependOnTheSteps) {
   // Points inserted on monotone pieces change nothing at the old ones.
-  Check("step splitting", 104, [&](Generator& generator) {
+  Check("step splitting", 104, 3000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     const History history = RandomHistory(generator);
     History finer;
@@ -246,7 +184,7 @@ TEST_P(EveryModel, DoesNotDependOnTheSteps) {
 TEST_P(EveryModel, DoesNotForeseeTheFuture) {
   // Only Simplified-Dahl refers to the amplitude of what is still to come; the same is given to
   // both.
-  Check("causality", 105, [&](Generator& generator) {
+  Check("causality", 105, 1000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     History history = RandomHistory(generator);
     const auto [lowest, highest] = std::ranges::minmax(history);
@@ -268,7 +206,7 @@ TEST_P(EveryModel, DissipatesOnClosedCycles) {
   constexpr double kTrapezoidal = 1e-3;
   constexpr double kClosed = 1e-6;  // of Tc
   int closed = 0;
-  Check("dissipation", 106, [&](Generator& generator) {
+  Check("dissipation", 106, 500, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     const std::size_t corners = 2 + generator() % 6;
     History once =
@@ -298,7 +236,7 @@ TEST_P(EveryModel, DissipatesOnClosedCycles) {
 
 TEST_P(EveryModel, ObeysMasing) {
   // From the first extreme X the way back is the virgin curve twice as large.
-  Check("Masing", 107, [&](Generator& generator) {
+  Check("Masing", 107, 3000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     if (law.shape_exponent == 0) return 0.0;  // Dahl's law too is Jenkins' there
     const double extreme = Uniform(generator, -3.0, 3.0);
@@ -311,7 +249,7 @@ TEST_P(EveryModel, ObeysMasing) {
 
 TEST_P(EveryModel, RemembersReturnPoints) {
   // An excursion from a branch and back to it leaves the rest of the history as it was.
-  Check("return-point memory", 108, [&](Generator& generator) {
+  Check("return-point memory", 108, 3000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     if (law.shape_exponent == 0) return 0.0;
     const History history = RandomHistory(generator);
@@ -331,7 +269,7 @@ TEST_P(EveryModel, RemembersReturnPoints) {
 
 TEST_P(EveryModel, RepeatsClosedLoops) {
   // Between limits that include the way there, every cycle is the first one over again.
-  Check("closed loops repeat", 109, [&](Generator& generator) {
+  Check("closed loops repeat", 109, 1000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     if (law.shape_exponent == 0) return 0.0;
     History once = RandomHistory(generator);
@@ -348,7 +286,7 @@ TEST_P(EveryModel, RepeatsClosedLoops) {
 
 TEST_P(EveryModel, DoesNotDriftOverManyCycles) {
   // Steady from the start, off centre: the thousandth cycle is the second to the last digit or two.
-  Check("no drift", 110, [&](Generator& generator) {
+  Check("no drift", 110, 30, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     const double extreme = testing::LogUniform(generator, 0.05, 4.0);
     const double centre = Uniform(generator, -2.0, 2.0);
@@ -365,7 +303,7 @@ TEST_P(EveryModel, DoesNotDriftOverManyCycles) {
 
 TEST_P(EveryModel, IsInvariantUnderUnits) {
   // Powers of two change no digit: of length, of force, and of both.
-  Check("unit invariance", 111, [&](Generator& generator) {
+  Check("unit invariance", 111, 3000, [&](Generator& generator) {
     const BranchLaw law = {Uniform(generator, 0.5, 2.0), DrawLaw(generator).shape_exponent,
                            Uniform(generator, 0.5, 2.0)};
     History history = RandomHistory(generator);
@@ -398,135 +336,9 @@ TEST_P(EveryModel, HasSteadyLoopsInAnyUnits) {
   }
 }
 
-/// A law and the same with one parameter raised by up to a factor of 3; α by up to 1.
-struct LawPair {
-  BranchLaw lower, upper;
-};
-
-/// Largest amount by which `quantity` falls from the lower law to the upper one, over its size.
-double FallOf(double lower, double upper) {
-  return std::max(lower - upper, 0.0) / std::max(std::abs(lower), 1e-300);
-}
-
-/// The same along a first loading in two steps.
-double FallOfFirstLoading(Generator& generator, const FrictionModel& model, const BranchLaw& lower,
-                          const BranchLaw& upper) {
-  const double x = testing::LogUniform(generator, 0.02, 20.0);
-  const History history = {Uniform(generator, 0.0, 1.0) * x, x};
-  const std::vector<double> low = Respond(model, lower, history);
-  const std::vector<double> high = Respond(model, upper, history);
-  return std::max(FallOf(low[0], high[0]), FallOf(low[1], high[1]));
-}
-
-double SmallAndLarge(Generator& generator) { return testing::LogUniform(generator, 0.02, 20.0); }
-
-LawPair RaiseStiffness(Generator& generator, double alpha) {
-  return {{1.0, alpha, 1.0}, {Uniform(generator, 1.0, 3.0), alpha, 1.0}};
-}
-LawPair RaiseSlipForce(Generator& generator, double alpha) {
-  return {{1.0, alpha, 1.0}, {1.0, alpha, Uniform(generator, 1.0, 3.0)}};
-}
-/// Of a model that prescribes α none.
-LawPair RaiseShapeExponent(Generator& generator, const FrictionModel& model, double alpha) {
-  const double raised = model.shape_exponent ? alpha : alpha + Uniform(generator, 0.0, 1.0);
-  return {{1.0, alpha, 1.0}, {1.0, raised, 1.0}};
-}
-
-TEST_P(EveryModel, StiffensWithSigmaOnItsFirstLoading) {
-  // ∂f/∂ln σ = xf' >= 0.
-  Check("first loading stiffens with sigma", 115, [&](Generator& generator) {
-    const LawPair laws = RaiseStiffness(generator, DrawLaw(generator).shape_exponent);
-    return FallOfFirstLoading(generator, model(), laws.lower, laws.upper);
-  });
-}
-
-TEST_P(EveryModel, StrengthensWithTcOnItsFirstLoading) {
-  // ∂f/∂ln Tc = f − xf' >= 0 of a concave f.
-  Check("first loading strengthens with Tc", 116, [&](Generator& generator) {
-    const LawPair laws = RaiseSlipForce(generator, DrawLaw(generator).shape_exponent);
-    return FallOfFirstLoading(generator, model(), laws.lower, laws.upper);
-  });
-}
-
-TEST_P(EveryModel, SoftensWithAlphaOnItsFirstLoading) {
-  // u^α falls with α, so f' does at every f.
-  Check("first loading softens with alpha", 117, [&](Generator& generator) {
-    const LawPair laws = RaiseShapeExponent(generator, model(), DrawLaw(generator).shape_exponent);
-    return FallOfFirstLoading(generator, model(), laws.upper, laws.lower);
-  });
-}
-
-TEST_P(EveryModel, HasASteadyPeakThatRisesWithSigma) {
-  Check("steady peak rises with sigma", 118, [&](Generator& generator) {
-    const LawPair laws = RaiseStiffness(generator, DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyPeakForce(model(), laws.lower, amplitude),
-                  SteadyPeakForce(model(), laws.upper, amplitude));
-  });
-}
-
-TEST_P(EveryModel, HasASteadyPeakThatRisesWithTc) {
-  Check("steady peak rises with Tc", 119, [&](Generator& generator) {
-    const LawPair laws = RaiseSlipForce(generator, DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyPeakForce(model(), laws.lower, amplitude),
-                  SteadyPeakForce(model(), laws.upper, amplitude));
-  });
-}
-
-TEST_P(EveryModel, HasASteadyPeakThatFallsWithAlpha) {
-  Check("steady peak falls with alpha", 120, [&](Generator& generator) {
-    const LawPair laws = RaiseShapeExponent(generator, model(), DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyPeakForce(model(), laws.upper, amplitude),
-                  SteadyPeakForce(model(), laws.lower, amplitude));
-  });
-}
-
-TEST_P(EveryModel, LosesMoreWithSigma) {
-  Check("steady energy rises with sigma", 121, [&](Generator& generator) {
-    const LawPair laws = RaiseStiffness(generator, DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyLoopEnergy(model(), laws.lower, amplitude),
-                  SteadyLoopEnergy(model(), laws.upper, amplitude));
-  });
-}
-
-TEST_P(EveryModel, DoesNotAlwaysLoseMoreWithTc) {
-  // Less in partial slip, W = (2/3)ασ²X³/Tc, more in gross slip.
-  Check("steady energy rises with Tc", 122, [&](Generator& generator) {
-    const LawPair laws = RaiseSlipForce(generator, DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyLoopEnergy(model(), laws.lower, amplitude),
-                  SteadyLoopEnergy(model(), laws.upper, amplitude));
-  });
-}
-
-TEST_P(EveryModel, DoesNotAlwaysLoseMoreWithAlpha) {
-  // More in partial slip, less in gross slip, of which it is farther.
-  Check("steady energy rises with alpha", 123, [&](Generator& generator) {
-    const LawPair laws = RaiseShapeExponent(generator, model(), DrawLaw(generator).shape_exponent);
-    const double amplitude = SmallAndLarge(generator);
-    return FallOf(SteadyLoopEnergy(model(), laws.lower, amplitude),
-                  SteadyLoopEnergy(model(), laws.upper, amplitude));
-  });
-}
-
-TEST_P(EveryModel, IsNotStifferWithSigmaOnEveryBranch) {
-  // On the way back a stiffer contact has unloaded further.
-  Check("any branch stiffens with sigma", 124, [&](Generator& generator) {
-    const LawPair laws = RaiseStiffness(generator, DrawLaw(generator).shape_exponent);
-    const double x = SmallAndLarge(generator);
-    const History history = {x, Uniform(generator, -x, x)};
-    const double lower = Respond(model(), laws.lower, history)[1];
-    const double upper = Respond(model(), laws.upper, history)[1];
-    return lower > 0 ? FallOf(lower, upper) : 0.0;
-  });
-}
-
 TEST_P(EveryModel, ShiftsWithTheUnloadedDisplacement) {
   // Shifts that are exact: multiples of 2⁻²⁰.
-  Check("translation", 112, [&](Generator& generator) {
+  Check("translation", 112, 1000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     History history = RandomHistory(generator);
     for (double& displacement : history) displacement = std::round(displacement * 0x1p20) * 0x1p-20;
@@ -541,7 +353,7 @@ TEST_P(EveryModel, ShiftsWithTheUnloadedDisplacement) {
 
 TEST_P(EveryModel, ForceNeverDecreasesAlongItsDirection) {
   // Rises with displacement on a monotone piece, no steeper than the steepest start of a branch.
-  Check("monotone", 113, [&](Generator& generator) {
+  Check("monotone", 113, 1000, [&](Generator& generator) {
     const BranchLaw law = DrawLaw(generator);
     const History history = Refined(RandomHistory(generator), 5);
     const std::vector<double> force = Respond(model(), law, history);
@@ -553,32 +365,6 @@ TEST_P(EveryModel, ForceNeverDecreasesAlongItsDirection) {
     }
     return worst;
   });
-}
-
-TEST_P(EveryModel, HasNoNumberThatIsNotOne) {
-  // The extremes of docs/theory.md §8: no NaN, no infinity, |T| <= Tc where bounded.
-  for (const double alpha : {0.0, 1e-300, 1e-16, 1e-8, 1.0 / 3.0, 0.5, 1 - 1e-8, 1 - 1e-15, 1.0,
-                             1 + 1e-15, 1 + 1e-8, 2.0, 10.0, 100.0}) {
-    for (const auto& [stiffness, slip_force] : {std::pair{1e-9, 1e12}, {1e15, 1e-15}, {1.0, 1.0}}) {
-      const double limit = slip_force / stiffness;
-      for (const double lambda : {1e-300, 1e-18, 1e-9, 0.5, 1.0, 1 / (1 - 1.0 / 3.0), 2.0, 1e12}) {
-        const double x = lambda * limit;
-        const History history = {
-            0.0,    x, x,       std::nextafter(x, 0.0), -x, 0.0, std::nextafter(x, 2 * x), x / 2,
-            -2 * x, x, 0.25 * x};
-        for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
-          const auto force =
-              Respond(model(), {stiffness, alpha, slip_force}, history, {.state = state});
-          for (const double value : force) {
-            ASSERT_TRUE(std::isfinite(value)) << alpha << ' ' << lambda;
-            if (model().bounded) {
-              ASSERT_LE(std::abs(value), slip_force) << alpha << ' ' << lambda;
-            }
-          }
-        }
-      }
-    }
-  }
 }
 
 std::string NameOf(const ::testing::TestParamInfo<FrictionModel>& info) {

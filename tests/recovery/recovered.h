@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,10 @@ inline loop::Record LoopOf(const models::BranchLaw& law, const History& displace
   return MakeRecord(displacement, Respond(Model("mindlin-dahl"), law, displacement));
 }
 
+inline identification::FitOptions OfModel(std::string_view model) {
+  return {.model = &Model(model)};
+}
+
 inline identification::FitOptions Virgin() {
   return {.initial_state = models::InitialState::kVirgin};
 }
@@ -73,6 +78,15 @@ inline loop::Record From(loop::Record record, std::size_t begin) {
   cut(record.force);
   cut(record.time);
   cut(record.normal_load);
+  return record;
+}
+
+/// Read every `step` [s].
+inline loop::Record Timed(loop::Record record, double step, double start = 0.0) {
+  record.time.clear();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(start + step * static_cast<double>(i));
+  }
   return record;
 }
 
@@ -113,6 +127,11 @@ inline identification::FitResult FitOne(const loop::Record& record,
 inline std::string RefusalOf(const std::vector<loop::Record>& records,
                              const identification::FitOptions& options) {
   return MessageOf([&] { identification::Fit(records, options); });
+}
+
+/// True if an interval, open where it has no end, contains the truth.
+inline bool Covers(const identification::ParameterEstimate& estimate, double truth) {
+  return estimate.lower95.value_or(truth) <= truth && truth <= estimate.upper95.value_or(truth);
 }
 
 /// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.

@@ -1,5 +1,3 @@
-
-
 #include "other_laws.h"
 #include "support/prelude.h"
 
@@ -10,35 +8,28 @@ namespace {
 constexpr std::size_t kLoops = 12;
 constexpr std::uint64_t kSeed = 1;
 
-TEST(Effective, SlipForceOfALoopThatSlidesIsGivenAndContainsThePlateau) {
-  std::size_t loops = 0;
-  std::size_t given = 0;
-  std::size_t held = 0;
+TEST(Effective, SlipForceContainsThePlateauAndStiffnessThatAfterAReversal) {
+  Effective slip_force;
+  Effective stiffness;
   for (const OtherLaw& law : OtherLaws()) {
     SCOPED_TRACE(law.name);
     const EffectiveTally tally = Measure(law, kLoops, kSeed);
     EXPECT_LE(tally.slip_force.narrow, 1U);
-    loops += tally.slip_force.loops;
-    given += tally.slip_force.given;
-    held += tally.slip_force.held;
+    slip_force.loops += tally.slip_force.loops;
+    for (const auto& [sum, of_law] :
+         {std::pair{&slip_force, &tally.slip_force}, {&stiffness, &tally.stiffness}}) {
+      sum->given += of_law->given;
+      sum->held += of_law->held;
+    }
   }
   // All laws slide, most of the way from one plateau to the other; of 60 fits
   // that are not adequate B(60, 0.95) is below 51 with a probability of 0.1 %.
-  EXPECT_GE(loops, 5 * kLoops);
-  EXPECT_GE(20 * given, 17 * loops);
-  EXPECT_GE(20 * held, 17 * given);
-}
-
-TEST(Effective, StiffnessContainsThatAfterAReversal) {
-  std::size_t given = 0;
-  std::size_t held = 0;
-  for (const OtherLaw& law : OtherLaws()) {
-    const EffectiveTally tally = Measure(law, kLoops, kSeed);
-    given += tally.stiffness.given;
-    held += tally.stiffness.held;
-  }
-  EXPECT_GE(given, 2 * kLoops) << "some laws have a knee that Masing's with one exponent follows";
-  EXPECT_GE(20 * held, 17 * given);
+  EXPECT_GE(slip_force.loops, 5 * kLoops);
+  EXPECT_GE(20 * slip_force.given, 17 * slip_force.loops);
+  EXPECT_GE(20 * slip_force.held, 17 * slip_force.given);
+  EXPECT_GE(stiffness.given, 2 * kLoops)
+      << "some laws have a knee that Masing's with one exponent follows";
+  EXPECT_GE(20 * stiffness.held, 17 * stiffness.given);
 }
 
 TEST(Effective, EveryLawHasAPlateauAndMostAStiffness) {

@@ -31,24 +31,14 @@ FitResult FitOf(double value, double half_width) {
 
 Outcome OutcomeOf(const FitResult& fit) { return Judge(fit, {.sigma = kTruth}).outcome; }
 
-TEST(Verdict, IsRightWhereTheIntervalCoversTheTruth) {
+TEST(Verdict, IsSilentOnlyWhereTheTruthIsFarOffWithoutAWarning) {
   EXPECT_EQ(OutcomeOf(FitOf(105.0, 6.0)), Outcome::kRight);
-}
-
-TEST(Verdict, IsSilentIfTruthIsFarOffWithoutWarning) {
-  EXPECT_EQ(OutcomeOf(FitOf(105.0, 1.0)), Outcome::kSilent);
-}
-
-TEST(Verdict, IsWarnedIfTruthIsFarOffWithWarning) {
   FitResult fit = FitOf(105.0, 1.0);
+  EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent);
+  fit.findings.push_back({.code = "glitches_left_out", .severity = Severity::kNote});
+  EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent) << "a note is no warning";
   fit.findings.push_back({.code = "reversals_uncertain"});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kWarned);
-}
-
-TEST(Verdict, DoesNotTakeANoteForAWarning) {
-  FitResult fit = FitOf(105.0, 1.0);
-  fit.findings.push_back({.code = "glitches_left_out", .severity = Severity::kNote});
-  EXPECT_EQ(OutcomeOf(fit), Outcome::kSilent);
 }
 
 TEST(Verdict, NeedsBothTwoHalfWidthsAndTwoPerCentToCallATruthFarOff) {
@@ -57,21 +47,15 @@ TEST(Verdict, NeedsBothTwoHalfWidthsAndTwoPerCentToCallATruthFarOff) {
   EXPECT_EQ(OutcomeOf(FitOf(120.0, 9.9)), Outcome::kSilent);
 }
 
-TEST(Verdict, IsUndecidedWhereTheParameterIsNotIdentifiable) {
+TEST(Verdict, IsUndecidedWhereTheParameterIsNotIdentifiableOrTheFitFailed) {
   FitResult fit = FitOf(200.0, 1.0);
   fit.parameters.front().identifiability = Identifiability::kBoundedBelow;
   EXPECT_EQ(OutcomeOf(fit), Outcome::kUndecided);
-}
-
-TEST(Verdict, IsUndecidedWhereTheFitDidNotConvergeOrFailed) {
-  FitResult fit = FitOf(200.0, 1.0);
+  fit = FitOf(200.0, 1.0);
   fit.converged = false;
   EXPECT_EQ(OutcomeOf(fit), Outcome::kUndecided);
   EXPECT_EQ(OutcomeOf(FitResult{}), Outcome::kUndecided);
-}
-
-TEST(Verdict, AsksNothingOfAParameterThatHasNoTruth) {
-  EXPECT_EQ(Judge(FitOf(200.0, 1.0), {}).outcome, Outcome::kRight);
+  EXPECT_EQ(Judge(FitOf(200.0, 1.0), {}).outcome, Outcome::kRight) << "without a truth";
 }
 
 TEST(Verdict, TakesAnyValueBetweenTheEndsOfARange) {

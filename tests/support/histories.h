@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -33,11 +34,11 @@ inline double Normal(Generator& generator) {  // Box and Muller
 }
 
 /// Returns a sine of amplitude 1 and mean 0, with a sample at each end.
-inline History Sine(double cycles, std::size_t samples_per_cycle, double phase = 0.0) {
-  const auto per_cycle = static_cast<double>(samples_per_cycle);
-  History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);
+inline History Sine(double cycles, double samples_per_cycle, double phase = 0.0) {
+  History history(static_cast<std::size_t>(std::llround(cycles * samples_per_cycle)) + 1);
   for (std::size_t i = 0; i < history.size(); ++i) {
-    history[i] = std::sin(phase + 2 * std::numbers::pi * static_cast<double>(i) / per_cycle);
+    history[i] =
+        std::sin(phase + 2 * std::numbers::pi * static_cast<double>(i) / samples_per_cycle);
   }
   return history;
 }
@@ -55,6 +56,13 @@ inline History Quantised(History history, double step) {
 /// Log-uniform between two positive numbers.
 inline double LogUniform(Generator& generator, double low, double high) {
   return std::exp(Uniform(generator, std::log(low), std::log(high)));
+}
+
+/// Largest magnitude.
+inline double Largest(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
 inline History RandomWalk(Generator& generator, std::size_t samples, double step) {
