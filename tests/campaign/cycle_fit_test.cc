@@ -110,11 +110,11 @@ TEST(CycleFitter, ReportsFrictionCoefficientIfLoadIsKnown) {
 }
 
 /// Cycles to a share of the reach.
-std::vector<Cycle> Partial(double share, std::size_t cycles, double noise) {
+std::vector<Cycle> Partial(double share, std::size_t cycles, double noise, std::uint64_t seed = 7) {
   loop::Record record = TestRecord(cycles, 1, 0.0);
   for (double& x : record.displacement) x *= share;
   record.force = testing::Respond(testing::Model("mindlin-dahl"), kCycleLaw, record.displacement);
-  testing::Generator generator(7);
+  testing::Generator generator(seed);
   for (double& force : record.force) force += noise * testing::Normal(generator);
   return CyclesOf(record);
 }
@@ -128,17 +128,16 @@ TEST(CycleFitter, SaysWhatACycleLeavesOpen) {
   EXPECT_FALSE(fit.friction_coefficient);
 }
 
-// Far from slip the parabola of the likelihood is wrong about Tc: no cycle may pass for one that
-// knows it.
+// Far from slip the parabola of the likelihood is wrong about Tc, and one loop in sixty has a
+// minimum at α = 0 and the force that it reached: no cycle may pass for one that knows Tc.
 TEST(CycleFitter, KnowsNoSlipForceFarFromSlip) {
   CycleFitter fitter({});
-  for (const Cycle& cycle : Partial(0.12, 40, testing::kCycleNoise)) {
-    const CycleFit fit = fitter.Fit(cycle);
-    const bool is_open = HasFlag(fit, "slip_force_open");
-    const bool is_right =
-        fit.slip_force.standard_error &&
-        std::abs(*fit.slip_force.value - kCycleLaw.slip_force) < 5 * *fit.slip_force.standard_error;
-    EXPECT_TRUE(is_open || is_right) << cycle.number << ": " << *fit.slip_force.value;
+  for (const std::uint64_t seed : {4, 5, 7, 8}) {
+    for (const Cycle& cycle : Partial(0.12, 40, testing::kCycleNoise, seed)) {
+      const CycleFit fit = fitter.Fit(cycle);
+      EXPECT_TRUE(HasFlag(fit, "slip_force_open"))
+          << "seed " << seed << ", cycle " << cycle.number << ": " << *fit.slip_force.value;
+    }
   }
 }
 

@@ -56,7 +56,7 @@ struct ExpectedFit {
 /// @param options  of the fit; its model must be one of Masing's rules
 /// @throws InvalidArgument for values out of range, naming them
 /// Accuracy: the standard errors of simulated fits scatter about these by what their number leaves
-/// (tests/identification/plan_test.cc: 300 loops, 12 %), unless an error is of the order of its
+/// (tests/identification/plan_test.cc: 150 loops, 17 %), unless an error is of the order of its
 /// parameter.
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                       const FitOptions& options = {});

@@ -188,13 +188,24 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
 }
 
+/// True if a loop that is not seen to slide leaves open that it is far from it.
+bool MayBeFarFromSlip(const FittedProblem& fitted, const FitResult& result,
+                      const FitOptions& options, Solver& solver) {
+  if (fitted.problem.parameters[kSlipForce].fixed || loop::Slides(result.WidestRecord().facts)) {
+    return false;
+  }
+  HeldParameter held(fitted, kSlipForce, SolverOptionsOf(options), solver);
+  return IsOpenAbove(held, fitted, options.thresholds);
+}
+
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
 std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
   const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force;
   const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
   if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, solver) ||
-      NeedsProfile(fitted, kRig, options, solver)) {
+      NeedsProfile(fitted, kRig, options, solver) ||
+      MayBeFarFromSlip(fitted, result, options, solver)) {
     return {kStiffness, kShape, kSlipForce, kRig};
   }
   // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
