@@ -127,8 +127,6 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, solver, result);
   }
-  result.parameters[kStiffness] =
-      CoverSlipFactor(problem, solution, std::move(result.parameters[kStiffness]), solver.response);
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
   if (is_judged) {

@@ -80,7 +80,8 @@ std::vector<Bar> BarsOf(const Report& report) {
 std::string IntervalsHtml(const Report& report) {
   constexpr double kLeft = 40.0;
   constexpr double kRight = 540.0;
-  constexpr int kRow = 50;  // [px] of one bar
+  constexpr int kRow = 50;    // [px] of one bar
+  constexpr int kLeast = 64;  // [px]: one bar alone is still to be seen on a telephone
   std::string svg;
   int top = 0;
   for (const Bar& bar : BarsOf(report)) {
@@ -120,7 +121,7 @@ std::string IntervalsHtml(const Report& report) {
       {.id = "intervals",
        .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
        .text = "Green may be quoted; amber only with its interval."},
-      "", top, svg);
+      "", std::max(top, kLeast), svg);
 }
 
 }  // namespace

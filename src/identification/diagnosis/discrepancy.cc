@@ -108,8 +108,7 @@ std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates&
 /// The stiffness of the record after its reversals over that of the model: slopes of least squares,
 /// each stroke with an intercept of its own, over the places where the model's force has changed by
 /// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
-/// reversal itself, the line through the first two of these and the parabola through all,
-/// and the square of the narrowest window's.
+/// reversal itself, the parabola through these and the square of the narrowest window's.
 /// @returns those of windows that have two samples a stroke or more
 std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
                                        const Thresholds& thresholds) {
@@ -158,11 +157,10 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
     if (!(ratio > 0) || !std::isfinite(ratio)) continue;
     ratios.push_back(ratio);
   }
-  // Each window is twice the one before: the line through the first two and the parabola through
-  // three, at a window of nothing; and as much again within the narrowest as is seen of it.
+  // Each window is twice the one before: the parabola through three, at a window of nothing; and as
+  // much again within the narrowest as is seen of it.
   const std::size_t windows = ratios.size();
   if (windows > 0) ratios.push_back(ratios[0] * ratios[0]);
-  if (windows > 1) ratios.push_back(2 * ratios[0] - ratios[1]);
   if (windows > 2) ratios.push_back(8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3);
   std::erase_if(ratios, [](double ratio) { return !(ratio > 0); });
   return ratios;
@@ -223,21 +221,6 @@ ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Threshold
     }
   }
   return parameters;
-}
-
-ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
-                                  ParameterEstimate stiffness, Response& response) {
-  response.Bind(problem);
-  const LawPoint point = PointAt(problem, solution.theta);
-  std::vector<double> factors;
-  for (const ScaledRecord& record : problem.data->records) {
-    const Eigen::ArrayXd of_samples = response.SlipFactors(record, point);
-    for (const std::size_t i : record.reversals) {
-      factors.push_back(std::max(of_samples[static_cast<Eigen::Index>(i)], 0.0));
-    }
-  }
-  IncludeRatios(stiffness, factors);
-  return stiffness;
 }
 
 }  // namespace mindahl::identification

@@ -2,7 +2,6 @@
 
 #include "identification/inference/estimates.h"
 #include "identification/problem/problem.h"
-#include "identification/solve/solver.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
@@ -25,11 +24,5 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Threshold
 /// else from leaving out one part of the record's cycles after the other.
 ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
                                     const FitResult& result);
-
-/// Returns σ with its interval extended by what it is at the reversals, where a slip force depends
-/// on position, speed or time: such a force multiplies that of the contact, and with it the
-/// stiffness after a reversal, at rest and at the ends of the stroke.
-ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
-                                  ParameterEstimate stiffness, Response& response);
 
 }  // namespace mindahl::identification

@@ -119,9 +119,9 @@ constexpr auto kDepartures = std::to_array<Departure>({
      .group = "slip_speed",
      .term = "speed_exponent",
      .columns = {{{[](const Place& at) {
-                    return std::copysign(std::sqrt(std::abs(at.speed)), at.speed);
+                    return std::copysign(std::sqrt(std::abs(at.velocity)), at.velocity);
                   }},
-                  {[](const Place& at) { return at.speed; }}}}},
+                  {[](const Place& at) { return at.velocity; }}}}},
     {.code = "slip_position_quadratic",
      .group = "slip_position_quadratic",
      .term = "slip_slope",

@@ -108,25 +108,6 @@ std::vector<double> DeriveTwice(std::span<const double> values, const Sampling& 
   return second;
 }
 
-/// Velocity by the chord from a fiftieth of a stroke before a sample to as much after it. The root
-/// of a speed is largest where it changes its sign: of that between neighbours it would be one of
-/// the displacement's noise.
-std::vector<double> DeriveSmoothly(const ScaledRecord& record, const Sampling& sampling) {
-  constexpr std::size_t kPartOfStroke = 50;
-  const auto& samples = sampling.samples;
-  std::vector<double> speed(record.size());
-  if (samples.size() < 2) return speed;
-  const std::size_t reach =
-      std::max<std::size_t>(samples.size() / (record.reversals.size() + 1) / kPartOfStroke, 1);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const std::size_t before = samples[k > reach ? k - reach : 0];
-    const std::size_t after = samples[std::min(k + reach, samples.size() - 1)];
-    speed[samples[k]] = (record.displacement[after] - record.displacement[before]) /
-                        (sampling.time[after] - sampling.time[before]);
-  }
-  return speed;
-}
-
 /// True if many readings of the displacement repeat the one before: it may be read less often than
 /// the force, and what is missing of the motion is no white noise.
 bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Sampling> samplings,
@@ -322,7 +303,6 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
     const Sampling& sampling = samplings[r];
     const std::span<const double> whole = std::span(complete).subspan(begin, record.size());
     const std::vector<double> velocity = Derive(record.displacement, sampling, false);
-    const std::vector<double> speed = DeriveSmoothly(record, sampling);
     const std::vector<double> acceleration = DeriveTwice(record.displacement, sampling);
     const std::vector<double> rate = Derive(whole, sampling, true);
     const std::vector<double> curvature = DeriveTwice(whole, sampling);
@@ -336,7 +316,6 @@ std::vector<RecordPlaces> PlacesOf(const Problem& problem, std::span<const doubl
       of.samples.push_back({.displacement = record.displacement[i],
                             .time = sampling.time[i],
                             .velocity = velocity[i],
-                            .speed = speed[i],
                             .acceleration = acceleration[i],
                             .rate = rate[i],
                             .curvature = curvature[i],

@@ -14,7 +14,6 @@ struct Place {
   double displacement = 0.0;  // of a contact under an imposed force from where it is unloaded
   double time = 0.0;          // from the record's middle, in a unit that all records share
   double velocity = 0.0;
-  double speed = 0.0;  // velocity over a fiftieth of a stroke to either side, with its sign
   double acceleration = 0.0;
   double rate = 0.0;       // of the whole response
   double curvature = 0.0;  // of the whole response, its second derivative by time

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mindahl/loop/disturbances.h"
+#include "mindahl/loop/facts.h"
 
 namespace mindahl::identification {
 namespace {
@@ -87,11 +88,8 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   return outside ? std::optional(step) : std::nullopt;
 }
 
-/// A start beside a solution: α/Tc is what a loop far from slip determines.
-std::vector<double> Continue(const Problem& problem, std::vector<double> theta,
-                             std::size_t parameter, double to) {
-  const bool is_slip_force = parameter == kSlipForce && !problem.parameters[kShape].fixed;
-  if (is_slip_force) theta[kShape] *= std::exp(to - theta[kSlipForce]);
+/// Returns a start beside a solution.
+std::vector<double> Continue(std::vector<double> theta, std::size_t parameter, double to) {
   theta[parameter] = to;
   return theta;
 }
@@ -114,7 +112,7 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
   const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
     const double theta = from + towards * at;
     const double root =
-        std::sqrt(held.At(theta, Continue(problem, last, parameter, theta)) / estimates.critical());
+        std::sqrt(held.At(theta, Continue(last, parameter, theta)) / estimates.critical());
     last = held.solution().theta;
     return root;
   });
@@ -133,7 +131,7 @@ bool IsOpenAbove(HeldParameter& held, const FittedProblem& fitted, const Thresho
   const double far = std::log(thresholds.far_slip_force);
   const Parameter& of = fitted.problem.parameters[kSlipForce];
   if (far > of.upper || far < fitted.solution.theta[kSlipForce]) return false;
-  return held.At(far, Continue(fitted.problem, fitted.solution.theta, kSlipForce, far)) <
+  return held.At(far, Continue(fitted.solution.theta, kSlipForce, far)) <
          thresholds.open_slip_force;
 }
 
