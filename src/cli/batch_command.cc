@@ -90,7 +90,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
         std::filesystem::path(options.report_directory) / "index.html",
         IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
-  WriteAnswer(options.json_path, console, fits, options.output);
+  WriteAnswer(options.json_path, console, ToJson(fits, options.output),
+              ToText(fits, options.output));
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
 }
 

@@ -28,6 +28,12 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
   }
 }
 
+void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
+                 std::string_view text) {
+  if (!json_path.empty()) WriteText(json, json_path, console);
+  if (json_path != "-") console.out << text;
+}
+
 void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console) {
   for (const std::string& sentence : sentences) {
     console.err << fmt::format("mindahl {}: {}\n", what, sentence);

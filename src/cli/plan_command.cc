@@ -17,7 +17,6 @@
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/terms.h"
@@ -72,6 +71,7 @@ struct Plan {
   Expectation expected;
   Protocol protocol;
   WantedPrecision wanted;
+  std::string wanted_text;
   double slip = 0.0;  // displacement [m] of λ = 1
   std::vector<PlannedLoops> columns = {};
   std::vector<std::string> notes = {};
@@ -183,7 +183,8 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 Plan MakePlan(const PlanOptions& options) {
   Plan plan{.expected = options.expected,
             .protocol = options.protocol,
-            .wanted = ParseWanted(options.want)};
+            .wanted = ParseWanted(options.want),
+            .wanted_text = fmt::format("{}", fmt::join(options.want, ", "))};
   SetExpectation(options, plan);
   plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
   const identification::FitOptions fit_options = PlannedFit(options);
@@ -260,15 +261,6 @@ Json ErrorRows(const Plan& plan) {
   return rows;
 }
 
-std::string WantedInWords(const WantedPrecision& wanted) {
-  std::vector<std::string> parts;
-  for (const auto& [name, precision] : wanted) {
-    parts.push_back(precision.is_relative ? fmt::format("{} to {:g} %", name, 100 * precision.value)
-                                          : fmt::format("{} to {:g}", name, precision.value));
-  }
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
 std::string ToText(const Plan& plan) {
   const Expectation& expected = plan.expected;
   const models::BranchLaw& law = expected.law;
@@ -289,7 +281,7 @@ std::string ToText(const Plan& plan) {
       "m.\n",
       report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
-  text += fmt::format("\nwanted: {}\n", WantedInWords(plan.wanted));
+  text += fmt::format("\nwanted: {}\n", plan.wanted_text);
   for (const PlannedLoops& column : plan.columns) {
     text += fmt::format("  {}: ", column.initial_state);
     if (column.reached) {
@@ -330,37 +322,36 @@ Json LoopsJson(const Plan& plan) {
 
 std::string ToJson(const Plan& plan) {
   const Expectation& expected = plan.expected;
-  Json json = {
-      {"schema", "mindahl.plan/1"},
-      {"version", Version()},
-      {"expected",
-       {{"sigma", expected.law.tangential_stiffness},
-        {"alpha", expected.law.shape_exponent},
-        {"slip_force", expected.law.slip_force},
-        {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
-        {"force_noise", expected.force_noise},
-        {"displacement_noise", expected.displacement_noise},
-        {"gross_slip_displacement", plan.slip}}},
-      {"protocol",
-       {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
-      {"loops", LoopsJson(plan)},
-      {"wanted", Json::object()},
-      {"reached", Json::array()},
-      {"notes", plan.notes}};
+  Json wanted = Json::object();
   for (const auto& [name, precision] : plan.wanted) {
-    json["wanted"][name] = {{"standard_error", precision.value},
-                            {"relative", precision.is_relative}};
+    wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
   }
+  Json reached = Json::array();
   for (const PlannedLoops& column : plan.columns) {
     if (plan.wanted.empty()) break;
     const bool any = column.fewest.amplitude > 0;
-    json["reached"].push_back(
+    reached.push_back(
         {{"initial_state", column.initial_state},
          {"least_amplitude", column.reached ? Json(column.reached->protocol.amplitude) : nullptr},
          {"fewest_cycles", any ? Json(column.fewest.cycles) : nullptr},
          {"amplitude_of_fewest_cycles", any ? Json(column.fewest.amplitude) : nullptr}});
   }
-  return report::Dump(json);
+  return report::Document(
+      "mindahl.plan/1",
+      {{"expected",
+        {{"sigma", expected.law.tangential_stiffness},
+         {"alpha", expected.law.shape_exponent},
+         {"slip_force", expected.law.slip_force},
+         {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
+         {"force_noise", expected.force_noise},
+         {"displacement_noise", expected.displacement_noise},
+         {"gross_slip_displacement", plan.slip}}},
+       {"protocol",
+        {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
+       {"loops", LoopsJson(plan)},
+       {"wanted", std::move(wanted)},
+       {"reached", std::move(reached)},
+       {"notes", plan.notes}});
 }
 
 /// Draws the expected errors against the amplitude, one panel per initial state.
@@ -395,7 +386,7 @@ io::Plot ToPlot(const Plan& plan) {
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
-  WriteAnswer(options.json, console, plan);
+  WriteAnswer(options.json, console, ToJson(plan), ToText(plan));
   const bool is_reached =
       plan.wanted.empty() || std::ranges::any_of(plan.columns, [](const PlannedLoops& column) {
         return column.reached.has_value();

@@ -32,7 +32,6 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/interruption.h"
-#include "mindahl/core/version.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
@@ -88,11 +87,13 @@ struct TrackedTest {
     for (const std::string& flag : fit.flags) ++flags[flag];
     courses.Add(fit);
   }
-  /// False where no fit converged.
-  [[nodiscard]] bool established() const {
-    const auto failed = flags.find("not_converged");
-    return failed == flags.end() || failed->second != fits;
+  /// Returns the number of fits with a flag.
+  [[nodiscard]] std::size_t CountOf(std::string_view flag) const {
+    const auto found = flags.find(flag);
+    return found == flags.end() ? 0 : found->second;
   }
+  /// False where no fit converged.
+  [[nodiscard]] bool established() const { return fits == 0 || CountOf("not_converged") < fits; }
 };
 
 // --- the answer
@@ -127,46 +128,43 @@ Json QuantityRows(const TrackedTest& test) {
   return quantities;
 }
 
+std::string ToJson(const TrackedTest& test, const Json& quantities) {
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    flags[flag.name] = test.CountOf(flag.name);
+  }
+  const campaign::EnergyCounts& counts = test.energy.counts();
+  return report::Document(
+      "mindahl.track/1", {{"input",
+                           {{"files", test.files},
+                            {"samples", test.samples},
+                            {"cycles", test.cycles},
+                            {"unused_samples", test.unused_samples},
+                            {"broken_rows", test.broken_rows}}},
+                          {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
+                          {"output", test.output},
+                          {"fits", test.fits},
+                          {"flagged", test.flagged},
+                          {"flags", std::move(flags)},
+                          {"accumulated_energy", test.energy.total()},
+                          {"energy_counts",
+                           {{"measured", counts.measured},
+                            {"replaced", counts.replaced},
+                            {"left_out", counts.left_out}}},
+                          {"headline", campaign::Headline(test.evolutions)},
+                          {"changes", campaign::ChangeStatements(test.evolutions)},
+                          {"quantities", quantities},
+                          {"notes", test.notes}});
+}
+
 /// Returns the flags that a cycle has, with what they say.
 Json FlagRows(const TrackedTest& test) {
   Json rows = Json::object();
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(flag.name);
-    if (found == test.flags.end()) continue;
-    rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};
+    const std::size_t cycles = test.CountOf(flag.name);
+    if (cycles > 0) rows[flag.name] = {{"cycles", cycles}, {"what it says", flag.meaning}};
   }
   return rows;
-}
-
-std::string ToJson(const TrackedTest& test) {
-  Json flags = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(flag.name);
-    flags[flag.name] = found == test.flags.end() ? 0 : found->second;
-  }
-  const campaign::EnergyCounts& counts = test.energy.counts();
-  return report::Dump({{"schema", "mindahl.track/1"},
-                       {"version", Version()},
-                       {"input",
-                        {{"files", test.files},
-                         {"samples", test.samples},
-                         {"cycles", test.cycles},
-                         {"unused_samples", test.unused_samples},
-                         {"broken_rows", test.broken_rows}}},
-                       {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
-                       {"output", test.output},
-                       {"fits", test.fits},
-                       {"flagged", test.flagged},
-                       {"flags", std::move(flags)},
-                       {"accumulated_energy", test.energy.total()},
-                       {"energy_counts",
-                        {{"measured", counts.measured},
-                         {"replaced", counts.replaced},
-                         {"left_out", counts.left_out}}},
-                       {"headline", campaign::Headline(test.evolutions)},
-                       {"changes", campaign::ChangeStatements(test.evolutions)},
-                       {"quantities", QuantityRows(test)},
-                       {"notes", test.notes}});
 }
 
 /// Returns what was read, fitted and dissipated, one sentence each.
@@ -185,7 +183,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   return facts;
 }
 
-std::string ToText(const TrackedTest& test) {
+std::string ToText(const TrackedTest& test, const Json& quantities) {
   std::string text = campaign::Headline(test.evolutions) + '\n' +
                      fmt::format("{}\n", fmt::join(Facts(test), "\n"));
   if (test.flagged > 0) {
@@ -195,7 +193,7 @@ std::string ToText(const TrackedTest& test) {
                     report::TableText(FlagRows(test)));
   }
   if (test.evolutions.empty()) return text;
-  text += '\n' + report::TableText(QuantityRows(test));
+  text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
@@ -521,7 +519,8 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
         options.report_path,
         ToPage(test, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
-  WriteAnswer(options.json_path, console, test);
+  const Json quantities = QuantityRows(test);
+  WriteAnswer(options.json_path, console, ToJson(test, quantities), ToText(test, quantities));
 }
 
 }  // namespace

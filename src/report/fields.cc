@@ -433,6 +433,12 @@ const std::vector<Field>& Fields() {
   return fields;
 }
 
+std::string Document(std::string_view schema, const Json& members) {
+  Json document = {{"schema", schema}, {"version", Version()}};
+  document.update(members);
+  return Dump(document);
+}
+
 std::string ToJson(const Report& report) {
   Json document;
   for (const Field& field : Fields()) {

@@ -27,6 +27,10 @@ inline std::string Dump(const Json& json) {
   return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
 }
 
+/// Returns the document that a command writes with --json: its schema, "mindahl.plan/1", and the
+/// version of the program before its members.
+std::string Document(std::string_view schema, const Json& members);
+
 /// One row of the report.
 struct Field {
   std::string_view path;     ///< "residuals.rms"

@@ -284,11 +284,9 @@ std::string ToJson(std::span<const BatchEntry> entries, const std::string& outpu
                      {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
                      {"fit", DocumentOf(entry)}});
   }
-  return Dump({{"schema", "mindahl.batch/1"},
-               {"version", Version()},
-               {"output", output.empty() ? Json() : Json(output)},
-               {"files", std::move(files)},
-               {"repeats", RepeatRows(entries)}});
+  return report::Document("mindahl.batch/1", {{"output", output.empty() ? Json() : Json(output)},
+                                              {"files", std::move(files)},
+                                              {"repeats", RepeatRows(entries)}});
 }
 
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
