@@ -66,11 +66,7 @@ void RequireMoreSamplesThanParameters(identification::FitResult& fit) {
 void CollectWarnings(Report& report) {
   for (const identification::Finding& finding : report.fit.findings) {
     if (finding.severity == identification::Severity::kNote) continue;
-    std::string message = Sentence(finding, report.fit, report.units);
-    if (!finding.parameters.empty()) {
-      message = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), message);
-    }
-    report.warnings.push_back({std::string(finding.code), std::move(message)});
+    report.warnings.push_back({std::string(finding.code), WarningText(finding, report)});
   }
   if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
   if (report.is_torsional() || report.failed() || !report.check.empty()) return;
