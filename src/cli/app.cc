@@ -99,13 +99,7 @@ class CommandConfig : public CLI::ConfigTOML {
     const std::string& running = command.get_name();
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
-      if (!is_section && node.is_table()) {
-        const std::vector<std::string> commands = CommandNames(app_);
-        if (!IsCommand(app_, name)) {
-          Refuse(key.source(),
-                 fmt::format("section '{}' is no command of mindahl{} must be one of {}", name,
-                             DidYouMean(name, commands), fmt::join(commands, ", ")));
-        }
+      if (!is_section && node.is_table() && IsCommand(app_, name)) {
         if (name == running) AddItems(*node.as_table(), /*is_section=*/true, selected);
         continue;
       }
@@ -113,7 +107,7 @@ class CommandConfig : public CLI::ConfigTOML {
         Refuse(
             key.source(),
             fmt::format("'{0}.{1}' is no option of {0}{2} keys are those of {0} --help without the "
-                        "dashes",
+                        "dashes, in a section named after a command or in none",
                         running, name, DidYouMean(name, KeyNames(command))));
       }
       std::vector<std::string> values;
@@ -162,28 +156,18 @@ std::string CommandName(const CLI::App& app) {
   return running.empty() ? "mindahl" : "mindahl " + running.front()->get_name();
 }
 
-/// Maps the library's name of a quantity to the option that gives it, where the two differ.
-struct NamedQuantity {
-  std::string_view quantity;
-  std::string_view option;
-};
-constexpr std::array kNamedQuantities = {NamedQuantity{"tangential stiffness", "--sigma"},
-                                         NamedQuantity{"shape exponent", "--alpha"}};
-constexpr std::string_view kCurvature = "relative curvature";
-
 /// The message of a broken precondition, "lag [s] = nan is invalid: …", with the option in place of
 /// the quantity where the user gave it: "--lag [s] = nan is invalid: …".
 std::string WithOption(const CLI::App& app, const std::string& message) {
   const auto running = app.get_subcommands();
   const std::size_t unit = message.find(" [");
   if (running.empty() || unit == std::string::npos) return message;
-  if (message.starts_with(kCurvature)) return "--radius-1 and --radius-2: " + message;
   const std::string quantity = message.substr(0, unit);
-  std::string name = "--" + quantity;
+  std::string name = quantity == "tangential stiffness" ? "--sigma"
+                     : quantity == "shape exponent"     ? "--alpha"
+                                                        : "--" + quantity;
   std::ranges::replace(name, ' ', '-');
   std::ranges::replace(name, '_', '-');
-  const auto named = std::ranges::find(kNamedQuantities, quantity, &NamedQuantity::quantity);
-  if (named != kNamedQuantities.end()) name = named->option;
   const CLI::Option* option = running.front()->get_option_no_throw(name);
   return option == nullptr || option->count() == 0 ? message : name + message.substr(unit);
 }

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "mindahl/request/contact_request.h"
 #include "report/table.h"
 

@@ -48,6 +48,12 @@ class OptionGroup {
                    const std::string& type = "") const {
     return Grouped(command_.add_option(option, value, help), type);
   }
+  /// Adds an option that takes a quantity, a number in `unit` or one with its own: "50 N".
+  template <typename Value>
+  CLI::Option* AddQuantity(const std::string& option, Value& value, const std::string& help,
+                           const std::string& type, const std::string& unit) const {
+    return Add(option, value, help, type)->transform(InUnit(unit));
+  }
   /// Adds an option whose default the help shows.
   template <typename Value>
   CLI::Option* AddShown(const std::string& option, Value& value, const std::string& help,

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
@@ -416,23 +415,18 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
     command.get_option(name)->needs(record);
   }
-  expected
-      .Add("--rig-stiffness", options->rig_stiffness,
-           "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
-           "unless --with fits it",
-           "K")
-      ->transform(InUnit("N/m"));
-  expected
-      .Add("--force-noise", options->force_noise, "standard deviation of the force noise [N]", "S")
-      ->transform(InUnit("N"));
-  expected
-      .Add("--displacement-noise", options->expected.displacement_noise,
-           "standard deviation of the displacement noise [m], white; default 0", "S")
-      ->transform(InUnit("m"));
+  expected.AddQuantity("--rig-stiffness", options->rig_stiffness,
+                       "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
+                       "unless --with fits it",
+                       "K", "N/m");
+  expected.AddQuantity("--force-noise", options->force_noise,
+                       "standard deviation of the force noise [N]", "S", "N");
+  expected.AddQuantity("--displacement-noise", options->expected.displacement_noise,
+                       "standard deviation of the displacement noise [m], white; default 0", "S",
+                       "m");
   const OptionGroup loop(command, "The loop");
-  loop.Add("--amplitude", options->amplitudes,
-           "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
-      ->transform(InUnit("m"));
+  loop.AddQuantity("--amplitude", options->amplitudes,
+                   "amplitude X [m], repeatable; default 13 around the onset of slip", "X", "m");
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
       ->check(WholeNumber(4, 1'000'000));

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"

@@ -20,10 +20,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"

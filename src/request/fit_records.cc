@@ -39,65 +39,38 @@ std::size_t LineOf(const RecordFile& input, std::size_t sample) {
   return sample < input.lines.size() ? input.lines[sample] : sample + 1;
 }
 
-/// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
-std::string PlaceOf(const std::string& file, const RecordFile& input,
-                    const io::ChosenColumn& column, std::size_t sample) {
-  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.index);
-  return fmt::format("{}:{}:{}", file, input.lines[sample], column.index);
-}
-
-/// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
-double RequireHalfRange(const std::string& file, const RecordFile& input,
-                        const io::ChosenColumn& column, const std::vector<double>& values,
-                        std::string_view what, std::string_view unit) {
-  constexpr double kSmallest = 1e-100;
-  constexpr double kLargest = 1e100;
-  const auto [least, greatest] = std::ranges::minmax_element(values);
-  const double half_range = *greatest / 2 - *least / 2;
-  if (half_range == 0 || (half_range >= kSmallest && half_range <= kLargest)) return half_range;
-  const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
-  throw InputError(
-      fmt::format("{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
-                  "choose other units",
-                  PlaceOf(file, input, column, static_cast<std::size_t>(widest - values.begin())),
-                  what, half_range, unit));
-}
-
 const report::Units& UnitsOf(const RecordFile& input) {
   return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+}
+
+double RangeOf(const std::vector<double>& values) {
+  const auto [least, greatest] = std::ranges::minmax(values);
+  return greatest - least;
 }
 
 [[noreturn]] void ThrowConstant(const std::string& file, const RecordFile& input,
                                 const io::ChosenColumn& column, double value, std::string_view what,
                                 std::string_view unit, std::string_view need) {
   throw InputError(
-      fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
-                  "choose another column with --{}",
-                  PlaceOf(file, input, column, 0), what, value, unit, need, what));
+      fmt::format("{}:{}:{}: the {} never changes, it is {} {} in every row: a fit needs a {} "
+                  "contact; choose another column with --{}",
+                  file, LineOf(input, 0), column.index, what, value, unit, need, what));
 }
 
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  bool is_loaded = false;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const RecordFile& input = inputs[r];
-    const Record& record = input.record;
-    const std::string& file = request.files[r];
-    const report::Units& units = UnitsOf(input);
-    if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
-                           units.displacement) > 0)) {
-      ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
-                    units.displacement, "moving");
-    }
-    if (input.time && !record.time.empty()) {
-      RequireHalfRange(file, input, *input.time, record.time, "time", "s");
-    }
-    is_loaded |= RequireHalfRange(file, input, input.force, record.force, "force", units.force) > 0;
+    const std::vector<double>& displacement = input.record.displacement;
+    if (RangeOf(displacement) > 0) continue;
+    ThrowConstant(request.files[r], input, input.displacement, displacement.front(), "displacement",
+                  UnitsOf(input).displacement, "moving");
   }
   const RecordFile& first = inputs.front();
-  if (!is_loaded) {
-    ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
-                  UnitsOf(first).force, "loaded");
-  }
+  const bool is_loaded = std::ranges::any_of(
+      inputs, [](const RecordFile& input) { return RangeOf(input.record.force) > 0; });
+  if (is_loaded) return;
+  ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
+                UnitsOf(first).force, "loaded");
 }
 
 /// A gate is in SI units, as every option: one that is wider than the motion, or the force where
@@ -108,9 +81,7 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
   const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
   double widest = 0.0;
   for (const RecordFile& input : inputs) {
-    const auto [least, greatest] =
-        std::ranges::minmax(is_forced ? input.record.force : input.record.displacement);
-    widest = std::max(widest, greatest - least);
+    widest = std::max(widest, RangeOf(is_forced ? input.record.force : input.record.displacement));
   }
   if (*gate < widest) return;
   const report::Units& units = UnitsOf(inputs.front());

@@ -1,7 +1,7 @@
 
 
 #include "cli/command_line.h"
-#include "cli/contact_options.h"
+#include "cli/request_options.h"
 #include "io/temporary_directory.h"
 #include "support/prelude.h"
 
