@@ -101,21 +101,19 @@ Json QuantityRows(const TrackedTest& test) {
   Json quantities = Json::object();
   for (const Evolution& evolution : test.evolutions) {
     const campaign::CourseDescription& course = evolution.description;
-    Json steps = Json::array();
-    for (const campaign::Step& step : course.steps) {
-      steps.push_back({{"cycle", step.cycle},
-                       {"before", step.before},
-                       {"after", step.after},
-                       {"p_value", step.p_value}});
-    }
-    Json trends = Json::array();
-    for (const campaign::Trend& trend : course.trends) {
-      trends.push_back({{"first_cycle", trend.first_cycle},
-                        {"last_cycle", trend.last_cycle},
-                        {"from", trend.from},
-                        {"to", trend.to},
-                        {"p_value", trend.p_value}});
-    }
+    Json steps = report::ListOf(course.steps, [](const campaign::Step& step) -> Json {
+      return {{"cycle", step.cycle},
+              {"before", step.before},
+              {"after", step.after},
+              {"p_value", step.p_value}};
+    });
+    Json trends = report::ListOf(course.trends, [](const campaign::Trend& trend) -> Json {
+      return {{"first_cycle", trend.first_cycle},
+              {"last_cycle", trend.last_cycle},
+              {"from", trend.from},
+              {"to", trend.to},
+              {"p_value", trend.p_value}};
+    });
     quantities[std::string(evolution.quantity->name)] = {
         {"first", course.first},
         {"last", course.last},

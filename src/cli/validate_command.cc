@@ -55,18 +55,17 @@ Json CoverageRows(const ValidationReport& report) {
   const auto fraction = [](const identification::IntervalCount& count) {
     return count.intervals == 0 ? Json() : Json(count.fraction());
   };
-  Json json = Json::array();
-  for (const identification::CoverageVerdict& verdict : report.coverage) {
-    json.push_back({{"law", verdict.by_dahl ? "dahl" : "masing"},
-                    {"parameter", verdict.parameter},
-                    {"intervals", verdict.all.intervals},
-                    {"coverage", fraction(verdict.all)},
-                    {"sliding_intervals", verdict.sliding.intervals},
-                    {"sliding_coverage", fraction(verdict.sliding)},
-                    {"p_value", verdict.chance},
-                    {"passed", verdict.passed}});
-  }
-  return json;
+  return report::ListOf(report.coverage,
+                        [&](const identification::CoverageVerdict& verdict) -> Json {
+                          return {{"law", verdict.by_dahl ? "dahl" : "masing"},
+                                  {"parameter", verdict.parameter},
+                                  {"intervals", verdict.all.intervals},
+                                  {"coverage", fraction(verdict.all)},
+                                  {"sliding_intervals", verdict.sliding.intervals},
+                                  {"sliding_coverage", fraction(verdict.sliding)},
+                                  {"p_value", verdict.chance},
+                                  {"passed", verdict.passed}};
+                        });
 }
 
 void RunValidate(const Validation& validation, Console& console) {

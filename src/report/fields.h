@@ -21,6 +21,14 @@ inline Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
+/// Returns a list of what a function makes of each row.
+template <typename Rows, typename Make>
+Json ListOf(const Rows& rows, Make make) {
+  Json list = Json::array();
+  for (const auto& row : rows) list.push_back(make(row));
+  return list;
+}
+
 /// Returns a document as the program writes it, with the end of line. A file name need not be
 /// UTF-8; JSON must.
 inline std::string Dump(const Json& json) {

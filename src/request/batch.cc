@@ -277,13 +277,12 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
 }
 
 std::string ToJson(std::span<const BatchEntry> entries, const std::string& output) {
-  Json files = Json::array();
-  for (const BatchEntry& entry : entries) {
-    files.push_back({{"file", entry.file},
-                     {"done", entry.done},
-                     {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-                     {"fit", DocumentOf(entry)}});
-  }
+  Json files = report::ListOf(entries, [](const BatchEntry& entry) -> Json {
+    return {{"file", entry.file},
+            {"done", entry.done},
+            {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
+            {"fit", DocumentOf(entry)}};
+  });
   return report::Document("mindahl.batch/1", {{"output", output.empty() ? Json() : Json(output)},
                                               {"files", std::move(files)},
                                               {"repeats", RepeatRows(entries)}});
