@@ -144,16 +144,22 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
       [](const CLI::Option* option) { return !option->get_lnames().empty(); });
 }
 
+std::optional<double> ParseShare(std::string_view text) {
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.remove_suffix(1);
+  const std::optional<double> number = NumberIn<double>(text);
+  if (!number || !(*number > 0) || !std::isfinite(*number)) return std::nullopt;
+  return is_percent ? *number / 100 : *number;
+}
+
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help) {
   const auto read = [&tolerance](const std::string& text) {
-    const bool percent = text.ends_with('%');
-    const std::optional<double> number =
-        NumberIn<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
-    if (!number || !(*number > 0) || !std::isfinite(*number)) {
+    const std::optional<double> share = ParseShare(text);
+    if (!share) {
       throw InputError(
           fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
     }
-    tolerance = percent ? *number / 100 : *number;
+    tolerance = *share;
   };
   group.AddRead("--tolerance", read, help, "E")->default_str("1%");
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -101,6 +102,9 @@ inline constexpr const char* kPlainGroup = "Options";
 std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
 /// Returns the name of one of these, without its dashes.
 inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
+
+/// Reads a number > 0, "0.01", or the same in percent, "1%"; empty where the text is neither.
+std::optional<double> ParseShare(std::string_view text);
 
 /// Adds --tolerance, "0.01" or "1%", by default 1 %.
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);

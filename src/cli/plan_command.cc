@@ -13,7 +13,6 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/request_options.h"
-#include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
@@ -153,17 +152,14 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::string name = text.substr(0, equals);
-    std::string_view number = std::string_view(text).substr(std::min(equals + 1, text.size()));
-    Precision precision{.is_relative = number.ends_with('%')};
-    if (precision.is_relative) number.remove_suffix(1);
-    const std::optional<double> value = NumberIn<double>(number);
-    if (!value || !(*value > 0) || !std::isfinite(*value)) {
+    const auto precision =
+        ParseShare(std::string_view(text).substr(std::min(equals + 1, text.size())));
+    if (!precision) {
       throw InputError(fmt::format(
           "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
           "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
           text));
     }
-    precision.value = precision.is_relative ? *value / 100 : *value;
     if (identification::FindTerm(name) == nullptr) {
       std::vector<std::string> names;
       for (const auto& term : identification::Terms()) names.emplace_back(term.name);
@@ -172,7 +168,7 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
                       "or a term that --with names",
                       name, DidYouMean(name, names)));
     }
-    if (!wanted.emplace(name, precision).second) {
+    if (!wanted.emplace(name, Precision{*precision, text.ends_with('%')}).second) {
       throw InputError(fmt::format("--want: {} is given twice: give it once", name));
     }
   }

@@ -372,17 +372,9 @@ class TrackRun {
     fit_ = MakeCycleFitOptions(options_.fit);
     const contact::KnownContact& known = options_.fit.contact.known;
     if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-    const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
     test_.gate = campaign::ChooseGate(head, fit_);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
     if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-    const loop::ReversalGate& gate = test_.gate;
-    if (!is_gate_given && gate.gate > 0) {
-      test_.notes.push_back(fmt::format(
-          "excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
-          "says another",
-          gate.gate, head.size()));
-    }
     campaign::TrackOptions options{
         .fit = fit_,
         .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
@@ -390,6 +382,7 @@ class TrackRun {
         .every = options_.every,
         .threads = options_.threads};
     Resume(options);
+    const loop::ReversalGate& gate = test_.gate;
     if (!gate.certain) {
       test_.notes.push_back(fmt::format(
           "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "

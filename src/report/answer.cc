@@ -389,10 +389,8 @@ std::vector<Line> DetailLines(const Report& report) {
   if (report.notes.size() > 1) {
     for (const std::string& note : report.notes) lines.push_back({"read as", note});
   }
-  lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
-                                        fit.has_mixed_states()
-                                            ? std::string("initial states differ")
-                                            : fmt::format("{} contact", Name(fit.initial_state)))});
+  lines.push_back({"model", fmt::format("{}, initial state {}", fit.model->title,
+                                        fmt::join(ValuesUnder(report, "initial_state"), ""))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
     const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
@@ -400,11 +398,8 @@ std::vector<Line> DetailLines(const Report& report) {
     if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
   }
-  for (const char* section : {"adequacy", "residuals", "mapping", "solver"}) {
-    std::vector<std::string> values;
-    for (const auto& [name, value] : ValuesUnder(report, fmt::format("{}.", section))) {
-      values.push_back(fmt::format("{} {}", name, value));
-    }
+  for (const char* section : {"input", "measured", "adequacy", "residuals", "mapping", "solver"}) {
+    const std::vector<std::string> values = ValuesUnder(report, section);
     if (!values.empty()) lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
   }
   for (const identification::Cause& cause : fit.adequacy.causes) {

@@ -13,6 +13,7 @@
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"
 #include "report/statements.h"
+#include "report/table.h"
 
 namespace mindahl::report {
 
@@ -440,25 +441,23 @@ std::string ToJson(const Report& report) {
   return Dump(document);
 }
 
-std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
-                                                             std::string_view prefix) {
-  std::vector<std::pair<std::string, std::string>> values;
+std::vector<std::string> ValuesUnder(const Report& report, std::string_view section) {
+  std::vector<std::string> values;
   for (const Field& field : Fields()) {
-    if (!field.path.starts_with(prefix)) continue;
+    if (!field.path.starts_with(section)) continue;
     const Json value = field.get(report);
     if (value.is_null() || value.is_structured()) continue;
-    std::string name(field.path.substr(prefix.size()));
-    std::ranges::replace(name, '_', ' ');
-    std::ranges::replace(name, '.', ' ');
     constexpr std::string_view kResponse = "response";
     std::string unit = UnitIn(report.units, field.unit);
     if (unit.starts_with(kResponse)) unit.replace(0, kResponse.size(), report.units.response);
-    std::string text = field.path.ends_with("p_value") ? ChanceText(value.get<double>()).substr(2)
-                       : value.is_boolean()            ? (value.get<bool>() ? "yes" : "no")
-                       : value.is_string()             ? value.get<std::string>()
-                       : value.is_number_float()       ? Quantity(value.get<double>(), unit, 4)
-                                                       : value.dump();
-    values.emplace_back(std::move(name), std::move(text));
+    std::string name(field.path.substr(std::min(section.size() + 1, field.path.size())));
+    std::ranges::replace(name, '_', ' ');
+    std::ranges::replace(name, '.', ' ');
+    values.push_back(fmt::format("{}{}{}", name, name.empty() ? "" : " ",
+                                 field.path.ends_with("p_value")
+                                     ? ChanceText(value.get<double>()).substr(2)
+                                 : value.is_number_float() ? Quantity(value.get<double>(), unit, 4)
+                                                           : CellText(value)));
   }
   return values;
 }

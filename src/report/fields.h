@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mindahl/report/report.h"
@@ -51,10 +50,9 @@ struct Field {
 
 const std::vector<Field>& Fields();
 
-/// Returns the numbers and words of fields whose path begins with `prefix`, "residuals.", as names
-/// without it and values with their units; none of what is null or has members.
-std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
-                                                             std::string_view prefix);
+/// Returns the numbers and words in a section of the JSON, "rms 0.4 N", behind their names and with
+/// their units; none of what is null or has members.
+std::vector<std::string> ValuesUnder(const Report& report, std::string_view section);
 
 /// Returns the samples of each record that do not count.
 std::vector<LeftOut> DescribeLeftOut(const Report& report);

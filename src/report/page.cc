@@ -37,14 +37,6 @@ std::string NextHtml(const Report& report, const Provenance& provenance) {
                                  Prose(command), Prose(report.next->options)));
 }
 
-std::string MeasuredHtml(const Report& report) {
-  std::vector<TableLine> rows;
-  for (const char* section : {"measured.", "input."}) {
-    for (const auto& [name, value] : ValuesUnder(report, section)) rows.push_back({name, {value}});
-  }
-  return TableHtml("of the record, without a model", {}, rows);
-}
-
 struct Bar {
   std::string_view symbol;
   double value;
@@ -151,9 +143,7 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                      figure.panels[1]),
           IntervalsHtml(report), NextHtml(report, provenance),
           SectionHtml("Answer", LinesHtml("", AnswerLines(report))),
-          SectionHtml("Details", SideBySide(LinesHtml("of the fit", DetailLines(report)) +
-                                            MeasuredHtml(report))),
-          ProvenanceHtml(provenance)));
+          SectionHtml("Details", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

@@ -10,7 +10,6 @@
 #include <future>
 #include <new>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "core/probability.h"
@@ -243,12 +242,7 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
         return FitSource(request, files[k], strictness, &ReadRecords,
                          page_of ? page_of(k) : WritePage());
       };
-      try {
-        at_work.push_back(std::async(std::launch::async, fit));
-      } catch (const std::system_error&) {  // no other thread: those that there are will do
-        threads = std::max<std::size_t>(1, at_work.size());
-        at_work.push_back(std::async(std::launch::deferred, fit));
-      }
+      at_work.push_back(std::async(fit));  // here where no thread can be started
       ++next;
     }
     entries.push_back(at_work.front().get());
