@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,12 +76,12 @@ class OptionGroup {
         });
   }
   /// Adds an option whose text, or whose texts, a function reads.
+  template <typename Text = std::string>
   CLI::Option* AddRead(const std::string& option,
-                       const std::function<void(const std::string&)>& read, const std::string& help,
-                       const std::string& type) const;
-  CLI::Option* AddReadAll(const std::string& option,
-                          const std::function<void(const std::vector<std::string>&)>& read,
-                          const std::string& help, const std::string& type) const;
+                       const std::type_identity_t<std::function<void(const Text&)>>& read,
+                       const std::string& help, const std::string& type) const {
+    return Grouped(command_.add_option_function<Text>(option, read, help), type);
+  }
   CLI::Option* AddFlag(const std::string& option, bool& value, const std::string& help) const;
   /// Adds a flag that may have a word of its own: "--strict{adequate}".
   CLI::Option* AddFlagWithWord(const std::string& option,
@@ -108,6 +109,12 @@ std::optional<double> ParseShare(std::string_view text);
 
 /// Adds --tolerance, "0.01" or "1%", by default 1 %.
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
+
+/// Adds --path, a file with an imposed displacement, and --displacement, its column.
+/// @param remark  goes on with the help of --path
+/// @returns the former
+CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column,
+                     const std::string& remark);
 
 /// Adds --threads.
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);

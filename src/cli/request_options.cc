@@ -287,7 +287,7 @@ void ReadSelection(std::string_view what, std::string_view range, const std::str
 void AddSelections(CLI::App& command, FitRequest& request) {
   const OptionGroup group(command, kColumnGroup);
   group
-      .AddReadAll(
+      .AddRead<std::vector<std::string>>(
           "--select",
           [&request](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
@@ -415,7 +415,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       "K with standard uncertainty U; default rigid",
       "K[+-U]|fit");
   group
-      .AddReadAll(
+      .AddRead<std::vector<std::string>>(
           "--covariate",
           [&fit](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) ReadCovariate(text, fit);
@@ -429,7 +429,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->allow_extra_args(false);
   const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
-    group.AddReadAll(
+    group.AddRead<std::vector<std::string>>(
         name,
         [&target, name, form, parse](const std::vector<std::string>& texts) {
           ReadAssignments(texts, name, form, target, parse);

@@ -158,17 +158,8 @@ void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
   group.AddShown("--growth", request.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
-  CLI::Option* const path =
-      group.Add("--path", request.path,
-                "CSV file with a displacement, any sequence; one output row for\n"
-                "each, time counting rows",
-                "FILE");
-  group
-      .Add("--displacement", request.displacement,
-           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
-           "none; default by its name, else the first",
-           "COL")
-      ->needs(path);
+  CLI::Option* const path = AddPath(group, request.path, request.displacement,
+                                    "; one output row for\neach, time counting rows");
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
     path->excludes(command.get_option(name));

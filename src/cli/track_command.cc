@@ -169,8 +169,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
       fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
                   test.output),
-      fmt::format("{} dissipated in all{}", report::Quantity(test.energy.total(), "J", 6),
-                  campaign::InWords(test.energy.counts()))};
+      report::Quantity(test.energy.total(), "J", 6) + " dissipated in all"};
   if (test.resumed > 0) facts.push_back(fmt::format("{} fits existed already", test.resumed));
   if (test.unused_samples > 0) {
     facts.push_back(

@@ -250,15 +250,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                "default all")
           ->check(OneOf(NamesOf(kScenes, &Scene::name)));
-  CLI::Option* const path =
-      group.Add("--path", options->path, "CSV file with a displacement, any sequence", "FILE")
-          ->excludes(scenes);
-  group
-      .Add("--displacement", options->column,
-           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
-           "none; default by its name, else the first",
-           "COL")
-      ->needs(path);
+  AddPath(group, options->path, options->column, "")->excludes(scenes);
   AddTolerance(OptionGroup(command, kPlainGroup), options->tolerance,
                "largest error allowed, of the peak force and of the energy: 0.01 or\n1%");
   const OptionGroup output(command, "Output");

@@ -204,12 +204,11 @@ class Writer {
   void AddLoad() {
     const ParameterEstimate* exponent = fit_.Find("load_exponent");
     if (exponent == nullptr) return;
-    const std::vector<std::string> fits =
-        report_.is_torsional() ? std::vector<std::string>() : TheoriesOfLoad(fit_);
-    const std::string theories = fits.empty() ? "" : fmt::format("as {}, ", fmt::join(fits, ", "));
-    AddParameter(
-        "load", "σ ∝ N^p, p", *exponent,
-        fmt::format("{}σ and Tc are at the mean of {} loads", theories, fit_.records.size()));
+    const char* const hertz = report_.is_torsional() || !exponent->is_known() ? ""
+                              : DeniesHertz(fit_) ? "Hertz's 1/3 is rejected, "
+                                                  : "Hertz's 1/3 fits, ";
+    AddParameter("load", "σ ∝ N^p, p", *exponent,
+                 fmt::format("{}σ and Tc are at the mean of {} loads", hertz, fit_.records.size()));
   }
 
   void AddTerms() {

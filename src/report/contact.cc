@@ -165,6 +165,13 @@ void FillSlipForce(const FitResult& fit, double sense, ContactQuantity& quantity
   }
 }
 
+constexpr double kThird = contact::kMindlinShapeExponent;  // of α, and Hertz's of the load
+
+bool ExcludesAThird(const ParameterEstimate& estimate) {
+  return (estimate.lower95 && *estimate.lower95 > kThird) ||
+         (estimate.upper95 && *estimate.upper95 < kThird);
+}
+
 ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
   ContactQuantity load{.name = "normal_load", .symbol = "N", .unit = "N"};
   load.why = known.normal_load ? "exact" : "not given, and no column has it";
@@ -249,11 +256,9 @@ AlphaTest TestAlpha(const FitResult& fit) {
   AlphaTest test;
   const ParameterEstimate& alpha = *fit.Find("alpha");
   if (alpha.status == ParameterStatus::kFixed) return test;
-  constexpr double kThird = contact::kMindlinShapeExponent;
   test.minus_third = alpha.value - kThird;
   if (!alpha.is_known()) return test;
-  test.is_rejected =
-      (alpha.lower95 && *alpha.lower95 > kThird) || (alpha.upper95 && *alpha.upper95 < kThird);
+  test.is_rejected = ExcludesAThird(alpha);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {
     test.p_value = PValueOfT(*test.minus_third / error, fit.ErrorDegreesOfFreedom());
@@ -261,44 +266,12 @@ AlphaTest TestAlpha(const FitResult& fit) {
   return test;
 }
 
-namespace {
-
-/// True if a load series may follow σ ∝ N^p with an exponent between two values: where the interval
-/// of the fitted one, or what it is held at, as written with three digits, reaches one of these.
-bool MayHaveExponent(const FitResult& fit, double least, double greatest) {
-  constexpr double kWritten = 1e-3;
-  const ParameterEstimate& fitted = *fit.Find("load_exponent");
-  if (fitted.status == ParameterStatus::kFixed) {
-    return fitted.value > least - kWritten && fitted.value < greatest + kWritten;
-  }
-  return !fitted.is_known() || !((fitted.lower95 && *fitted.lower95 > greatest) ||
-                                 (fitted.upper95 && *fitted.upper95 < least));
-}
-
-}  // namespace
-
-std::vector<std::string> TheoriesOfLoad(const FitResult& fit) {
-  std::vector<std::string> theories;
-  if (!fit.is_load_series() || !fit.Find("load_exponent")->is_known()) return theories;
-  const auto add = [&](const char* name, double exponent, double least, double greatest) {
-    if (!MayHaveExponent(fit, least, greatest)) return;
-    theories.push_back(fmt::format("{} ({:.3g})", name, exponent));
-  };
-  constexpr double kThird = contact::kMindlinShapeExponent;
-  const ParameterEstimate& alpha = *fit.Find("alpha");
-  add("smooth sphere", kThird, kThird, kThird);
-  add("elements in parallel, α", alpha.value, alpha.lower95.value_or(alpha.value),
-      alpha.upper95.value_or(alpha.value));
-  for (const auto& [name, exponent] :
-       {std::pair("cone", 0.5), {"flat punch", 0.0}, {"rough surfaces", 1.0}}) {
-    add(name, exponent, exponent, exponent);
-  }
-  return theories;
-}
-
 bool DeniesHertz(const FitResult& fit) {
-  constexpr double kThird = contact::kMindlinShapeExponent;
-  return fit.is_load_series() && !MayHaveExponent(fit, kThird, kThird);
+  if (!fit.is_load_series()) return false;
+  constexpr double kWritten = 1e-3;  // what it is held at is written with three digits
+  const ParameterEstimate& fitted = *fit.Find("load_exponent");
+  if (fitted.status == ParameterStatus::kFixed) return std::abs(fitted.value - kThird) >= kWritten;
+  return fitted.is_known() && ExcludesAThird(fitted);
 }
 
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,

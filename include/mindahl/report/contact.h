@@ -47,11 +47,6 @@ struct AlphaTest {
 };
 AlphaTest TestAlpha(const identification::FitResult& fit);
 
-/// Returns the theories of docs/theory.md §9 of how the stiffness follows the load, σ ∝ N^p, whose
-/// exponent lies within the interval of the fitted one, "smooth sphere (0.333)"; none where the
-/// records have one load, or it is open.
-std::vector<std::string> TheoriesOfLoad(const identification::FitResult& fit);
-
 /// True if a load series denies Hertz's law: 1/3 lies outside the interval of p, or p was held at
 /// another value. Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
