@@ -431,21 +431,17 @@ bool IsNumber(std::string_view word) {
 
 /// Breaks a text between words; a number stays with what belongs to it.
 std::string Wrapped(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = 0; begin < text.size();) {
-    std::size_t last = begin;
-    std::size_t end = std::min(text.find(' ', begin), text.size());
-    while (end < text.size() &&
-           (IsNumber(text.substr(last, end - last)) || text.substr(end + 1).starts_with("…") ||
-            text.substr(end + 1).starts_with("("))) {
-      last = end + 1;
-      end = std::min(text.find(' ', last), text.size());
-    }
-    words.push_back(text.substr(begin, end - begin));
-    begin = std::min(end + 1, text.size());
+  std::vector<std::string> words;
+  std::string_view last;
+  for (const std::string_view word : PartsOf(text, ' ')) {
+    const bool belongs_to_it = IsNumber(last) || word.starts_with("…") || word.starts_with("(");
+    if (words.empty() || !belongs_to_it) words.emplace_back();
+    words.back().append(words.back().empty() ? "" : " ").append(word);
+    last = word;
   }
+  const std::vector<std::string_view> views(words.begin(), words.end());
   return fmt::format(
-      "{}", fmt::join(LinesOf(words, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
+      "{}", fmt::join(LinesOf(views, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
 }
 
 std::string LinesText(const std::vector<Line>& lines) {
