@@ -6,10 +6,8 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "cli/app.h"

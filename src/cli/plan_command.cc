@@ -57,12 +57,12 @@ struct PlanOptions {
   }
 };
 
-/// The loops that start from one initial state, in the order of their amplitudes.
-struct PlannedLoops {
-  std::string_view initial_state;
-  std::vector<ExpectedFit> loops;
-  std::optional<ExpectedFit> reached;  // at the least amplitude that suffices
-  Protocol fewest;                     // sufficient, with the fewest cycles
+/// What reaches the wanted precision from one initial state.
+struct Reached {
+  std::optional<ExpectedFit> loop;  // at the least amplitude that suffices
+  Protocol fewest;                  // sufficient, with the fewest cycles; amplitude 0: none is
+
+  [[nodiscard]] std::string_view state() const { return report::Name(fewest.initial_state); }
 };
 
 struct Plan {
@@ -70,8 +70,9 @@ struct Plan {
   Protocol protocol;
   WantedPrecision wanted;
   std::string wanted_text;
-  double slip = 0.0;  // displacement [m] of λ = 1
-  std::vector<PlannedLoops> columns = {};
+  double slip = 0.0;                    // displacement [m] of λ = 1
+  std::vector<ExpectedFit> loops = {};  // by their initial states and amplitudes
+  std::vector<Reached> reached = {};    // one an initial state, if anything is wanted
   std::vector<std::string> notes = {};
 };
 
@@ -189,18 +190,18 @@ Plan MakePlan(const PlanOptions& options) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
   for (const InitialState state : options.initial_states) {
-    PlannedLoops& column = plan.columns.emplace_back();
-    column.initial_state = report::Name(state);
     Protocol protocol = plan.protocol;
     protocol.initial_state = state;
     for (const double amplitude : amplitudes) {
       protocol.amplitude = amplitude;
-      column.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
+      plan.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
     }
     if (plan.wanted.empty()) continue;
-    column.reached = identification::LeastAmplitude(
+    Reached& reached = plan.reached.emplace_back();
+    reached.loop = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
-        kShares.back() * plan.slip, fit_options, &column.fewest);
+        kShares.back() * plan.slip, fit_options, &reached.fewest);
+    reached.fewest.initial_state = state;
   }
   return plan;
 }
@@ -227,7 +228,7 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
 }
 
 bool IsFitted(const Plan& plan, const ShownError& shown) {
-  const ParameterEstimate* estimate = plan.columns.front().loops.front().Find(shown.parameter);
+  const ParameterEstimate* estimate = plan.loops.front().Find(shown.parameter);
   return estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
 }
 
@@ -236,24 +237,20 @@ bool IsLawDecided(const ExpectedFit& fit) {
 }
 
 Json ErrorRows(const Plan& plan) {
-  Json rows = Json::array();
-  for (const PlannedLoops& column : plan.columns) {
-    for (const ExpectedFit& fit : column.loops) {
-      Json row = {{"start", column.initial_state},
-                  {"X [m]", fit.protocol.amplitude},
-                  {"X/slip", fit.protocol.amplitude / plan.slip}};
-      for (const ShownError& each : kShownErrors) {
-        if (!IsFitted(plan, each)) continue;
-        const std::optional<double> error = ErrorOf(fit, each);
-        row[each.name] = !error             ? "-"
-                         : each.is_exponent ? fmt::format("{:.2g}", *error)
-                                            : fmt::format("{:.2g} %", 100 * *error);
-      }
-      row["law"] = IsLawDecided(fit) ? "decided" : "open";
-      rows.push_back(std::move(row));
+  return report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
+    Json row = {{"start", report::Name(fit.protocol.initial_state)},
+                {"X [m]", fit.protocol.amplitude},
+                {"X/slip", fit.protocol.amplitude / plan.slip}};
+    for (const ShownError& each : kShownErrors) {
+      if (!IsFitted(plan, each)) continue;
+      const std::optional<double> error = ErrorOf(fit, each);
+      row[each.name] = !error             ? "-"
+                       : each.is_exponent ? fmt::format("{:.2g}", *error)
+                                          : fmt::format("{:.2g} %", 100 * *error);
     }
-  }
-  return rows;
+    row["law"] = IsLawDecided(fit) ? "decided" : "open";
+    return row;
+  });
 }
 
 std::string ToText(const Plan& plan) {
@@ -277,16 +274,16 @@ std::string ToText(const Plan& plan) {
       report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
   text += fmt::format("\nwanted: {}\n", plan.wanted_text);
-  for (const PlannedLoops& column : plan.columns) {
-    text += fmt::format("  {}: ", column.initial_state);
-    if (column.reached) {
-      const double amplitude = column.reached->protocol.amplitude;
+  for (const Reached& reached : plan.reached) {
+    text += fmt::format("  {}: ", reached.state());
+    if (reached.loop) {
+      const double amplitude = reached.loop->protocol.amplitude;
       text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n", amplitude,
                           amplitude / plan.slip);
-    } else if (column.fewest.amplitude > 0) {
+    } else if (reached.fewest.amplitude > 0) {
       text +=
           fmt::format("no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
-                      plan.protocol.cycles, column.fewest.amplitude, column.fewest.cycles);
+                      plan.protocol.cycles, reached.fewest.amplitude, reached.fewest.cycles);
     } else {
       text += "no amplitude determines it\n";
     }
@@ -295,24 +292,20 @@ std::string ToText(const Plan& plan) {
 }
 
 Json LoopsJson(const Plan& plan) {
-  Json loops = Json::array();
-  for (const PlannedLoops& column : plan.columns) {
-    for (const ExpectedFit& fit : column.loops) {
-      Json entry = {{"initial_state", column.initial_state},
-                    {"amplitude", fit.protocol.amplitude},
-                    {"peak_force", fit.peak_force}};
-      for (const ParameterEstimate& estimate : fit.parameters) {
-        entry["parameters"][estimate.name] = {
-            {"value", estimate.value},
-            {"unit", estimate.unit},
-            {"standard_error", NumberOrNull(estimate.standard_error)}};
-      }
-      entry["law_evidence"] = fit.law_evidence;
-      entry["law_decided"] = IsLawDecided(fit);
-      loops.push_back(std::move(entry));
+  return report::ListOf(plan.loops, [](const ExpectedFit& fit) {
+    Json entry = {{"initial_state", report::Name(fit.protocol.initial_state)},
+                  {"amplitude", fit.protocol.amplitude},
+                  {"peak_force", fit.peak_force}};
+    for (const ParameterEstimate& estimate : fit.parameters) {
+      entry["parameters"][estimate.name] = {
+          {"value", estimate.value},
+          {"unit", estimate.unit},
+          {"standard_error", NumberOrNull(estimate.standard_error)}};
     }
-  }
-  return loops;
+    entry["law_evidence"] = fit.law_evidence;
+    entry["law_decided"] = IsLawDecided(fit);
+    return entry;
+  });
 }
 
 std::string ToJson(const Plan& plan) {
@@ -321,16 +314,13 @@ std::string ToJson(const Plan& plan) {
   for (const auto& [name, precision] : plan.wanted) {
     wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
   }
-  Json reached = Json::array();
-  for (const PlannedLoops& column : plan.columns) {
-    if (plan.wanted.empty()) break;
-    const bool any = column.fewest.amplitude > 0;
-    reached.push_back(
-        {{"initial_state", column.initial_state},
-         {"least_amplitude", column.reached ? Json(column.reached->protocol.amplitude) : nullptr},
-         {"fewest_cycles", any ? Json(column.fewest.cycles) : nullptr},
-         {"amplitude_of_fewest_cycles", any ? Json(column.fewest.amplitude) : nullptr}});
-  }
+  Json reached = report::ListOf(plan.reached, [](const Reached& each) -> Json {
+    const bool any = each.fewest.amplitude > 0;
+    return {{"initial_state", each.state()},
+            {"least_amplitude", each.loop ? Json(each.loop->protocol.amplitude) : nullptr},
+            {"fewest_cycles", any ? Json(each.fewest.cycles) : nullptr},
+            {"amplitude_of_fewest_cycles", any ? Json(each.fewest.amplitude) : nullptr}};
+  });
   return report::Document(
       "mindahl.plan/1",
       {{"expected",
@@ -350,21 +340,21 @@ std::string ToJson(const Plan& plan) {
 }
 
 /// Draws the expected errors against the amplitude, one panel per initial state.
-io::Plot ToPlot(const Plan& plan) {
+io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
-  for (const PlannedLoops& column : plan.columns) {
+  for (const InitialState state : options.initial_states) {
     io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
                         .y_label = "standard error [-]",
                         .log_x = true,
                         .log_y = true,
-                        .title = std::string(column.initial_state)};
+                        .title = std::string(report::Name(state))};
     for (const ShownError& each : kShownErrors) {
       io::PlotSeries series{
           .label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
           .style = io::PlotStyle::kLineAndPoints};
-      for (const ExpectedFit& fit : column.loops) {
+      for (const ExpectedFit& fit : plan.loops) {
         const std::optional<double> error = ErrorOf(fit, each);
-        if (!error || *error <= 0) continue;
+        if (fit.protocol.initial_state != state || !error || *error <= 0) continue;
         series.x.push_back(fit.protocol.amplitude / plan.slip);
         series.y.push_back(*error);
       }
@@ -380,11 +370,11 @@ io::Plot ToPlot(const Plan& plan) {
 
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
-  if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
+  if (!options.plot.empty()) io::WritePlot(ToPlot(options, plan), options.plot);
   WriteAnswer(options.json, console, ToJson(plan), ToText(plan));
   const bool is_reached =
-      plan.wanted.empty() || std::ranges::any_of(plan.columns, [](const PlannedLoops& column) {
-        return column.reached.has_value();
+      plan.wanted.empty() || std::ranges::any_of(plan.reached, [](const Reached& reached) {
+        return reached.loop.has_value();
       });
   if (!is_reached) console.exit_status = kNotEstablished;
 }

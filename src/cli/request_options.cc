@@ -5,10 +5,8 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -86,15 +86,13 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
 
 Approximation ResolveMethod(const SimulateOptions& options) {
   const methods::Method& method = *methods::FindMethod(options.method);
-  if (options.steps && method.steps.empty()) {
-    throw InputError(fmt::format(
-        "--steps {} has no effect with --method {}, which takes no steps: choose another method",
-        *options.steps, method.name));
-  }
-  if (options.tolerance && !method.adaptive) {
+  for (const auto& [is_without_effect, option, other] :
+       {std::tuple(options.steps && method.steps.empty(), "--steps", "iwan"),
+        {options.tolerance && !method.adaptive, "--tolerance", "dopri5"}}) {
+    if (!is_without_effect) continue;
     throw InputError(
-        fmt::format("--tolerance {} has no effect with --method {}: it belongs to --method dopri5",
-                    *options.tolerance, method.name));
+        fmt::format("{} has no effect with --method {}: choose another method, as --method {}",
+                    option, method.name, other));
   }
   const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
   if (is_limit && method.name != "exact") {

@@ -183,10 +183,8 @@ std::string ToText(const TrackedTest& test, const Json& quantities) {
   std::string text = campaign::Headline(test.evolutions) + '\n' +
                      fmt::format("{}\n", fmt::join(Facts(test), "\n"));
   if (test.flagged > 0) {
-    text +=
-        fmt::format("\n{} a flag:\n{}",
-                    test.flagged == 1 ? "1 cycle has" : fmt::format("{} cycles have", test.flagged),
-                    report::TableText(FlagRows(test)));
+    text += fmt::format("\ncycles with a flag: {}\n{}", test.flagged,
+                        report::TableText(FlagRows(test)));
   }
   if (test.evolutions.empty()) return text;
   text += '\n' + report::TableText(quantities);

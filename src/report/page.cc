@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "io/drawing.h"
-#include "report/fields.h"
 #include "report/html.h"
 #include "report/statements.h"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 namespace mindahl::report {
 
