@@ -46,18 +46,12 @@ struct ConvertOptions {
   std::string input_lines_path;
 };
 
-/// Returns what a place of a document has, null where there is no such place.
-Json At(const Json& document, const std::string& place) {
-  const Json::json_pointer pointer(place);
-  return document.contains(pointer) ? document[pointer] : Json();
-}
-
 /// Reads what `mindahl fit --json` wrote.
 Json ReadFit(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  const Json schema = At(fit, "/schema");
+  const Json schema = report::At(fit, "/schema");
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
   throw InputError(fmt::format(
       "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
@@ -69,18 +63,18 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
 
 /// Takes law and amplitude from a fit where they are not given.
 void TakeFit(const Json& fit, ConvertOptions& request) {
-  if (request.from.empty()) request.from = At(fit, "/model") == "dahl" ? "dahl" : "masing";
+  if (request.from.empty()) request.from = report::At(fit, "/model") == "dahl" ? "dahl" : "masing";
   const auto take = [&](std::optional<double>& value, const std::string& place) {
-    const Json found = At(fit, place);
+    const Json found = report::At(fit, place);
     if (!value && found.is_number()) value = found.get<double>();
   };
   for (const auto& [value, name] : {std::pair(&request.sigma, "sigma"),
                                     {&request.alpha, "alpha"},
                                     {&request.slip_force, "slip_force"}}) {
     const std::string place = fmt::format("/parameters/{}", name);
-    const Json known = At(fit, place + "/identifiability");
+    const Json known = report::At(fit, place + "/identifiability");
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
-    if (!is_open || At(fit, place + "/status") == "fixed") take(*value, place + "/value");
+    if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
   }
   if (request.amplitude || !request.sigma || !request.slip_force) return;
   take(request.amplitude, "/measured/amplitude");

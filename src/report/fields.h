@@ -20,6 +20,12 @@ inline Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
+/// Returns what a place of a document has, "/model", null where there is no such place.
+inline Json At(const Json& document, std::string_view place) {
+  const Json::json_pointer pointer{std::string(place)};
+  return document.contains(pointer) ? document[pointer] : Json();
+}
+
 /// Returns a list of what a function makes of each row.
 template <typename Rows, typename Make>
 Json ListOf(const Rows& rows, Make make) {

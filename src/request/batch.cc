@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -26,6 +27,7 @@
 namespace mindahl::request {
 
 using identification::ParameterEstimate;
+using report::At;
 using report::Dump;
 using report::Json;
 using report::NumberOrNull;
@@ -95,14 +97,10 @@ Json TableRows(std::span<const BatchEntry> entries) {
   Json rows = Json::array();
   for (const BatchEntry& entry : entries) {
     const Json fit = DocumentOf(entry);
-    const auto value_at = [&](std::string_view pointer) {
-      const Json::json_pointer at{std::string(pointer)};
-      return fit.contains(at) ? fit.at(at) : Json();
-    };
     Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) row[column.name] = value_at(column.pointer);
+    for (const ColumnRow& column : kBatchColumns) row[column.name] = At(fit, column.pointer);
     std::vector<std::string> codes;
-    for (const Json& warning : value_at("/warnings")) codes.push_back(warning["code"]);
+    for (const Json& warning : At(fit, "/warnings")) codes.push_back(warning["code"]);
     row["warnings"] = fmt::format("{}", fmt::join(codes, " "));
     row["fault"] = entry.fault;
     row["version"] = Version();
@@ -185,9 +183,8 @@ std::string Address(std::string_view name) {
   std::string address;
   for (const char character : name) {
     const auto byte = static_cast<unsigned char>(character);
-    const bool is_plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
-                          (byte >= '0' && byte <= '9') || character == '-' || character == '_' ||
-                          character == '.';
+    const bool is_plain = (byte < 128 && std::isalnum(byte) != 0) ||
+                          std::string_view("-_.").find(character) != std::string_view::npos;
     address += is_plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
   }
   return address;

@@ -347,22 +347,16 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFi
 }
 
 bool Established(const FitResult& fit, Strictness strictness) {
-  if (!fit.converged) return false;
+  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
+  const bool is_strict = strictness == Strictness::kAdequate;
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  switch (strictness) {
-    case Strictness::kNone:
-      return true;
-    case Strictness::kDoubtful:
-      return verdict != AdequacyVerdict::kInadequate &&
-             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
-    case Strictness::kAdequate:
-      return verdict == AdequacyVerdict::kAdequate &&
-             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-               return estimate.status == ParameterStatus::kFixed ||
-                      estimate.identifiability == Identifiability::kIdentifiable;
-             });
-  }
-  return false;
+  return (is_strict ? verdict == AdequacyVerdict::kAdequate
+                    : verdict != AdequacyVerdict::kInadequate) &&
+         std::ranges::all_of(fit.parameters, [&](const ParameterEstimate& estimate) {
+           return is_strict ? estimate.status == ParameterStatus::kFixed ||
+                                  estimate.identifiability == Identifiability::kIdentifiable
+                            : estimate.is_known();
+         });
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {
