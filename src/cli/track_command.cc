@@ -366,18 +366,17 @@ class TrackRun {
   }
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
-    fit_ = MakeCycleFitOptions(options_.fit);
     const contact::KnownContact& known = options_.fit.contact.known;
-    if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-    test_.gate = campaign::ChooseGate(head, fit_);
-    const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
-    if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
     campaign::TrackOptions options{
-        .fit = fit_,
+        .fit = MakeCycleFitOptions(options_.fit),
         .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
         .together = options_.average,
         .every = options_.every,
         .threads = options_.threads};
+    if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
+    test_.gate = campaign::ChooseGate(head, options.fit);
+    const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
+    if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
     Resume(options);
     const loop::ReversalGate& gate = test_.gate;
     if (!gate.certain) {
@@ -487,7 +486,6 @@ class TrackRun {
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   TrackedTest test_;
-  identification::FitOptions fit_;
   io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
