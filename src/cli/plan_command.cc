@@ -57,7 +57,7 @@ struct PlanOptions {
   }
 };
 
-/// What reaches the wanted precision from one initial state.
+/// Holds what reaches the wanted precision from one initial state.
 struct Reached {
   std::optional<ExpectedFit> loop;  // at the least amplitude that suffices
   Protocol fewest;                  // sufficient, with the fewest cycles; amplitude 0: none is

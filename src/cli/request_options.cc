@@ -482,14 +482,10 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
             "another file of the same test, whose columns follow those of the file:\nby time "
             "where both have one, else row by row",
             "FILE");
-  group
-      .AddRead(
-          "--broken-rows",
-          [&columns](const std::string& text) { columns.skip_broken_rows = text == "skip"; },
-          "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
-          "empty cells, which are left out; skip: all are left out",
-          "TEXT")
-      ->check(OneOf({"refuse", "skip"}));
+  group.AddChoice(
+      "--broken-rows", columns.skip_broken_rows, {{"refuse", false}, {"skip", true}},
+      "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
+      "empty cells, which are left out; skip: all are left out");
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }
