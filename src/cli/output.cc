@@ -99,13 +99,16 @@ std::vector<const CLI::Option*> OptionsOfType(const CLI::App& command, std::stri
 
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
+  std::vector<const CLI::Option*> outputs = OptionsOfType(command, "PATH");
+  const std::vector<const CLI::Option*> directories = OptionsOfType(command, "DIR");
+  outputs.insert(outputs.end(), directories.begin(), directories.end());
   std::vector<Output> checked;
-  for (const CLI::Option* each : OptionsOfType(command, "PATH")) {
+  for (const CLI::Option* each : outputs) {
     const std::string option = "--" + NameOf(*each);
     const std::string& path = each->results().back();
     if (path.empty()) continue;
     const bool is_stdout = path == "-";
-    if (!is_stdout) RequireWritable(option, path);
+    if (!is_stdout && each->get_type_name() == "PATH") RequireWritable(option, path);
     if (option == "--plot") io::RequirePlotName(path);
     for (const std::string& input : inputs) {
       if (is_stdout || !IsSameFile(path, input)) continue;

@@ -26,7 +26,7 @@ void WriteAnswer(const std::string& json_path, Console& console, std::string_vie
 
 /// Lets a command run, once it refused what could not be written after the work: a run with several
 /// outputs leaves none behind, takes none for another and none for what it reads. An option whose
-/// value is called PATH writes there, "-" to standard output; one called FILE is read.
+/// value is called PATH or DIR writes there, "-" to standard output; one called FILE is read.
 void OnRun(CLI::App& command, std::function<void()> run);
 
 /// Returns the files that a command was given to read, a configuration the last.
