@@ -8,7 +8,7 @@
 
 #include "bindings.h"
 #include "cli/app.h"
-#include "cli/fit_request.h"
+#include "cli/request_options.h"
 #include "mindahl/core/error.h"
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"

@@ -212,38 +212,31 @@ std::optional<CourseDescription> Describe(const Course& course) {
   return description;
 }
 
+void Course::Bin::Merge(const Bin& next) {
+  last_cycle = next.last_cycle;
+  least = std::min(least, next.least);
+  greatest = std::max(greatest, next.greatest);
+  count += next.count;
+  cycle += (next.cycle - cycle) * static_cast<double>(next.count) / static_cast<double>(count);
+  weight += next.weight;
+  const double share = next.weight / weight;
+  value = value * (1 - share) + next.value * share;
+}
+
 void Course::Add(std::size_t cycle, double value, double weight) {
+  const Bin one = {cycle, cycle, static_cast<double>(cycle), value, weight, value, value, 1};
   if (bins_.empty()) first_ = value;
   last_ = value;
-  if (bins_.empty() || bins_.back().count == width_) {
-    if (bins_.size() == kMostBins) {
-      for (std::size_t i = 0; i < kMostBins / 2; ++i) {
-        const Bin& a = bins_[2 * i];
-        const Bin& b = bins_[2 * i + 1];
-        bins_[i] = {.first_cycle = a.first_cycle,
-                    .last_cycle = b.last_cycle,
-                    .cycle = (a.cycle + b.cycle) / 2,
-                    .value = a.value * (a.weight / (a.weight + b.weight)) +
-                             b.value * (b.weight / (a.weight + b.weight)),
-                    .weight = a.weight + b.weight,
-                    .least = std::min(a.least, b.least),
-                    .greatest = std::max(a.greatest, b.greatest),
-                    .count = a.count + b.count};
-      }
-      bins_.resize(kMostBins / 2);
-      width_ *= 2;
+  if (!bins_.empty() && bins_.back().count < width_) return bins_.back().Merge(one);
+  if (bins_.size() == kMostBins) {
+    for (std::size_t i = 0; i < kMostBins / 2; ++i) {
+      bins_[i] = bins_[2 * i];
+      bins_[i].Merge(bins_[2 * i + 1]);
     }
-    bins_.push_back({.first_cycle = cycle, .last_cycle = cycle, .least = value, .greatest = value});
+    bins_.resize(kMostBins / 2);
+    width_ *= 2;
   }
-  Bin& bin = bins_.back();
-  bin.last_cycle = cycle;
-  bin.least = std::min(bin.least, value);
-  bin.greatest = std::max(bin.greatest, value);
-  ++bin.count;
-  bin.cycle += (static_cast<double>(cycle) - bin.cycle) / static_cast<double>(bin.count);
-  bin.weight += weight;
-  const double share = weight / bin.weight;
-  bin.value = bin.value * (1 - share) + value * share;
+  bins_.push_back(one);
 }
 
 }  // namespace mindahl::campaign

@@ -173,20 +173,19 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
           step.p_value);
     }
   }
-  std::vector<double> sizes;
-  sizes.reserve(statements.size());
-  for (const Statement& statement : statements) sizes.push_back(statement.size);
-  std::ranges::sort(sizes, std::greater<>());
-  const double least = sizes.size() > most ? sizes[most - 2] : 0.0;  // one line says how many more
-  std::vector<std::string> lines;
-  for (const Statement& statement : statements) {
-    if (statement.size >= least && lines.size() + 1 < most + (sizes.size() > most ? 0 : 1)) {
-      lines.push_back(statement.text);
-    }
+  std::vector<const Statement*> said;
+  said.reserve(statements.size());
+  for (const Statement& statement : statements) said.push_back(&statement);
+  if (said.size() > most) {  // one line says how many more
+    std::ranges::stable_sort(said, std::greater<>(), &Statement::size);
+    said.resize(most - 1);
+    std::ranges::sort(said);
   }
-  if (lines.size() < statements.size()) {
+  std::vector<std::string> lines;
+  for (const Statement* statement : said) lines.push_back(statement->text);
+  if (said.size() < statements.size()) {
     lines.push_back(
-        fmt::format("and {} smaller ones, which --json lists", statements.size() - lines.size()));
+        fmt::format("and {} smaller ones, which --json lists", statements.size() - said.size()));
   }
   return lines;
 }

@@ -1,7 +1,6 @@
 #include "mindahl/campaign/test_summary.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/math/statistics/univariate_statistics.hpp>
@@ -36,16 +35,6 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
     if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
     of_a_step_.push_back(*fit.energy / steps);
   }
-}
-
-std::string InWords(const EnergyCounts& counts) {
-  std::vector<std::string> parts;
-  if (counts.replaced > 0) {
-    parts.push_back(fmt::format(
-        "cycles that do not close, {}, count as the median of those before them", counts.replaced));
-  }
-  if (counts.left_out > 0) parts.push_back(fmt::format("{} count as zero", counts.left_out));
-  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
 std::string Repeats::InWords() const {

@@ -22,6 +22,7 @@
 
 #include "cli/output.h"
 #include "core/nearest_name.h"
+#include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
@@ -29,16 +30,19 @@
 namespace mindahl::cli {
 namespace {
 
-std::vector<std::string> CommandNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  return names;
-}
+struct CommandRow {
+  std::string_view name;
+  void (*add)(CLI::App& app, Console& console);
+};
+constexpr std::array kCommands = {
+    CommandRow{"fit", AddFitCommand},           CommandRow{"simulate", AddSimulateCommand},
+    CommandRow{"validate", AddValidateCommand}, CommandRow{"contact", AddContactCommand},
+    CommandRow{"convert", AddConvertCommand},   CommandRow{"tradeoff", AddTradeoffCommand},
+    CommandRow{"plan", AddPlanCommand},         CommandRow{"track", AddTrackCommand},
+    CommandRow{"batch", AddBatchCommand}};
 
-bool IsCommand(const CLI::App& app, std::string_view name) {
-  return std::ranges::count(CommandNames(app), name) > 0;
+bool IsCommand(std::string_view name) {
+  return std::ranges::find(kCommands, name, &CommandRow::name) != kCommands.end();
 }
 
 /// Keys of a configuration: the long names of a command's options.
@@ -99,13 +103,7 @@ class CommandConfig : public CLI::ConfigTOML {
     const std::string& running = command.get_name();
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
-      if (!is_section && node.is_table()) {
-        const std::vector<std::string> commands = CommandNames(app_);
-        if (!IsCommand(app_, name)) {
-          Refuse(key.source(),
-                 fmt::format("section '{}' is no command of mindahl{} must be one of {}", name,
-                             DidYouMean(name, commands), fmt::join(commands, ", ")));
-        }
+      if (!is_section && node.is_table() && IsCommand(name)) {
         if (name == running) AddItems(*node.as_table(), /*is_section=*/true, selected);
         continue;
       }
@@ -113,7 +111,7 @@ class CommandConfig : public CLI::ConfigTOML {
         Refuse(
             key.source(),
             fmt::format("'{0}.{1}' is no option of {0}{2} keys are those of {0} --help without the "
-                        "dashes",
+                        "dashes, in a section named after a command or in none",
                         running, name, DidYouMean(name, KeyNames(command))));
       }
       std::vector<std::string> values;
@@ -129,14 +127,6 @@ class CommandConfig : public CLI::ConfigTOML {
 
   const CLI::App& app_;
 };
-
-/// The first word that is no option, where it is no command either; CLI11 only says that one is
-/// missing.
-std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2 || std::string_view(argv[1]).starts_with('-')) return std::nullopt;
-  if (IsCommand(app, argv[1])) return std::nullopt;
-  return argv[1];
-}
 
 /// The first word that looks like an option and is none, without its value: whatever else is then
 /// wrong with the line follows from it.
@@ -162,28 +152,18 @@ std::string CommandName(const CLI::App& app) {
   return running.empty() ? "mindahl" : "mindahl " + running.front()->get_name();
 }
 
-/// Maps the library's name of a quantity to the option that gives it, where the two differ.
-struct NamedQuantity {
-  std::string_view quantity;
-  std::string_view option;
-};
-constexpr std::array kNamedQuantities = {NamedQuantity{"tangential stiffness", "--sigma"},
-                                         NamedQuantity{"shape exponent", "--alpha"}};
-constexpr std::string_view kCurvature = "relative curvature";
-
 /// The message of a broken precondition, "lag [s] = nan is invalid: …", with the option in place of
 /// the quantity where the user gave it: "--lag [s] = nan is invalid: …".
 std::string WithOption(const CLI::App& app, const std::string& message) {
   const auto running = app.get_subcommands();
   const std::size_t unit = message.find(" [");
   if (running.empty() || unit == std::string::npos) return message;
-  if (message.starts_with(kCurvature)) return "--radius-1 and --radius-2: " + message;
   const std::string quantity = message.substr(0, unit);
-  std::string name = "--" + quantity;
+  std::string name = quantity == "tangential stiffness" ? "--sigma"
+                     : quantity == "shape exponent"     ? "--alpha"
+                                                        : "--" + quantity;
   std::ranges::replace(name, ' ', '-');
   std::ranges::replace(name, '_', '-');
-  const auto named = std::ranges::find(kNamedQuantities, quantity, &NamedQuantity::quantity);
-  if (named != kNamedQuantities.end()) name = named->option;
   const CLI::Option* option = running.front()->get_option_no_throw(name);
   return option == nullptr || option->count() == 0 ? message : name + message.substr(unit);
 }
@@ -198,17 +178,6 @@ int Print(std::string_view results, const std::string& program, int status, std:
                      errno != 0 ? std::strerror(errno) : "it is closed");
   return kBadInput;
 }
-
-struct CommandRow {
-  std::string_view name;
-  void (*add)(CLI::App& app, Console& console);
-};
-constexpr std::array kCommands = {
-    CommandRow{"fit", AddFitCommand},           CommandRow{"simulate", AddSimulateCommand},
-    CommandRow{"validate", AddValidateCommand}, CommandRow{"contact", AddContactCommand},
-    CommandRow{"convert", AddConvertCommand},   CommandRow{"tradeoff", AddTradeoffCommand},
-    CommandRow{"plan", AddPlanCommand},         CommandRow{"track", AddTrackCommand},
-    CommandRow{"batch", AddBatchCommand}};
 
 int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   // Results go out in one piece at the end: of a run that fails nothing is printed, and what a full
@@ -234,21 +203,23 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
   Console console{results, err, kDone, CommandLine(argc, argv)};
-  // The options of the commands that do not run take a seventh of the time of a short fit.
-  const auto asked = std::ranges::find(kCommands, argc > 1 ? argv[1] : "", &CommandRow::name);
+  const std::string_view first = argc > 1 ? argv[1] : "";
   for (const CommandRow& command : kCommands) {
-    if (asked == kCommands.end() || command.name == asked->name) {
+    // The options of the commands that do not run take a seventh of the time of a short fit.
+    if (command.name == first || !IsCommand(first)) {
       command.add(app, console);
     } else {
       app.add_subcommand(std::string(command.name));  // a configuration may have its section
     }
   }
 
-  if (const auto unknown = UnknownCommand(app, argc, argv)) {
-    const std::vector<std::string> commands = CommandNames(app);
+  // CLI11 only says that a command is missing.
+  if (argc > 1 && !first.starts_with('-') && !IsCommand(first)) {
+    const auto names = NamesOf(kCommands, &CommandRow::name);
+    const std::vector<std::string> words(names.begin(), names.end());
     err << fmt::format(
         "mindahl: there is no command '{}'{} must be one of {}; see mindahl --help\n",
-        OneLine(*unknown), DidYouMean(*unknown, commands), fmt::join(commands, ", "));
+        OneLine(std::string(first)), DidYouMean(first, words), fmt::join(names, ", "));
     return kBadInput;
   }
   const auto refuse = [&](std::string_view why) {

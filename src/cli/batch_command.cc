@@ -6,16 +6,14 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/report/page.h"
@@ -90,7 +88,8 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
         std::filesystem::path(options.report_directory) / "index.html",
         IndexPage(fits, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
-  WriteAnswer(options.json_path, console, fits, options.output);
+  WriteAnswer(options.json_path, console, ToJson(fits, options.output),
+              ToText(fits, options.output));
   console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
 }
 

@@ -1,13 +1,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "mindahl/core/version.h"
+#include "cli/request_options.h"
 #include "mindahl/request/contact_request.h"
 #include "report/table.h"
 
@@ -23,11 +21,6 @@ struct ContactCommandOptions {
   std::string json_path;
 };
 
-struct ContactAnswer {
-  ContactOptions given;
-  contact::PredictedContact predicted;
-};
-
 /// Adds a quantity that there is, with what it is for the text.
 void Add(Json& rows, const char* name, const std::optional<contact::UncertainValue>& value,
          const char* unit, const char* meaning) {
@@ -38,53 +31,39 @@ void Add(Json& rows, const char* name, const std::optional<contact::UncertainVal
                 {"meaning", meaning}};
 }
 
-Json ContactRows(const ContactAnswer& contact) {
-  const contact::PredictedContact& made = contact.predicted;
-  Json rows = Json::object();
-  Add(rows, "friction_coefficient", contact.given.friction_coefficient, "-", "mu");
-  Add(rows, "normal_load", contact.given.known.normal_load, "N", "N");
-  Add(rows, "effective_modulus", made.effective_modulus, "Pa", "E*");
-  Add(rows, "equivalent_radius", made.equivalent_radius, "m", "rho");
-  Add(rows, "approach", made.approach, "m", "normal approach a^2/rho");
-  Add(rows, "compliance", made.tangential_compliance, "1/Pa",
-      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
-  Add(rows, "contact_radius", made.contact_radius, "m", "a");
-  Add(rows, "maximum_pressure", made.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
-  Add(rows, "gross_slip_displacement", made.gross_slip_displacement, "m",
-      "delta_c = 3 mu N G*/(16 a)");
-  return rows;
-}
-
-Json ParameterRows(const ContactAnswer& contact) {
-  Json rows = Json::object();
-  Add(rows, "sigma", contact.predicted.tangential_stiffness, "N/m", "8a/G*");
-  Add(rows, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-", "1/3, Mindlin");
-  Add(rows, "slip_force", contact.predicted.slip_force, "N", "Tc = mu N");
-  return rows;
-}
-
-// G* is said wherever it is used: many texts write it for the inverse.
-std::string ToJson(const ContactAnswer& contact) {
-  return report::Dump({{"schema", "mindahl.contact/1"},
-                       {"version", Version()},
-                       {"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
-                       {"compliance_unit", "1/Pa"},
-                       {"contact", ContactRows(contact)},
-                       {"parameters", ParameterRows(contact)}});
-}
-
-std::string ToText(const ContactAnswer& contact) {
-  Json rows = ContactRows(contact);
-  rows.update(ParameterRows(contact));
-  constexpr int kEveryDigit = 17;
-  return report::TableText(rows, kEveryDigit);
-}
-
 void RunContact(const ContactCommandOptions& options, Console& console) {
-  Validate(options.contact);
-  const ContactAnswer contact{options.contact, ResolveContact(options.contact)};
-  Say("contact: warning", DoubtsAbout(options.contact), console);
-  WriteAnswer(options.json_path, console, contact);
+  const ContactOptions& given = options.contact;
+  Validate(given);
+  const contact::PredictedContact made = ResolveContact(given);
+  Json quantities = Json::object();
+  Add(quantities, "friction_coefficient", given.friction_coefficient, "-", "mu");
+  Add(quantities, "normal_load", given.known.normal_load, "N", "N");
+  Add(quantities, "effective_modulus", made.effective_modulus, "Pa", "E*");
+  Add(quantities, "equivalent_radius", made.equivalent_radius, "m", "rho");
+  Add(quantities, "approach", made.approach, "m", "normal approach a^2/rho");
+  Add(quantities, "compliance", made.tangential_compliance, "1/Pa",
+      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
+  Add(quantities, "contact_radius", made.contact_radius, "m", "a");
+  Add(quantities, "maximum_pressure", made.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
+  Add(quantities, "gross_slip_displacement", made.gross_slip_displacement, "m",
+      "delta_c = 3 mu N G*/(16 a)");
+  Json parameters = Json::object();
+  Add(parameters, "sigma", made.tangential_stiffness, "N/m", "8a/G*");
+  Add(parameters, "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
+      "1/3, Mindlin");
+  Add(parameters, "slip_force", made.slip_force, "N", "Tc = mu N");
+  Say("contact: warning", DoubtsAbout(given), console);
+  Json rows = quantities;
+  rows.update(parameters);
+  constexpr int kEveryDigit = 17;
+  // G* is said wherever it is used: many texts write it for the inverse.
+  WriteAnswer(options.json_path, console,
+              report::Document("mindahl.contact/1",
+                               {{"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
+                                {"compliance_unit", "1/Pa"},
+                                {"contact", std::move(quantities)},
+                                {"parameters", std::move(parameters)}}),
+              report::TableText(rows, kEveryDigit));
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "core/text.h"
 #include "mindahl/convert/conversion.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
 #include "report/table.h"
@@ -47,27 +46,12 @@ struct ConvertOptions {
   std::string input_lines_path;
 };
 
-/// A contact written for a target.
-struct ConvertedContact {
-  ConvertOptions asked;  // with what a fit says
-  models::BranchLaw law;
-  TargetRow target;
-  convert::Conversion conversion = {};
-  std::vector<Parameter> parameters = {};
-};
-
-/// Returns what a place of a document has, null where there is no such place.
-Json At(const Json& document, const std::string& place) {
-  const Json::json_pointer pointer(place);
-  return document.contains(pointer) ? document[pointer] : Json();
-}
-
 /// Reads what `mindahl fit --json` wrote.
 Json ReadFit(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
-  const Json schema = At(fit, "/schema");
+  const Json schema = report::At(fit, "/schema");
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
   throw InputError(fmt::format(
       "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
@@ -79,18 +63,18 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
 
 /// Takes law and amplitude from a fit where they are not given.
 void TakeFit(const Json& fit, ConvertOptions& request) {
-  if (request.from.empty()) request.from = At(fit, "/model") == "dahl" ? "dahl" : "masing";
+  if (request.from.empty()) request.from = report::At(fit, "/model") == "dahl" ? "dahl" : "masing";
   const auto take = [&](std::optional<double>& value, const std::string& place) {
-    const Json found = At(fit, place);
+    const Json found = report::At(fit, place);
     if (!value && found.is_number()) value = found.get<double>();
   };
   for (const auto& [value, name] : {std::pair(&request.sigma, "sigma"),
                                     {&request.alpha, "alpha"},
                                     {&request.slip_force, "slip_force"}}) {
     const std::string place = fmt::format("/parameters/{}", name);
-    const Json known = At(fit, place + "/identifiability");
+    const Json known = report::At(fit, place + "/identifiability");
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
-    if (!is_open || At(fit, place + "/status") == "fixed") take(*value, place + "/value");
+    if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
   }
   if (request.amplitude || !request.sigma || !request.slip_force) return;
   take(request.amplitude, "/measured/amplitude");
@@ -119,44 +103,35 @@ std::string Percent(double error) {
 }
 
 /// States the errors at the amplitude; an energy has none where the contact loses nothing.
-std::string ErrorAtAmplitude(const ConvertedContact& made) {
-  const LoopError& error = made.conversion.at_amplitude;
-  return fmt::format("at {:.6g} m the force is within {} of T*, the energy {}",
-                     made.asked.options.amplitude, Percent(error.force),
+std::string ErrorAtAmplitude(const LoopError& error, double amplitude) {
+  return fmt::format("at {:.6g} m the force is within {} of T*, the energy {}", amplitude,
+                     Percent(error.force),
                      std::isfinite(error.energy) ? "off by " + Percent(error.energy)
                                                  : "lost where the contact loses none");
 }
 
-ConvertedContact MakeConversion(const ConvertOptions& asked) {
-  ConvertOptions request = asked;
+/// Returns the request with what a fit says, and the defaults of what nothing says.
+ConvertOptions Completed(ConvertOptions request) {
   if (!request.fit.empty()) {
     TakeFit(ReadFit(request.fit), request);
     Require(request.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
-  const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
-                                 request.alpha.value_or(1.0 / 3),
-                                 Require(request.slip_force, "--slip-force", request)};
-  request.options.amplitude = Require(request.amplitude, "--amplitude", request);
-  const TargetRow target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
-  Validate(request.normal, target);
-  convert::Conversion made = convert::Convert({&ModelOf(request), law}, target, request.options);
-  std::vector<Parameter> parameters = ParametersOf(made, target, request.normal);
-  return {std::move(request), law, target, std::move(made), std::move(parameters)};
+  return request;
 }
 
-Json ParametersJson(const ConvertedContact& made) {
-  Json parameters = Json::object();
-  for (const Parameter& parameter : made.parameters) {
-    parameters[parameter.name] = {
+Json ParameterRows(const std::vector<Parameter>& parameters) {
+  Json rows = Json::object();
+  for (const Parameter& parameter : parameters) {
+    rows[parameter.name] = {
         {"value", parameter.value}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
   }
-  return parameters;
+  return rows;
 }
 
-Json ElementsJson(const ConvertedContact& made) {
+Json ElementRows(const convert::Conversion& conversion) {
   Json rows = Json::array();
-  if (const auto* elements = std::get_if<methods::IwanElements>(&made.conversion.law)) {
+  if (const auto* elements = std::get_if<methods::IwanElements>(&conversion.law)) {
     for (std::size_t j = 0; j < elements->size(); ++j) {
       rows.push_back(
           {{"stiffness", elements->stiffness[j]}, {"slip_force", elements->slip_force[j]}});
@@ -165,52 +140,52 @@ Json ElementsJson(const ConvertedContact& made) {
   return rows;
 }
 
-std::string ToJson(const ConvertedContact& made) {
-  const convert::Conversion& conversion = made.conversion;
-  const auto& within = conversion.within;
-  return report::Dump({{"schema", "mindahl.convert/1"},
-                       {"version", Version()},
-                       {"from",
-                        {{"law", made.asked.from},
-                         {"sigma", made.law.tangential_stiffness},
-                         {"alpha", made.law.shape_exponent},
-                         {"slip_force", made.law.slip_force}}},
-                       {"to", made.target.name},
-                       {"amplitude", made.asked.options.amplitude},
-                       {"tolerance", made.asked.options.tolerance},
-                       {"parameters", ParametersJson(made)},
-                       {"elements", ElementsJson(made)},
-                       {"error_at_amplitude",
-                        {{"force", NumberOrNull(conversion.at_amplitude.force)},
-                         {"energy", NumberOrNull(conversion.at_amplitude.energy)}}},
-                       {"within", within ? Json({within->lower, within->upper}) : Json()}});
-}
-
-std::string ToText(const ConvertedContact& made) {
+void RunConvert(const ConvertOptions& asked, Console& console) {
+  ConvertOptions request = Completed(asked);
+  const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
+                                 request.alpha.value_or(1.0 / 3),
+                                 Require(request.slip_force, "--slip-force", request)};
+  const double amplitude = Require(request.amplitude, "--amplitude", request);
+  request.options.amplitude = amplitude;
+  const double tolerance = request.options.tolerance;
+  const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
+  Validate(request.normal, target);
+  const convert::Conversion made =
+      convert::Convert({&ModelOf(request), law}, target, request.options);
+  const Json parameters = ParameterRows(ParametersOf(made, target, request.normal));
+  const Json elements = ElementRows(made);
+  const LoopError& error = made.at_amplitude;
+  const std::string error_text = ErrorAtAmplitude(error, amplitude);
+  const auto& within = made.within;
   constexpr int kDigits = 8;
-  const auto& within = made.conversion.within;
-  return fmt::format(
-      "{}; {}\n\n{}{}\n{}\n", made.target.title, ErrorAtAmplitude(made),
-      report::TableText(ParametersJson(made), kDigits),
-      report::TableText(ElementsJson(made), kDigits),
-      within
-          ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
-                        Percent(made.asked.options.tolerance), within->lower, within->upper)
-          : fmt::format("not within {} at the amplitude", Percent(made.asked.options.tolerance)));
-}
-
-void RunConvert(const ConvertOptions& options, Console& console) {
-  const ConvertedContact converted = MakeConversion(options);
-  if (!options.input_lines_path.empty()) {
+  const std::string text =
+      fmt::format("{}; {}\n\n{}{}\n{}\n", target.title, error_text,
+                  report::TableText(parameters, kDigits), report::TableText(elements, kDigits),
+                  within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
+                                       Percent(tolerance), within->lower, within->upper)
+                         : fmt::format("not within {} at the amplitude", Percent(tolerance)));
+  const std::string json = report::Document(
+      "mindahl.convert/1",
+      {{"from",
+        {{"law", request.from},
+         {"sigma", law.tangential_stiffness},
+         {"alpha", law.shape_exponent},
+         {"slip_force", law.slip_force}}},
+       {"to", target.name},
+       {"amplitude", amplitude},
+       {"tolerance", tolerance},
+       {"parameters", parameters},
+       {"elements", elements},
+       {"error_at_amplitude",
+        {{"force", NumberOrNull(error.force)}, {"energy", NumberOrNull(error.energy)}}},
+       {"within", within ? Json({within->lower, within->upper}) : Json()}});
+  const std::string& lines_path = request.input_lines_path;
+  if (!lines_path.empty()) {
     const std::vector<std::string> lines =
-        convert::InputLines(converted.conversion, converted.target, converted.asked.normal,
-                            ErrorAtAmplitude(converted));
-    WriteText(fmt::format("{}\n", fmt::join(lines, "\n")), options.input_lines_path, console);
+        convert::InputLines(made, target, request.normal, error_text);
+    WriteText(fmt::format("{}\n", fmt::join(lines, "\n")), lines_path, console);
   }
-  if (!options.json_path.empty()) WriteText(ToJson(converted), options.json_path, console);
-  if (options.json_path != "-" && options.input_lines_path != "-") {
-    console.out << ToText(converted);
-  }
+  WriteAnswer(request.json_path, console, json, lines_path == "-" ? "" : text);
 }
 
 }  // namespace

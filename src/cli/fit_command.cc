@@ -4,9 +4,9 @@
 #include <string>
 
 #include "cli/app.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"

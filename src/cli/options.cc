@@ -106,18 +106,6 @@ CLI::Option* OptionGroup::Grouped(CLI::Option* added, const std::string& type) c
   return added;
 }
 
-CLI::Option* OptionGroup::AddRead(const std::string& option,
-                                  const std::function<void(const std::string&)>& read,
-                                  const std::string& help, const std::string& type) const {
-  return Grouped(command_.add_option_function<std::string>(option, read, help), type);
-}
-
-CLI::Option* OptionGroup::AddReadAll(
-    const std::string& option, const std::function<void(const std::vector<std::string>&)>& read,
-    const std::string& help, const std::string& type) const {
-  return Grouped(command_.add_option_function<std::vector<std::string>>(option, read, help), type);
-}
-
 CLI::Option* OptionGroup::AddFlag(const std::string& option, bool& value,
                                   const std::string& help) const {
   // CLI11 itself reads --flag=5 as five times --flag.
@@ -144,18 +132,37 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
       [](const CLI::Option* option) { return !option->get_lnames().empty(); });
 }
 
+std::optional<double> ParseShare(std::string_view text) {
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.remove_suffix(1);
+  const std::optional<double> number = NumberIn<double>(text);
+  if (!number || !(*number > 0) || !std::isfinite(*number)) return std::nullopt;
+  return is_percent ? *number / 100 : *number;
+}
+
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help) {
   const auto read = [&tolerance](const std::string& text) {
-    const bool percent = text.ends_with('%');
-    const std::optional<double> number =
-        NumberIn<double>(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
-    if (!number || !(*number > 0) || !std::isfinite(*number)) {
+    const std::optional<double> share = ParseShare(text);
+    if (!share) {
       throw InputError(
           fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
     }
-    tolerance = percent ? *number / 100 : *number;
+    tolerance = *share;
   };
   group.AddRead("--tolerance", read, help, "E")->default_str("1%");
+}
+
+CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column,
+                     const std::string& remark) {
+  CLI::Option* const added =
+      group.Add("--path", path, "CSV file with a displacement, any sequence" + remark, "FILE");
+  group
+      .Add("--displacement", column,
+           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
+           "none; default by its name, else the first",
+           "COL")
+      ->needs(added);
+  return added;
 }
 
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged) {

@@ -6,9 +6,11 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,12 @@ class OptionGroup {
                    const std::string& type = "") const {
     return Grouped(command_.add_option(option, value, help), type);
   }
+  /// Adds an option that takes a quantity, a number in `unit` or one with its own: "50 N".
+  template <typename Value>
+  CLI::Option* AddQuantity(const std::string& option, Value& value, const std::string& help,
+                           const std::string& type, const std::string& unit) const {
+    return Add(option, value, help, type)->transform(InUnit(unit));
+  }
   /// Adds an option whose default the help shows.
   template <typename Value>
   CLI::Option* AddShown(const std::string& option, Value& value, const std::string& help,
@@ -68,12 +76,12 @@ class OptionGroup {
         });
   }
   /// Adds an option whose text, or whose texts, a function reads.
+  template <typename Text = std::string>
   CLI::Option* AddRead(const std::string& option,
-                       const std::function<void(const std::string&)>& read, const std::string& help,
-                       const std::string& type) const;
-  CLI::Option* AddReadAll(const std::string& option,
-                          const std::function<void(const std::vector<std::string>&)>& read,
-                          const std::string& help, const std::string& type) const;
+                       const std::type_identity_t<std::function<void(const Text&)>>& read,
+                       const std::string& help, const std::string& type) const {
+    return Grouped(command_.add_option_function<Text>(option, read, help), type);
+  }
   CLI::Option* AddFlag(const std::string& option, bool& value, const std::string& help) const;
   /// Adds a flag that may have a word of its own: "--strict{adequate}".
   CLI::Option* AddFlagWithWord(const std::string& option,
@@ -96,8 +104,17 @@ std::vector<const CLI::Option*> OptionsOf(const CLI::App& command);
 /// Returns the name of one of these, without its dashes.
 inline const std::string& NameOf(const CLI::Option& option) { return option.get_lnames().front(); }
 
+/// Reads a number > 0, "0.01", or the same in percent, "1%"; empty where the text is neither.
+std::optional<double> ParseShare(std::string_view text);
+
 /// Adds --tolerance, "0.01" or "1%", by default 1 %.
 void AddTolerance(const OptionGroup& group, double& tolerance, const std::string& help);
+
+/// Adds --path, a file with an imposed displacement, and --displacement, its column.
+/// @param remark  goes on with the help of --path
+/// @returns the former
+CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& column,
+                     const std::string& remark);
 
 /// Adds --threads.
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);

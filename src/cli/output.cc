@@ -28,6 +28,12 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
   }
 }
 
+void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
+                 std::string_view text) {
+  if (!json_path.empty()) WriteText(json, json_path, console);
+  if (json_path != "-") console.out << text;
+}
+
 void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console) {
   for (const std::string& sentence : sentences) {
     console.err << fmt::format("mindahl {}: {}\n", what, sentence);
@@ -57,32 +63,26 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
   return place(first) == place(second);
 }
 
-/// An output of the command line.
-struct Output {
-  std::string option;
-  std::string path;
-  bool is_directory = false;
-};
+/// An option and the path that it was given.
+using Output = std::pair<std::string, std::string>;
 
-void RequireWritable(const Output& output) {
+void RequireWritable(const std::string& option, const std::string& path) {
   constexpr std::array<std::string_view, 11> kNotWritten = {
       ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
       ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
-  const std::string ending = LowerCase(fs::path(output.path).extension().string());
+  const std::string ending = LowerCase(fs::path(path).extension().string());
   if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
     throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
-                                 output.option, output.path, ending));
+                                 option, path, ending));
   }
   std::error_code ignored;
-  if (output.is_directory) return;
-  if (fs::is_directory(output.path, ignored)) {
-    throw InputError(
-        fmt::format("{}: cannot write '{}': it is a directory", output.option, output.path));
+  if (fs::is_directory(path, ignored)) {
+    throw InputError(fmt::format("{}: cannot write '{}': it is a directory", option, path));
   }
-  const fs::path parent = fs::path(output.path).parent_path();
+  const fs::path parent = fs::path(path).parent_path();
   if (!parent.empty() && !fs::is_directory(parent, ignored)) {
-    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", output.option,
-                                 output.path, parent.string()));
+    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", option, path,
+                                 parent.string()));
   }
 }
 
@@ -99,28 +99,29 @@ std::vector<const CLI::Option*> OptionsOfType(const CLI::App& command, std::stri
 
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
+  std::vector<const CLI::Option*> outputs = OptionsOfType(command, "PATH");
+  const std::vector<const CLI::Option*> directories = OptionsOfType(command, "DIR");
+  outputs.insert(outputs.end(), directories.begin(), directories.end());
   std::vector<Output> checked;
-  for (const char* type : {"PATH", "DIR"}) {
-    for (const CLI::Option* option : OptionsOfType(command, type)) {
-      const Output output{"--" + NameOf(*option), option->results().back(),
-                          type == std::string_view("DIR")};
-      if (output.path.empty()) continue;
-      const bool is_stdout = output.path == "-";
-      if (!is_stdout) RequireWritable(output);
-      if (output.option == "--plot") io::RequirePlotName(output.path);
-      for (const std::string& input : inputs) {
-        if (is_stdout || !IsSameFile(output.path, input)) continue;
-        throw InputError(
-            fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
-                        output.option, output.path, input));
-      }
-      for (const Output& other : checked) {
-        if (!(is_stdout ? other.path == "-" : IsSameFile(other.path, output.path))) continue;
-        throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
-                                     other.option, output.option, output.path));
-      }
-      checked.push_back(output);
+  for (const CLI::Option* each : outputs) {
+    const std::string option = "--" + NameOf(*each);
+    const std::string& path = each->results().back();
+    if (path.empty()) continue;
+    const bool is_stdout = path == "-";
+    if (!is_stdout && each->get_type_name() == "PATH") RequireWritable(option, path);
+    if (option == "--plot") io::RequirePlotName(path);
+    for (const std::string& input : inputs) {
+      if (is_stdout || !IsSameFile(path, input)) continue;
+      throw InputError(
+          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
+                      option, path, input));
     }
+    for (const auto& [other, other_path] : checked) {
+      if (!(is_stdout ? other_path == "-" : IsSameFile(other_path, path))) continue;
+      throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                                   other, option, path));
+    }
+    checked.emplace_back(option, path);
   }
 }
 

@@ -21,12 +21,8 @@ void Say(std::string_view what, const std::vector<std::string>& sentences, Conso
 
 /// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
 /// JSON goes there.
-/// @param answer  as ToJson() and ToText() take it
-template <typename... Answer>
-void WriteAnswer(const std::string& json_path, Console& console, const Answer&... answer) {
-  if (!json_path.empty()) WriteText(ToJson(answer...), json_path, console);
-  if (json_path != "-") console.out << ToText(answer...);
-}
+void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
+                 std::string_view text);
 
 /// Lets a command run, once it refused what could not be written after the work: a run with several
 /// outputs leaves none behind, takes none for another and none for what it reads. An option whose

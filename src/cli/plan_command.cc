@@ -10,14 +10,11 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "core/from_chars.h"
+#include "cli/request_options.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/terms.h"
@@ -60,20 +57,22 @@ struct PlanOptions {
   }
 };
 
-/// The loops that start from one initial state, in the order of their amplitudes.
-struct PlannedLoops {
-  std::string_view initial_state;
-  std::vector<ExpectedFit> loops;
-  std::optional<ExpectedFit> reached;  // at the least amplitude that suffices
-  Protocol fewest;                     // sufficient, with the fewest cycles
+/// Holds what reaches the wanted precision from one initial state.
+struct Reached {
+  std::optional<ExpectedFit> loop;  // at the least amplitude that suffices
+  Protocol fewest;                  // sufficient, with the fewest cycles; amplitude 0: none is
+
+  [[nodiscard]] std::string_view state() const { return report::Name(fewest.initial_state); }
 };
 
 struct Plan {
   Expectation expected;
   Protocol protocol;
   WantedPrecision wanted;
-  double slip = 0.0;  // displacement [m] of λ = 1
-  std::vector<PlannedLoops> columns = {};
+  std::string wanted_text;
+  double slip = 0.0;                    // displacement [m] of λ = 1
+  std::vector<ExpectedFit> loops = {};  // by their initial states and amplitudes
+  std::vector<Reached> reached = {};    // one an initial state, if anything is wanted
   std::vector<std::string> notes = {};
 };
 
@@ -154,17 +153,14 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) {
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::string name = text.substr(0, equals);
-    std::string_view number = std::string_view(text).substr(std::min(equals + 1, text.size()));
-    Precision precision{.is_relative = number.ends_with('%')};
-    if (precision.is_relative) number.remove_suffix(1);
-    const std::optional<double> value = NumberIn<double>(number);
-    if (!value || !(*value > 0) || !std::isfinite(*value)) {
+    const auto precision =
+        ParseShare(std::string_view(text).substr(std::min(equals + 1, text.size())));
+    if (!precision) {
       throw InputError(fmt::format(
           "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
           "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
           text));
     }
-    precision.value = precision.is_relative ? *value / 100 : *value;
     if (identification::FindTerm(name) == nullptr) {
       std::vector<std::string> names;
       for (const auto& term : identification::Terms()) names.emplace_back(term.name);
@@ -173,7 +169,7 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
                       "or a term that --with names",
                       name, DidYouMean(name, names)));
     }
-    if (!wanted.emplace(name, precision).second) {
+    if (!wanted.emplace(name, Precision{*precision, text.ends_with('%')}).second) {
       throw InputError(fmt::format("--want: {} is given twice: give it once", name));
     }
   }
@@ -183,7 +179,8 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 Plan MakePlan(const PlanOptions& options) {
   Plan plan{.expected = options.expected,
             .protocol = options.protocol,
-            .wanted = ParseWanted(options.want)};
+            .wanted = ParseWanted(options.want),
+            .wanted_text = fmt::format("{}", fmt::join(options.want, ", "))};
   SetExpectation(options, plan);
   plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
   const identification::FitOptions fit_options = PlannedFit(options);
@@ -193,18 +190,18 @@ Plan MakePlan(const PlanOptions& options) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
   for (const InitialState state : options.initial_states) {
-    PlannedLoops& column = plan.columns.emplace_back();
-    column.initial_state = report::Name(state);
     Protocol protocol = plan.protocol;
     protocol.initial_state = state;
     for (const double amplitude : amplitudes) {
       protocol.amplitude = amplitude;
-      column.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
+      plan.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
     }
     if (plan.wanted.empty()) continue;
-    column.reached = identification::LeastAmplitude(
+    Reached& reached = plan.reached.emplace_back();
+    reached.loop = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
-        kShares.back() * plan.slip, fit_options, &column.fewest);
+        kShares.back() * plan.slip, fit_options, &reached.fewest);
+    reached.fewest.initial_state = state;
   }
   return plan;
 }
@@ -231,7 +228,7 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
 }
 
 bool IsFitted(const Plan& plan, const ShownError& shown) {
-  const ParameterEstimate* estimate = plan.columns.front().loops.front().Find(shown.parameter);
+  const ParameterEstimate* estimate = plan.loops.front().Find(shown.parameter);
   return estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
 }
 
@@ -240,33 +237,20 @@ bool IsLawDecided(const ExpectedFit& fit) {
 }
 
 Json ErrorRows(const Plan& plan) {
-  Json rows = Json::array();
-  for (const PlannedLoops& column : plan.columns) {
-    for (const ExpectedFit& fit : column.loops) {
-      Json row = {{"start", column.initial_state},
-                  {"X [m]", fit.protocol.amplitude},
-                  {"X/slip", fit.protocol.amplitude / plan.slip}};
-      for (const ShownError& each : kShownErrors) {
-        if (!IsFitted(plan, each)) continue;
-        const std::optional<double> error = ErrorOf(fit, each);
-        row[each.name] = !error             ? "-"
-                         : each.is_exponent ? fmt::format("{:.2g}", *error)
-                                            : fmt::format("{:.2g} %", 100 * *error);
-      }
-      row["law"] = IsLawDecided(fit) ? "decided" : "open";
-      rows.push_back(std::move(row));
+  return report::ListOf(plan.loops, [&](const ExpectedFit& fit) {
+    Json row = {{"start", report::Name(fit.protocol.initial_state)},
+                {"X [m]", fit.protocol.amplitude},
+                {"X/slip", fit.protocol.amplitude / plan.slip}};
+    for (const ShownError& each : kShownErrors) {
+      if (!IsFitted(plan, each)) continue;
+      const std::optional<double> error = ErrorOf(fit, each);
+      row[each.name] = !error             ? "-"
+                       : each.is_exponent ? fmt::format("{:.2g}", *error)
+                                          : fmt::format("{:.2g} %", 100 * *error);
     }
-  }
-  return rows;
-}
-
-std::string WantedInWords(const WantedPrecision& wanted) {
-  std::vector<std::string> parts;
-  for (const auto& [name, precision] : wanted) {
-    parts.push_back(precision.is_relative ? fmt::format("{} to {:g} %", name, 100 * precision.value)
-                                          : fmt::format("{} to {:g}", name, precision.value));
-  }
-  return fmt::format("{}", fmt::join(parts, ", "));
+    row["law"] = IsLawDecided(fit) ? "decided" : "open";
+    return row;
+  });
 }
 
 std::string ToText(const Plan& plan) {
@@ -289,17 +273,17 @@ std::string ToText(const Plan& plan) {
       "m.\n",
       report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
-  text += fmt::format("\nwanted: {}\n", WantedInWords(plan.wanted));
-  for (const PlannedLoops& column : plan.columns) {
-    text += fmt::format("  {}: ", column.initial_state);
-    if (column.reached) {
-      const double amplitude = column.reached->protocol.amplitude;
+  text += fmt::format("\nwanted: {}\n", plan.wanted_text);
+  for (const Reached& reached : plan.reached) {
+    text += fmt::format("  {}: ", reached.state());
+    if (reached.loop) {
+      const double amplitude = reached.loop->protocol.amplitude;
       text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n", amplitude,
                           amplitude / plan.slip);
-    } else if (column.fewest.amplitude > 0) {
+    } else if (reached.fewest.amplitude > 0) {
       text +=
           fmt::format("no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
-                      plan.protocol.cycles, column.fewest.amplitude, column.fewest.cycles);
+                      plan.protocol.cycles, reached.fewest.amplitude, reached.fewest.cycles);
     } else {
       text += "no amplitude determines it\n";
     }
@@ -308,77 +292,69 @@ std::string ToText(const Plan& plan) {
 }
 
 Json LoopsJson(const Plan& plan) {
-  Json loops = Json::array();
-  for (const PlannedLoops& column : plan.columns) {
-    for (const ExpectedFit& fit : column.loops) {
-      Json entry = {{"initial_state", column.initial_state},
-                    {"amplitude", fit.protocol.amplitude},
-                    {"peak_force", fit.peak_force}};
-      for (const ParameterEstimate& estimate : fit.parameters) {
-        entry["parameters"][estimate.name] = {
-            {"value", estimate.value},
-            {"unit", estimate.unit},
-            {"standard_error", NumberOrNull(estimate.standard_error)}};
-      }
-      entry["law_evidence"] = fit.law_evidence;
-      entry["law_decided"] = IsLawDecided(fit);
-      loops.push_back(std::move(entry));
+  return report::ListOf(plan.loops, [](const ExpectedFit& fit) {
+    Json entry = {{"initial_state", report::Name(fit.protocol.initial_state)},
+                  {"amplitude", fit.protocol.amplitude},
+                  {"peak_force", fit.peak_force}};
+    for (const ParameterEstimate& estimate : fit.parameters) {
+      entry["parameters"][estimate.name] = {
+          {"value", estimate.value},
+          {"unit", estimate.unit},
+          {"standard_error", NumberOrNull(estimate.standard_error)}};
     }
-  }
-  return loops;
+    entry["law_evidence"] = fit.law_evidence;
+    entry["law_decided"] = IsLawDecided(fit);
+    return entry;
+  });
 }
 
 std::string ToJson(const Plan& plan) {
   const Expectation& expected = plan.expected;
-  Json json = {
-      {"schema", "mindahl.plan/1"},
-      {"version", Version()},
-      {"expected",
-       {{"sigma", expected.law.tangential_stiffness},
-        {"alpha", expected.law.shape_exponent},
-        {"slip_force", expected.law.slip_force},
-        {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
-        {"force_noise", expected.force_noise},
-        {"displacement_noise", expected.displacement_noise},
-        {"gross_slip_displacement", plan.slip}}},
-      {"protocol",
-       {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
-      {"loops", LoopsJson(plan)},
-      {"wanted", Json::object()},
-      {"reached", Json::array()},
-      {"notes", plan.notes}};
+  Json wanted = Json::object();
   for (const auto& [name, precision] : plan.wanted) {
-    json["wanted"][name] = {{"standard_error", precision.value},
-                            {"relative", precision.is_relative}};
+    wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
   }
-  for (const PlannedLoops& column : plan.columns) {
-    if (plan.wanted.empty()) break;
-    const bool any = column.fewest.amplitude > 0;
-    json["reached"].push_back(
-        {{"initial_state", column.initial_state},
-         {"least_amplitude", column.reached ? Json(column.reached->protocol.amplitude) : nullptr},
-         {"fewest_cycles", any ? Json(column.fewest.cycles) : nullptr},
-         {"amplitude_of_fewest_cycles", any ? Json(column.fewest.amplitude) : nullptr}});
-  }
-  return report::Dump(json);
+  Json reached = report::ListOf(plan.reached, [](const Reached& each) -> Json {
+    const bool any = each.fewest.amplitude > 0;
+    return {{"initial_state", each.state()},
+            {"least_amplitude", each.loop ? Json(each.loop->protocol.amplitude) : nullptr},
+            {"fewest_cycles", any ? Json(each.fewest.cycles) : nullptr},
+            {"amplitude_of_fewest_cycles", any ? Json(each.fewest.amplitude) : nullptr}};
+  });
+  return report::Document(
+      "mindahl.plan/1",
+      {{"expected",
+        {{"sigma", expected.law.tangential_stiffness},
+         {"alpha", expected.law.shape_exponent},
+         {"slip_force", expected.law.slip_force},
+         {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
+         {"force_noise", expected.force_noise},
+         {"displacement_noise", expected.displacement_noise},
+         {"gross_slip_displacement", plan.slip}}},
+       {"protocol",
+        {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
+       {"loops", LoopsJson(plan)},
+       {"wanted", std::move(wanted)},
+       {"reached", std::move(reached)},
+       {"notes", plan.notes}});
 }
 
 /// Draws the expected errors against the amplitude, one panel per initial state.
-io::Plot ToPlot(const Plan& plan) {
+io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give"};
-  for (const PlannedLoops& column : plan.columns) {
+  for (const InitialState state : options.initial_states) {
     io::PlotPanel panel{.x_label = "amplitude X over the displacement at slip [-]",
                         .y_label = "standard error [-]",
                         .log_x = true,
                         .log_y = true,
-                        .title = std::string(column.initial_state)};
+                        .title = std::string(report::Name(state))};
     for (const ShownError& each : kShownErrors) {
       io::PlotSeries series{
           .label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
           .style = io::PlotStyle::kLineAndPoints};
-      for (const ExpectedFit& fit : column.loops) {
+      for (const ExpectedFit& fit : plan.loops) {
         const std::optional<double> error = ErrorOf(fit, each);
-        if (!error || *error <= 0) continue;
+        if (fit.protocol.initial_state != state || !error || *error <= 0) continue;
         series.x.push_back(fit.protocol.amplitude / plan.slip);
         series.y.push_back(*error);
       }
@@ -394,11 +370,11 @@ io::Plot ToPlot(const Plan& plan) {
 
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
-  if (!options.plot.empty()) io::WritePlot(ToPlot(plan), options.plot);
-  WriteAnswer(options.json, console, plan);
+  if (!options.plot.empty()) io::WritePlot(ToPlot(options, plan), options.plot);
+  WriteAnswer(options.json, console, ToJson(plan), ToText(plan));
   const bool is_reached =
-      plan.wanted.empty() || std::ranges::any_of(plan.columns, [](const PlannedLoops& column) {
-        return column.reached.has_value();
+      plan.wanted.empty() || std::ranges::any_of(plan.reached, [](const Reached& reached) {
+        return reached.loop.has_value();
       });
   if (!is_reached) console.exit_status = kNotEstablished;
 }
@@ -425,23 +401,18 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   for (const char* name : {"--displacement", "--force", "--time", "--normal-load-column"}) {
     command.get_option(name)->needs(record);
   }
-  expected
-      .Add("--rig-stiffness", options->rig_stiffness,
-           "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
-           "unless --with fits it",
-           "K")
-      ->transform(InUnit("N/m"));
-  expected
-      .Add("--force-noise", options->force_noise, "standard deviation of the force noise [N]", "S")
-      ->transform(InUnit("N"));
-  expected
-      .Add("--displacement-noise", options->expected.displacement_noise,
-           "standard deviation of the displacement noise [m], white; default 0", "S")
-      ->transform(InUnit("m"));
+  expected.AddQuantity("--rig-stiffness", options->rig_stiffness,
+                       "stiffness of the rig in series [N/m], of the fit of --record too;\nknown "
+                       "unless --with fits it",
+                       "K", "N/m");
+  expected.AddQuantity("--force-noise", options->force_noise,
+                       "standard deviation of the force noise [N]", "S", "N");
+  expected.AddQuantity("--displacement-noise", options->expected.displacement_noise,
+                       "standard deviation of the displacement noise [m], white; default 0", "S",
+                       "m");
   const OptionGroup loop(command, "The loop");
-  loop.Add("--amplitude", options->amplitudes,
-           "amplitude X [m], repeatable; default 13 around the onset of slip", "X")
-      ->transform(InUnit("m"));
+  loop.AddQuantity("--amplitude", options->amplitudes,
+                   "amplitude X [m], repeatable; default 13 around the onset of slip", "X", "m");
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
   loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
       ->check(WholeNumber(4, 1'000'000));

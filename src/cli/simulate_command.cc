@@ -10,14 +10,14 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
@@ -86,15 +86,13 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
 
 Approximation ResolveMethod(const SimulateOptions& options) {
   const methods::Method& method = *methods::FindMethod(options.method);
-  if (options.steps && method.steps.empty()) {
-    throw InputError(fmt::format(
-        "--steps {} has no effect with --method {}, which takes no steps: choose another method",
-        *options.steps, method.name));
-  }
-  if (options.tolerance && !method.adaptive) {
+  for (const auto& [is_without_effect, option, other] :
+       {std::tuple(options.steps && method.steps.empty(), "--steps", "iwan"),
+        {options.tolerance && !method.adaptive, "--tolerance", "dopri5"}}) {
+    if (!is_without_effect) continue;
     throw InputError(
-        fmt::format("--tolerance {} has no effect with --method {}: it belongs to --method dopri5",
-                    *options.tolerance, method.name));
+        fmt::format("{} has no effect with --method {}: choose another method, as --method {}",
+                    option, method.name, other));
   }
   const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
   if (is_limit && method.name != "exact") {
@@ -158,17 +156,8 @@ void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
   group.AddShown("--growth", request.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
-  CLI::Option* const path =
-      group.Add("--path", request.path,
-                "CSV file with a displacement, any sequence; one output row for\n"
-                "each, time counting rows",
-                "FILE");
-  group
-      .Add("--displacement", request.displacement,
-           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
-           "none; default by its name, else the first",
-           "COL")
-      ->needs(path);
+  CLI::Option* const path = AddPath(group, request.path, request.displacement,
+                                    "; one output row for\neach, time counting rows");
   for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
                            "--samples-per-cycle", "--frequency", "--growth"}) {
     path->excludes(command.get_option(name));

@@ -20,10 +20,9 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
-#include "cli/fit_request.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
@@ -32,7 +31,6 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/interruption.h"
-#include "mindahl/core/version.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
@@ -88,11 +86,13 @@ struct TrackedTest {
     for (const std::string& flag : fit.flags) ++flags[flag];
     courses.Add(fit);
   }
-  /// False where no fit converged.
-  [[nodiscard]] bool established() const {
-    const auto failed = flags.find("not_converged");
-    return failed == flags.end() || failed->second != fits;
+  /// Returns the number of fits with a flag.
+  [[nodiscard]] std::size_t CountOf(std::string_view flag) const {
+    const auto found = flags.find(flag);
+    return found == flags.end() ? 0 : found->second;
   }
+  /// False where no fit converged.
+  [[nodiscard]] bool established() const { return fits == 0 || CountOf("not_converged") < fits; }
 };
 
 // --- the answer
@@ -101,21 +101,19 @@ Json QuantityRows(const TrackedTest& test) {
   Json quantities = Json::object();
   for (const Evolution& evolution : test.evolutions) {
     const campaign::CourseDescription& course = evolution.description;
-    Json steps = Json::array();
-    for (const campaign::Step& step : course.steps) {
-      steps.push_back({{"cycle", step.cycle},
-                       {"before", step.before},
-                       {"after", step.after},
-                       {"p_value", step.p_value}});
-    }
-    Json trends = Json::array();
-    for (const campaign::Trend& trend : course.trends) {
-      trends.push_back({{"first_cycle", trend.first_cycle},
-                        {"last_cycle", trend.last_cycle},
-                        {"from", trend.from},
-                        {"to", trend.to},
-                        {"p_value", trend.p_value}});
-    }
+    Json steps = report::ListOf(course.steps, [](const campaign::Step& step) -> Json {
+      return {{"cycle", step.cycle},
+              {"before", step.before},
+              {"after", step.after},
+              {"p_value", step.p_value}};
+    });
+    Json trends = report::ListOf(course.trends, [](const campaign::Trend& trend) -> Json {
+      return {{"first_cycle", trend.first_cycle},
+              {"last_cycle", trend.last_cycle},
+              {"from", trend.from},
+              {"to", trend.to},
+              {"p_value", trend.p_value}};
+    });
     quantities[std::string(evolution.quantity->name)] = {
         {"first", course.first},
         {"last", course.last},
@@ -127,46 +125,43 @@ Json QuantityRows(const TrackedTest& test) {
   return quantities;
 }
 
+std::string ToJson(const TrackedTest& test, const Json& quantities) {
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    flags[flag.name] = test.CountOf(flag.name);
+  }
+  const campaign::EnergyCounts& counts = test.energy.counts();
+  return report::Document(
+      "mindahl.track/1", {{"input",
+                           {{"files", test.files},
+                            {"samples", test.samples},
+                            {"cycles", test.cycles},
+                            {"unused_samples", test.unused_samples},
+                            {"broken_rows", test.broken_rows}}},
+                          {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
+                          {"output", test.output},
+                          {"fits", test.fits},
+                          {"flagged", test.flagged},
+                          {"flags", std::move(flags)},
+                          {"accumulated_energy", test.energy.total()},
+                          {"energy_counts",
+                           {{"measured", counts.measured},
+                            {"replaced", counts.replaced},
+                            {"left_out", counts.left_out}}},
+                          {"headline", campaign::Headline(test.evolutions)},
+                          {"changes", campaign::ChangeStatements(test.evolutions)},
+                          {"quantities", quantities},
+                          {"notes", test.notes}});
+}
+
 /// Returns the flags that a cycle has, with what they say.
 Json FlagRows(const TrackedTest& test) {
   Json rows = Json::object();
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(flag.name);
-    if (found == test.flags.end()) continue;
-    rows[flag.name] = {{"cycles", found->second}, {"what it says", flag.meaning}};
+    const std::size_t cycles = test.CountOf(flag.name);
+    if (cycles > 0) rows[flag.name] = {{"cycles", cycles}, {"what it says", flag.meaning}};
   }
   return rows;
-}
-
-std::string ToJson(const TrackedTest& test) {
-  Json flags = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(flag.name);
-    flags[flag.name] = found == test.flags.end() ? 0 : found->second;
-  }
-  const campaign::EnergyCounts& counts = test.energy.counts();
-  return report::Dump({{"schema", "mindahl.track/1"},
-                       {"version", Version()},
-                       {"input",
-                        {{"files", test.files},
-                         {"samples", test.samples},
-                         {"cycles", test.cycles},
-                         {"unused_samples", test.unused_samples},
-                         {"broken_rows", test.broken_rows}}},
-                       {"reversals", {{"gate", test.gate.gate}, {"certain", test.gate.certain}}},
-                       {"output", test.output},
-                       {"fits", test.fits},
-                       {"flagged", test.flagged},
-                       {"flags", std::move(flags)},
-                       {"accumulated_energy", test.energy.total()},
-                       {"energy_counts",
-                        {{"measured", counts.measured},
-                         {"replaced", counts.replaced},
-                         {"left_out", counts.left_out}}},
-                       {"headline", campaign::Headline(test.evolutions)},
-                       {"changes", campaign::ChangeStatements(test.evolutions)},
-                       {"quantities", QuantityRows(test)},
-                       {"notes", test.notes}});
 }
 
 /// Returns what was read, fitted and dissipated, one sentence each.
@@ -174,8 +169,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
       fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
                   test.output),
-      fmt::format("{} dissipated in all{}", report::Quantity(test.energy.total(), "J", 6),
-                  campaign::InWords(test.energy.counts()))};
+      report::Quantity(test.energy.total(), "J", 6) + " dissipated in all"};
   if (test.resumed > 0) facts.push_back(fmt::format("{} fits existed already", test.resumed));
   if (test.unused_samples > 0) {
     facts.push_back(
@@ -185,17 +179,15 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   return facts;
 }
 
-std::string ToText(const TrackedTest& test) {
+std::string ToText(const TrackedTest& test, const Json& quantities) {
   std::string text = campaign::Headline(test.evolutions) + '\n' +
                      fmt::format("{}\n", fmt::join(Facts(test), "\n"));
   if (test.flagged > 0) {
-    text +=
-        fmt::format("\n{} a flag:\n{}",
-                    test.flagged == 1 ? "1 cycle has" : fmt::format("{} cycles have", test.flagged),
-                    report::TableText(FlagRows(test)));
+    text += fmt::format("\ncycles with a flag: {}\n{}", test.flagged,
+                        report::TableText(FlagRows(test)));
   }
   if (test.evolutions.empty()) return text;
-  text += '\n' + report::TableText(QuantityRows(test));
+  text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
   if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
@@ -374,27 +366,19 @@ class TrackRun {
   }
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
-    fit_ = MakeCycleFitOptions(options_.fit);
     const contact::KnownContact& known = options_.fit.contact.known;
-    if (known.normal_load) fit_.normal_loads = {known.normal_load->value};
-    const bool is_gate_given = fit_.preparation.reversal_gate.has_value();
-    test_.gate = campaign::ChooseGate(head, fit_);
-    const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, fit_);
-    if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
-    const loop::ReversalGate& gate = test_.gate;
-    if (!is_gate_given && gate.gate > 0) {
-      test_.notes.push_back(fmt::format(
-          "excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
-          "says another",
-          gate.gate, head.size()));
-    }
     campaign::TrackOptions options{
-        .fit = fit_,
+        .fit = MakeCycleFitOptions(options_.fit),
         .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
         .together = options_.average,
         .every = options_.every,
         .threads = options_.threads};
+    if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
+    test_.gate = campaign::ChooseGate(head, options.fit);
+    const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
+    if (!chosen_terms.empty()) test_.notes.push_back(chosen_terms);
     Resume(options);
+    const loop::ReversalGate& gate = test_.gate;
     if (!gate.certain) {
       test_.notes.push_back(fmt::format(
           "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
@@ -502,7 +486,6 @@ class TrackRun {
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   TrackedTest test_;
-  identification::FitOptions fit_;
   io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
@@ -521,7 +504,8 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
         options.report_path,
         ToPage(test, ProvenanceOf(command, console.command_line, InputsOf(command))));
   }
-  WriteAnswer(options.json_path, console, test);
+  const Json quantities = QuantityRows(test);
+  WriteAnswer(options.json_path, console, ToJson(test, quantities), ToText(test, quantities));
 }
 
 }  // namespace

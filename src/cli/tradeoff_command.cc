@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,12 +9,11 @@
 #include <vector>
 
 #include "cli/app.h"
-#include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "cli/request_options.h"
 #include "core/text.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -33,20 +31,11 @@ using tradeoff::WorkPrecision;
 
 namespace {
 
-/// An excitation as it was measured.
+/// An excitation along which all was measured, with what is said of it.
 struct MeasuredExcitation {
-  std::string name;
   std::string title;
-  std::size_t samples = 0;
-  std::vector<WorkPrecision> points;
-  std::size_t cheapest = 0;              // point whose force is within the tolerance
-  std::size_t cheapest_with_energy = 0;  // and the dissipated energy too
-};
-
-struct Tradeoff {
-  BranchLaw law;
-  double tolerance = 0.01;
-  std::vector<MeasuredExcitation> excitations = {};
+  Json document;
+  std::string text;
 };
 
 struct TradeoffOptions {
@@ -83,47 +72,11 @@ BranchLaw PaperContact() {
                                     .slip_force = contact::GrossSlipForce(0.3, 100)});
 }
 
-std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
-                                              const BranchLaw& law) {
-  std::vector<MeasuredExcitation> measured;
-  const auto measure = [&](std::string_view name, std::string title, const methods::Drive& drive) {
-    measured.push_back({.name = std::string(name),
-                        .title = std::move(title),
-                        .samples = drive.displacement.size(),
-                        .points = tradeoff::MeasureWorkPrecision(law, drive)});
-    MeasuredExcitation& made = measured.back();
-    made.cheapest =
-        tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/false, made.points);
-    made.cheapest_with_energy =
-        tradeoff::CheapestWithin(request.tolerance, /*energy_counts=*/true, made.points);
-  };
-  if (!request.path.empty()) {
-    const std::vector<double> displacement =
-        io::ImposedDisplacement(io::ReadCsvTable(request.path), request.column);
-    measure("path", request.path, {.displacement = displacement});
-    return measured;
-  }
-  for (const Scene& scene : kScenes) {
-    const bool chosen =
-        request.excitations.empty() ||
-        std::ranges::find(request.excitations, scene.name) != request.excitations.end();
-    if (!chosen) continue;
-    const models::Excitation excitation =
-        models::MakeExcitation({.waveform = scene.waveform,
-                                .amplitude = scene.lambda * SlipReach(law),
-                                .cycles = scene.cycles});
-    methods::Drive drive{.displacement = excitation.displacement};
-    if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
-    measure(scene.name, fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive);
-  }
-  return measured;
-}
-
 /// States a choice: "spring, 1.5 ns/sample, 4.7 times as fast as mindlin by exact".
-std::string ChoiceText(const MeasuredExcitation& scene, std::size_t choice) {
-  const WorkPrecision& chosen = scene.points[choice];
-  const auto exact = std::ranges::find_if(scene.points, [&](const WorkPrecision& point) {
-    return point.approximation.model == scene.points.back().approximation.model;
+std::string ChoiceText(const std::vector<WorkPrecision>& points, std::size_t choice) {
+  const WorkPrecision& chosen = points[choice];
+  const auto exact = std::ranges::find_if(points, [&](const WorkPrecision& point) {
+    return point.approximation.model == points.back().approximation.model;
   });
   const std::string text =
       fmt::format("{}, {:.1f} ns/sample", Describe(chosen.approximation), chosen.cost);
@@ -133,9 +86,9 @@ std::string ChoiceText(const MeasuredExcitation& scene, std::size_t choice) {
 }
 
 /// Returns the points as rows of text, CSV and JSON.
-Json PointRows(const MeasuredExcitation& scene) {
+Json PointRows(const std::vector<WorkPrecision>& points) {
   Json rows = Json::array();
-  for (const WorkPrecision& point : scene.points) {
+  for (const WorkPrecision& point : points) {
     const tradeoff::Approximation& approximation = point.approximation;
     const Method* method = methods::FindMethod(approximation.method);
     const bool has_steps = method != nullptr && !method->steps.empty();
@@ -153,63 +106,85 @@ Json PointRows(const MeasuredExcitation& scene) {
   return rows;
 }
 
-Tradeoff MakeTradeoff(const TradeoffOptions& request) {
-  if (!(request.tolerance > 0 && request.tolerance <= 1)) {
-    ThrowInvalid("--tolerance [-]", request.tolerance, "must be in (0, 1]");
+MeasuredExcitation Measure(std::string_view name, const std::string& title,
+                           const methods::Drive& drive, const BranchLaw& law, double tolerance) {
+  const std::vector<WorkPrecision> points = tradeoff::MeasureWorkPrecision(law, drive);
+  const std::size_t cheapest = tradeoff::CheapestWithin(tolerance, /*energy_counts=*/false, points);
+  const std::size_t with_energy =
+      tradeoff::CheapestWithin(tolerance, /*energy_counts=*/true, points);
+  const Json rows = PointRows(points);
+  const std::size_t samples = drive.displacement.size();
+  std::string text = fmt::format("\n{}: {} samples\ncheapest within {:g} % of the peak force: {}\n",
+                                 title, samples, 100 * tolerance, ChoiceText(points, cheapest));
+  if (with_energy != cheapest) {
+    text += fmt::format("and of the dissipated energy: {}\n", ChoiceText(points, with_energy));
   }
-  const bool is_contact_given = IsAnythingGiven(request.law) || request.law.alpha;
-  Tradeoff study{.law = is_contact_given ? ResolveLaw(request.law) : PaperContact(),
-                 .tolerance = request.tolerance};
-  study.excitations = MeasureScenes(request, study.law);
-  return study;
+  return {.title = title,
+          .document = {{"name", name},
+                       {"samples", samples},
+                       {"cheapest", rows[cheapest]},
+                       {"cheapest_with_energy", rows[with_energy]},
+                       {"points", rows}},
+          .text = text + report::TableText(rows, 3)};
 }
 
-std::string ToText(const Tradeoff& study) {
-  std::string text =
-      fmt::format("sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N\n", study.law.tangential_stiffness,
-                  study.law.shape_exponent, study.law.slip_force);
-  for (const MeasuredExcitation& scene : study.excitations) {
-    text +=
-        fmt::format("\n{}: {} samples\ncheapest within {:g} % of the peak force: {}\n", scene.title,
-                    scene.samples, 100 * study.tolerance, ChoiceText(scene, scene.cheapest));
-    if (scene.cheapest_with_energy != scene.cheapest) {
-      text += fmt::format("and of the dissipated energy: {}\n",
-                          ChoiceText(scene, scene.cheapest_with_energy));
-    }
-    text += report::TableText(PointRows(scene), 3);
+std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
+                                              const BranchLaw& law) {
+  std::vector<MeasuredExcitation> measured;
+  if (!request.path.empty()) {
+    const std::vector<double> displacement =
+        io::ImposedDisplacement(io::ReadCsvTable(request.path), request.column);
+    measured.push_back(
+        Measure("path", request.path, {.displacement = displacement}, law, request.tolerance));
+    return measured;
   }
-  return text;
+  for (const Scene& scene : kScenes) {
+    const bool chosen =
+        request.excitations.empty() ||
+        std::ranges::find(request.excitations, scene.name) != request.excitations.end();
+    if (!chosen) continue;
+    const models::Excitation excitation =
+        models::MakeExcitation({.waveform = scene.waveform,
+                                .amplitude = scene.lambda * SlipReach(law),
+                                .cycles = scene.cycles});
+    methods::Drive drive{.displacement = excitation.displacement};
+    if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
+    measured.push_back(Measure(scene.name,
+                               fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive,
+                               law, request.tolerance));
+  }
+  return measured;
 }
 
 /// Returns every point as CSV.
-std::string PointsCsv(const Tradeoff& study) {
+std::string PointsCsv(const std::vector<MeasuredExcitation>& scenes) {
   Json rows = Json::array();
-  for (const MeasuredExcitation& scene : study.excitations) {
-    for (const Json& point : PointRows(scene)) {
-      rows.push_back({{"excitation", scene.name}});
+  for (const MeasuredExcitation& scene : scenes) {
+    for (const Json& point : scene.document["points"]) {
+      rows.push_back({{"excitation", scene.document["name"]}});
       rows.back().update(point);
     }
   }
   return report::TableCsv(rows);
 }
 
-io::Plot ToPlot(const Tradeoff& study) {
-  const std::vector<MeasuredExcitation>& scenes = study.excitations;
+io::Plot ToPlot(const std::vector<MeasuredExcitation>& scenes) {
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
   io::Plot plot{.title = "Work and precision: largest force error against cost"};
   plot.height = 60 + 460 * static_cast<int>(scenes.size());
   for (const MeasuredExcitation& scene : scenes) {
-    io::PlotPanel panel{.x_label = "cost [ns/sample]", .y_label = "largest error of T over T*"};
-    panel.log_x = true;
-    panel.log_y = true;
-    panel.title = scene.title;
+    io::PlotPanel panel{.x_label = "cost [ns/sample]",
+                        .y_label = "largest error of T over T*",
+                        .log_x = true,
+                        .log_y = true,
+                        .title = scene.title};
     // One legend serves all panels: their curves are the same.
     const bool has_legend = &scene == &scenes.front();
     std::vector<std::string> labels;
-    for (const WorkPrecision& point : scene.points) {
-      const tradeoff::Approximation& approximation = point.approximation;
-      const bool other_model = approximation.model != scene.points.back().approximation.model;
-      const std::string& label = other_model ? approximation.model : approximation.method;
+    const Json& points = scene.document["points"];
+    for (const Json& point : points) {
+      const bool other_model = point["model"] != points.back()["model"];
+      const std::string label = point[other_model ? "model" : "method"];
       auto place = static_cast<std::size_t>(std::ranges::find(labels, label) - labels.begin());
       if (place == labels.size()) {
         labels.push_back(label);
@@ -217,41 +192,40 @@ io::Plot ToPlot(const Tradeoff& study) {
             {.label = has_legend ? label : "",
              .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints});
       }
-      panel.series[place].x.push_back(point.cost);
-      panel.series[place].y.push_back(std::max(point.precision.max_force, kRounding));
+      panel.series[place].x.push_back(point["cost_ns_per_sample"]);
+      panel.series[place].y.push_back(std::max(point["max_force_error"].get<double>(), kRounding));
     }
     plot.panels.push_back(std::move(panel));
   }
   return plot;
 }
 
-std::string ToJson(const Tradeoff& study) {
-  Json scenes = Json::array();
-  for (const MeasuredExcitation& scene : study.excitations) {
-    const Json points = PointRows(scene);
-    scenes.push_back({{"name", scene.name},
-                      {"samples", scene.samples},
-                      {"cheapest", points[scene.cheapest]},
-                      {"cheapest_with_energy", points[scene.cheapest_with_energy]},
-                      {"points", points}});
-  }
-  return report::Dump({{"schema", "mindahl.tradeoff/1"},
-                       {"version", Version()},
-                       {"law",
-                        {{"sigma", study.law.tangential_stiffness},
-                         {"alpha", study.law.shape_exponent},
-                         {"slip_force", study.law.slip_force}}},
-                       {"tolerance", study.tolerance},
-                       {"excitations", std::move(scenes)}});
-}
-
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
-  const Tradeoff study = MakeTradeoff(options);
+  if (!(options.tolerance > 0 && options.tolerance <= 1)) {
+    ThrowInvalid("--tolerance [-]", options.tolerance, "must be in (0, 1]");
+  }
+  const bool is_contact_given = IsAnythingGiven(options.law) || options.law.alpha;
+  const BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
+  const std::vector<MeasuredExcitation> measured = MeasureScenes(options, law);
   Say("tradeoff: warning", DoubtsAbout(options.law.contact), console);
   // The plot first: it alone may still fail.
-  if (!options.plot.empty()) io::WritePlot(ToPlot(study), options.plot);
-  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(study));
-  WriteAnswer(options.json, console, study);
+  if (!options.plot.empty()) io::WritePlot(ToPlot(measured), options.plot);
+  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(measured));
+  std::string text = fmt::format("sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N\n",
+                                 law.tangential_stiffness, law.shape_exponent, law.slip_force);
+  Json scenes = Json::array();
+  for (const MeasuredExcitation& scene : measured) {
+    text += scene.text;
+    scenes.push_back(scene.document);
+  }
+  WriteAnswer(options.json, console,
+              report::Document("mindahl.tradeoff/1", {{"law",
+                                                       {{"sigma", law.tangential_stiffness},
+                                                        {"alpha", law.shape_exponent},
+                                                        {"slip_force", law.slip_force}}},
+                                                      {"tolerance", options.tolerance},
+                                                      {"excitations", std::move(scenes)}}),
+              text);
 }
 
 }  // namespace
@@ -275,15 +249,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                "default all")
           ->check(OneOf(NamesOf(kScenes, &Scene::name)));
-  CLI::Option* const path =
-      group.Add("--path", options->path, "CSV file with a displacement, any sequence", "FILE")
-          ->excludes(scenes);
-  group
-      .Add("--displacement", options->column,
-           "its column, by header name or number, with its unit, \"[um]\", if the\nheader has "
-           "none; default by its name, else the first",
-           "COL")
-      ->needs(path);
+  AddPath(group, options->path, options->column, "")->excludes(scenes);
   AddTolerance(OptionGroup(command, kPlainGroup), options->tolerance,
                "largest error allowed, of the peak force and of the energy: 0.01 or\n1%");
   const OptionGroup output(command, "Output");

@@ -9,7 +9,6 @@
 #include "cli/app.h"
 #include "cli/options.h"
 #include "cli/output.h"
-#include "mindahl/core/version.h"
 #include "mindahl/identification/mapping_validation.h"
 #include "report/table.h"
 
@@ -24,7 +23,6 @@ namespace {
 struct Validation {
   identification::ValidationOptions options;
   std::string json_path;
-  ValidationReport report = {};
 };
 
 Json ErrorsJson(const ValidationRow& row, std::size_t parameter) {
@@ -57,46 +55,31 @@ Json CoverageRows(const ValidationReport& report) {
   const auto fraction = [](const identification::IntervalCount& count) {
     return count.intervals == 0 ? Json() : Json(count.fraction());
   };
-  Json json = Json::array();
-  for (const identification::CoverageVerdict& verdict : report.coverage) {
-    json.push_back({{"law", verdict.by_dahl ? "dahl" : "masing"},
-                    {"parameter", verdict.parameter},
-                    {"intervals", verdict.all.intervals},
-                    {"coverage", fraction(verdict.all)},
-                    {"sliding_intervals", verdict.sliding.intervals},
-                    {"sliding_coverage", fraction(verdict.sliding)},
-                    {"p_value", verdict.chance},
-                    {"passed", verdict.passed}});
-  }
-  return json;
+  return report::ListOf(report.coverage,
+                        [&](const identification::CoverageVerdict& verdict) -> Json {
+                          return {{"law", verdict.by_dahl ? "dahl" : "masing"},
+                                  {"parameter", verdict.parameter},
+                                  {"intervals", verdict.all.intervals},
+                                  {"coverage", fraction(verdict.all)},
+                                  {"sliding_intervals", verdict.sliding.intervals},
+                                  {"sliding_coverage", fraction(verdict.sliding)},
+                                  {"p_value", verdict.chance},
+                                  {"passed", verdict.passed}};
+                        });
 }
 
-std::string ToJson(const Validation& validation) {
-  const ValidationReport& report = validation.report;
-  return report::Dump({{"schema", "mindahl.validate/1"},
-                       {"version", Version()},
-                       {"cases", validation.options.cases},
-                       {"seed", validation.options.seed},
-                       {"fits", report.fits},
-                       {"failures", report.failures},
-                       {"passed", report.passed()},
-                       {"rows", ValidationRows(report.rows)},
-                       {"dahl_rows", ValidationRows(report.dahl_rows)},
-                       {"coverage", CoverageRows(report)},
-                       {"failed_cases", report.failed_cases},
-                       {"failed_coverages", report.failed_coverages}});
-}
-
-std::string ToText(const Validation& validation) {
-  const ValidationReport& report = validation.report;
+void RunValidate(const Validation& validation, Console& console) {
+  const ValidationReport report = identification::ValidateMapping(validation.options);
+  const Json rows = ValidationRows(report.rows);
+  const Json dahl_rows = ValidationRows(report.dahl_rows);
+  const Json coverage = CoverageRows(report);
   std::string text = fmt::format(
       "Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits; errors of\n"
       "sigma/(8a/G*), alpha - 1/3 and Tc/(mu N)\n\nby Masing's law:\n{}\n"
       "from their first extreme on by Dahl's own law, and translated:\n{}\n"
       "coverage of the 95 % intervals:\n{}\n",
-      validation.options.cases, validation.options.seed, report.fits,
-      report::TableText(ValidationRows(report.rows)),
-      report::TableText(ValidationRows(report.dahl_rows)), report::TableText(CoverageRows(report)));
+      validation.options.cases, validation.options.seed, report.fits, report::TableText(rows),
+      report::TableText(dahl_rows), report::TableText(coverage));
   if (report.failures > 0) {
     text += fmt::format("FAILED: {} of {} fits\n", report.failures, report.fits);
   }
@@ -104,13 +87,19 @@ std::string ToText(const Validation& validation) {
     text += fmt::format("FAILED: {} of the coverages\n", report.failed_coverages.size());
   }
   if (report.passed()) text += "passed: every case within its tolerance\n";
-  return text;
-}
-
-void RunValidate(Validation& validation, Console& console) {
-  validation.report = identification::ValidateMapping(validation.options);
-  const ValidationReport& report = validation.report;
-  WriteAnswer(validation.json_path, console, validation);
+  WriteAnswer(
+      validation.json_path, console,
+      report::Document("mindahl.validate/1", {{"cases", validation.options.cases},
+                                              {"seed", validation.options.seed},
+                                              {"fits", report.fits},
+                                              {"failures", report.failures},
+                                              {"passed", report.passed()},
+                                              {"rows", rows},
+                                              {"dahl_rows", dahl_rows},
+                                              {"coverage", coverage},
+                                              {"failed_cases", report.failed_cases},
+                                              {"failed_coverages", report.failed_coverages}}),
+      text);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';
   console.exit_status = report.passed() ? kDone : kNotEstablished;

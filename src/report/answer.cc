@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -26,16 +24,14 @@ using identification::RecordFit;
 namespace {
 
 /// Returns "a 0.251 mm (0.250 … 0.252)"; empty where it does not follow.
-std::string QuantityText(const Report& report, std::string_view name) {
-  const ContactQuantity* quantity = report.Find(name);
-  if (quantity == nullptr) return "";
-  if (!quantity->value) {
-    if (!quantity->lower) return "";
-    return fmt::format("{} > {}", quantity->symbol, Quantity(*quantity->lower, quantity->unit, 3));
+std::string QuantityText(const ContactQuantity& quantity) {
+  if (quantity.value) {
+    return fmt::format(
+        "{} {}", quantity.symbol,
+        QuantityWithInterval(*quantity.value, quantity.lower, quantity.upper, quantity.unit));
   }
-  return fmt::format(
-      "{} {}", quantity->symbol,
-      QuantityWithInterval(*quantity->value, quantity->lower, quantity->upper, quantity->unit));
+  if (!quantity.lower) return "";
+  return fmt::format("{} > {}", quantity.symbol, Quantity(*quantity.lower, quantity.unit, 3));
 }
 
 bool IsInadequate(const Report& report) {
@@ -76,7 +72,7 @@ class Writer {
     AddColumns();
     AddReading();
     AddFriction();
-    AddStiffness();
+    AddParameter("stiffness", "σ", *fit_.Find("sigma"), "");
     AddShape();
     AddLoad();
     AddTerms();
@@ -85,7 +81,10 @@ class Writer {
     Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
     AddMeasured();
     AddLeftOut();
-    if (report_.next) AddNext();
+    if (report_.next) {
+      Add("next",
+          fmt::format("{}: {}", report_.next->options, NextStatement(report_, *report_.next)));
+    }
     AddRest();
     return std::move(lines_);
   }
@@ -110,20 +109,32 @@ class Writer {
     return "";
   }
 
-  /// Says a parameter with what follows from it, or why it has no value.
-  void AddParameter(std::string label, std::string_view symbol, const ParameterEstimate& estimate,
-                    std::vector<std::string> before, std::vector<std::string> after) {
+  /// Returns a parameter, with why it has no value where that is so.
+  std::string TextOf(std::string_view symbol, const ParameterEstimate& estimate) {
     const Shown shown = WhatIsShown(estimate);
+    const bool has_value = shown == Shown::kValue || shown == Shown::kHeld;
+    const std::string why = has_value ? "" : WhyNot(estimate.name);
+    return ParameterText(symbol, estimate) + (why.empty() ? "" : ": " + why);
+  }
+
+  /// Says a parameter with the quantities that follow from it: μ before it, the others behind.
+  /// @param remark  said right after it; "" for none
+  void AddParameter(std::string label, std::string_view symbol, const ParameterEstimate& estimate,
+                    const std::string& remark) {
     if (IsMoot(report_, estimate)) return;
-    std::string text = ParameterText(symbol, estimate);
-    if (shown != Shown::kValue && shown != Shown::kHeld) {
-      if (const std::string why = WhyNot(estimate.name); !why.empty()) text += ": " + why;
+    std::vector<std::string> parts = {TextOf(symbol, estimate), remark};
+    for (const ContactQuantity& quantity : report_.contact) {
+      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
+      const bool is_said =
+          quantity.parameter != estimate.name ||
+          (quantity.name == "compliance" && report_.ValueOf("contact_radius")) ||
+          (quantity.name == "equivalent_radius" && report_.ValueOf("sigma_over_hertz_mindlin"));
+      if (is_said) continue;
+      const bool is_first = quantity.name == "friction_coefficient";
+      parts.insert(is_first ? parts.begin() : parts.end(), QuantityText(quantity));
     }
-    std::erase(before, "");
-    std::erase(after, "");
-    before.push_back(std::move(text));
-    before.insert(before.end(), after.begin(), after.end());
-    Add(std::move(label), fmt::format("{}", fmt::join(before, ", ")), JudgementOf(estimate));
+    std::erase(parts, "");
+    Add(std::move(label), fmt::format("{}", fmt::join(parts, ", ")), JudgementOf(estimate));
   }
 
   void AddColumns() {
@@ -162,71 +173,46 @@ class Writer {
   }
 
   void AddFriction() {
-    const ParameterEstimate* slip_force = fit_.Find("slip_force");
-    std::vector<std::string> after = {QuantityText(report_, "slip_force_positive"),
-                                      QuantityText(report_, "slip_force_negative")};
+    const ParameterEstimate& slip_force = *fit_.Find("slip_force");
     const ContactQuantity* load = report_.Find("normal_load");
-    const std::string friction = QuantityText(report_, "friction_coefficient");
-    if (!friction.empty() && load != nullptr && load->value) {
-      after.push_back(fmt::format("at N = {}", Quantity(*load->value, "N", 4)));
-    } else if (load != nullptr && !load->value && slip_force->is_known()) {
-      after.emplace_back("μ needs --normal-load");
+    std::string remark;
+    if (load != nullptr && load->value &&
+        !QuantityText(*report_.Find("friction_coefficient")).empty()) {
+      remark = fmt::format("at N = {}", Quantity(*load->value, "N", 4));
+    } else if (load != nullptr && !load->value && slip_force.is_known()) {
+      remark = "μ needs --normal-load";
     }
-    AddParameter("friction", "Tc", *slip_force, {friction}, std::move(after));
-  }
-
-  void AddStiffness() {
-    const ParameterEstimate* sigma = fit_.Find("sigma");
-    std::vector<std::string> after;
-    for (const char* name :
-         {"contact_radius", "compliance", "sigma_over_hertz_mindlin", "equivalent_radius",
-          "maximum_pressure", "effective_modulus", "youngs_modulus"}) {
-      // G* and ρ are said only where nothing better is: a, and its ratio to Hertz's.
-      const std::string_view key = name;
-      const bool is_said =
-          (key == "compliance" && report_.ValueOf("contact_radius")) ||
-          (key == "equivalent_radius" && report_.ValueOf("sigma_over_hertz_mindlin"));
-      if (is_said) continue;
-      after.push_back(QuantityText(report_, name));
-    }
-    AddParameter("stiffness", "σ", *sigma, {}, std::move(after));
+    AddParameter("friction", "Tc", slip_force, remark);
   }
 
   void AddShape() {
-    const ParameterEstimate* alpha = fit_.Find("alpha");
-    std::vector<std::string> after;
-    const auto& test = report_.alpha;
+    std::string remark;
+    const AlphaTest& test = report_.alpha;
     if (test.is_rejected) {
       const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
-      after.emplace_back(*test.is_rejected ? "Mindlin's 1/3 is rejected"
-                         : by_rig          ? "Mindlin's 1/3 fits in a compliant rig"
-                                           : "Mindlin's 1/3 fits");
+      remark = *test.is_rejected ? "Mindlin's 1/3 is rejected"
+               : by_rig          ? "Mindlin's 1/3 fits in a compliant rig"
+                                 : "Mindlin's 1/3 fits";
     } else if (test.minus_third && !IsInadequate(report_)) {
-      after.emplace_back("Mindlin's 1/3 is not tested");
+      remark = "Mindlin's 1/3 is not tested";
     }
-    after.push_back(QuantityText(report_, "gross_slip_displacement"));
-    AddParameter("shape", "α", *alpha, {}, std::move(after));
+    AddParameter("shape", "α", *fit_.Find("alpha"), remark);
   }
 
   void AddLoad() {
     const ParameterEstimate* exponent = fit_.Find("load_exponent");
     if (exponent == nullptr) return;
-    const std::vector<std::string> fits =
-        report_.is_torsional() ? std::vector<std::string>() : TheoriesOfLoad(fit_);
-    AddParameter("load", "σ ∝ N^p, p", *exponent, {},
-                 {fits.empty() ? "" : fmt::format("as {}", fmt::join(fits, ", ")),
-                  fmt::format("σ and Tc are at the mean of {} loads", fit_.records.size())});
+    const char* const hertz = report_.is_torsional() || !exponent->is_known() ? ""
+                              : DeniesHertz(fit_) ? "Hertz's 1/3 is rejected, "
+                                                  : "Hertz's 1/3 fits, ";
+    AddParameter("load", "σ ∝ N^p, p", *exponent,
+                 fmt::format("{}σ and Tc are at the mean of {} loads", hertz, fit_.records.size()));
   }
 
   void AddTerms() {
     std::vector<std::string> terms;
     for (const ParameterEstimate* term : AddedTerms(report_)) {
-      if (IsMoot(report_, *term)) continue;
-      std::string text = ParameterText(term->name, *term);
-      if (WhatIsShown(*term) == Shown::kNothing) {
-        if (const std::string why = WhyNot(term->name); !why.empty()) text += ": " + why;
-      }
-      terms.push_back(std::move(text));
+      if (!IsMoot(report_, *term)) terms.push_back(TextOf(term->name, *term));
     }
     Add("terms", fmt::format("{}", fmt::join(terms, ", ")));
   }
@@ -322,11 +308,6 @@ class Writer {
     Add("left out", fmt::format("{}", fmt::join(parts, ", ")));
   }
 
-  void AddNext() {
-    Add("next",
-        fmt::format("{}: {}", report_.next->options, NextStatement(report_, *report_.next)));
-  }
-
   /// Says what else a person should act on: of the record, where the model is inadequate.
   void AddRest() {
     for (const Finding& finding : fit_.findings) {
@@ -335,11 +316,7 @@ class Writer {
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
       const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
-      std::string text = Sentence(finding, fit_, report_.units);
-      if (!finding.parameters.empty()) {
-        text = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), text);
-      }
-      Add("note", std::move(text), Judgement::kPoor);
+      Add("note", WarningText(finding, report_), Judgement::kPoor);
     }
     for (const Warning& warning : report_.warnings) {
       if (warning.code == "contact_implausible") Add("note", warning.message, Judgement::kPoor);
@@ -409,10 +386,8 @@ std::vector<Line> DetailLines(const Report& report) {
   if (report.notes.size() > 1) {
     for (const std::string& note : report.notes) lines.push_back({"read as", note});
   }
-  lines.push_back({"model", fmt::format("{}, {}", fit.model->title,
-                                        fit.has_mixed_states()
-                                            ? std::string("initial states differ")
-                                            : fmt::format("{} contact", Name(fit.initial_state)))});
+  lines.push_back({"model", fmt::format("{}, initial state {}", fit.model->title,
+                                        fmt::join(ValuesUnder(report, "initial_state"), ""))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
     const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
@@ -420,30 +395,15 @@ std::vector<Line> DetailLines(const Report& report) {
     if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
   }
-  for (const char* section : {"adequacy", "residuals", "solver"}) {
-    std::vector<std::string> values;
-    for (const auto& [name, value] : ValuesUnder(report, fmt::format("{}.", section))) {
-      values.push_back(fmt::format("{} {}", name, value));
-    }
-    lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
+  for (const char* section : {"input", "measured", "adequacy", "residuals", "mapping", "solver"}) {
+    const std::vector<std::string> values = ValuesUnder(report, section);
+    if (!values.empty()) lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
   }
   for (const identification::Cause& cause : fit.adequacy.causes) {
     std::string code(cause.code);
     std::ranges::replace(code, '_', ' ');
     lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", code,
                                                std::min(100.0, 100 * cause.explains))});
-  }
-  if (report.alpha.p_value) lines.push_back({"α = 1/3", ChanceText(*report.alpha.p_value)});
-  if (report.terms) {
-    for (const identification::ConsideredTerm& term : report.terms->considered) {
-      constexpr double kWorthSaying = 0.01;
-      if (!(term.gain > kWorthSaying)) continue;
-      lines.push_back(
-          {"tried",
-           fmt::format("{}: misfit −{:.0f} %{}{}", term.name, 100 * term.gain,
-                       term.added ? ", added" : "",
-                       term.obstacle.empty() ? "" : fmt::format(", refused: {}", term.obstacle))});
-    }
   }
   AddComparison(report, lines);
   for (const Finding& finding : fit.findings) {
@@ -469,21 +429,17 @@ bool IsNumber(std::string_view word) {
 
 /// Breaks a text between words; a number stays with what belongs to it.
 std::string Wrapped(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = 0; begin < text.size();) {
-    std::size_t last = begin;
-    std::size_t end = std::min(text.find(' ', begin), text.size());
-    while (end < text.size() &&
-           (IsNumber(text.substr(last, end - last)) || text.substr(end + 1).starts_with("…") ||
-            text.substr(end + 1).starts_with("("))) {
-      last = end + 1;
-      end = std::min(text.find(' ', last), text.size());
-    }
-    words.push_back(text.substr(begin, end - begin));
-    begin = std::min(end + 1, text.size());
+  std::vector<std::string> words;
+  std::string_view last;
+  for (const std::string_view word : PartsOf(text, ' ')) {
+    const bool belongs_to_it = IsNumber(last) || word.starts_with("…") || word.starts_with("(");
+    if (words.empty() || !belongs_to_it) words.emplace_back();
+    words.back().append(words.back().empty() ? "" : " ").append(word);
+    last = word;
   }
+  const std::vector<std::string_view> views(words.begin(), words.end());
   return fmt::format(
-      "{}", fmt::join(LinesOf(words, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
+      "{}", fmt::join(LinesOf(views, kTextWidth - kLabel), '\n' + std::string(kLabel, ' ')));
 }
 
 std::string LinesText(const std::vector<Line>& lines) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -26,100 +27,73 @@ using identification::ParameterStatus;
 
 namespace {
 
-double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
-  const std::size_t count = fit.parameters.size();
-  const auto place = [&](std::string_view name) {
-    return static_cast<std::size_t>(fit.Find(name) - fit.parameters.data());
-  };
-  const std::size_t at = place(first) * count + place(second);
-  const double correlation = at < fit.correlation.size() ? fit.correlation[at] : 0.0;
-  return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
+/// Values of a fit's parameters by their names.
+using Values = std::map<std::string_view, double>;
+
+Values ValuesOf(const FitResult& fit) {
+  Values values;
+  for (const ParameterEstimate& estimate : fit.parameters) values[estimate.name] = estimate.value;
+  return values;
 }
 
-/// A parameter from which a quantity follows.
-struct Influence {
-  const ParameterEstimate& parameter;
-  bool raises;  ///< the quantity grows with it
-  /// Change of the quantity's logarithm where the parameter has another value; empty where that is
-  /// none of a contact.
-  std::function<std::optional<double>(double)> way;
-};
+/// Returns a quantity, > 0; empty where the parameters are none of a contact.
+using Formula = std::function<std::optional<UncertainValue>(const Values&)>;
 
-/// Returns how far the end of the parameter's interval that raises, or lowers, the quantity takes
-/// its logarithm; empty where that end is open.
-std::optional<double> WayTo(const Influence& of, bool up) {
-  const ParameterEstimate& parameter = of.parameter;
-  std::optional<double> end = up == of.raises ? parameter.upper95 : parameter.lower95;
-  if (parameter.status == ParameterStatus::kFixed) end = parameter.value;
-  const std::optional<double> way = end ? of.way(*end) : std::nullopt;
-  return way && std::isfinite(*way) ? std::optional(std::abs(*way)) : std::nullopt;
+/// Returns how far the interval of each parameter takes the logarithm of a quantity to its larger,
+/// or its smaller, end, negative where the parameter falls; empty where an end is open.
+std::optional<std::vector<double>> WaysTo(bool up, const FitResult& fit, const Formula& formula) {
+  const Values values = ValuesOf(fit);
+  const double found = formula(values)->value;
+  std::vector<double> ways(fit.parameters.size(), 0.0);
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const ParameterEstimate& estimate = fit.parameters[k];
+    const auto change = [&](double value) -> std::optional<double> {
+      Values moved = values;
+      moved[estimate.name] = value;
+      const auto quantity = formula(moved);
+      return quantity ? std::optional(std::log(quantity->value / found)) : std::nullopt;
+    };
+    // The step shows whether the quantity grows with the parameter. It is small because E may have
+    // no value further away. Where the contact radius is given, p₀ does not depend on the fit.
+    const double step = 1e-6 * (estimate.value == 0 ? 1.0 : std::abs(estimate.value));
+    const double trend = change(estimate.value + step).value_or(0.0);
+    if (trend == 0 || estimate.status == ParameterStatus::kFixed) continue;
+    const bool rises = up == (trend > 0);
+    const std::optional<double> end = rises ? estimate.upper95 : estimate.lower95;
+    const std::optional<double> way = end ? change(*end) : std::nullopt;
+    if (!way || !std::isfinite(*way)) return std::nullopt;
+    ways[k] = rises ? std::abs(*way) : -std::abs(*way);
+  }
+  return ways;
 }
 
-/// Adds in quadrature, with a correlation that is of ways in the same direction.
-std::optional<double> Together(const std::optional<double>& one, const std::optional<double>& other,
-                               double correlation) {
-  if (!one || !other) return std::nullopt;
-  if (*one == 0 || *other == 0) return std::abs(*one) + std::abs(*other);
-  const double squares = *one * *one + *other * *other + 2 * correlation * *one * *other;
-  return std::sqrt(std::max(squares, 0.0));
-}
-
-/// Sets value and ends of a quantity that follows from one parameter or two, with the uncertainty
-/// of its inputs.
-void Fill(const FitResult& fit, const UncertainValue& found, const std::vector<Influence>& of,
-          ContactQuantity& quantity) {
+/// Sets value and ends of a quantity: the ways of its parameters added in quadrature, with their
+/// correlations and the uncertainty of its inputs.
+void Fill(const FitResult& fit, const Formula& formula, ContactQuantity& quantity) {
+  const UncertainValue found = *formula(ValuesOf(fit));
   quantity.value = found.value;
   quantity.why = "the interval of what it follows from is open";
   const double of_inputs =
       NormalQuantile(fit.confidence) * found.standard_error / std::abs(found.value);
-  double correlation = 0.0;
-  if (of.size() == 2 && of[0].parameter.status == ParameterStatus::kFree &&
-      of[1].parameter.status == ParameterStatus::kFree) {
-    correlation = Correlation(fit, of[0].parameter.name, of[1].parameter.name);
-    if (of[0].raises != of[1].raises) correlation = -correlation;
-  }
+  const std::size_t count = fit.parameters.size();
+  const auto correlation = [&](std::size_t i, std::size_t j) {
+    if (i == j) return 1.0;
+    const double known =
+        fit.correlation.size() == count * count ? fit.correlation[i * count + j] : 0.0;
+    return std::isfinite(known) ? known : 0.0;
+  };
   for (const bool up : {false, true}) {
-    std::optional<double> way = 0.0;
-    for (const Influence& each : of) way = Together(way, WayTo(each, up), correlation);
-    if (!way) continue;
-    const double whole = std::hypot(*way, of_inputs);
+    const std::optional<std::vector<double>> ways = WaysTo(up, fit, formula);
+    if (!ways) continue;
+    double squares = of_inputs * of_inputs;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < count; ++j) {
+        squares += (*ways)[i] * (*ways)[j] * correlation(i, j);
+      }
+    }
+    const double whole = std::sqrt(std::max(squares, 0.0));
     (up ? quantity.upper : quantity.lower) = found.value * std::exp(up ? whole : -whole);
   }
-}
-
-/// Returns what a parameter that is a factor of a quantity, or of its inverse, does to it.
-Influence FactorOf(const ParameterEstimate& parameter, bool raises = true) {
-  return {parameter, raises,
-          [&parameter](double value) { return std::log(value / parameter.value); }};
-}
-
-std::optional<UncertainValue> Identified(Kind kind, const FitResult& fit,
-                                         const KnownContact& known) {
-  return contact::IdentifyContact(kind, fit.Find("sigma")->value, fit.Find("slip_force")->value,
-                                  known);
-}
-
-/// Sets a quantity that follows from one parameter and what is known of the contact.
-void FillIdentified(const FitResult& fit, const KnownContact& known, Kind kind,
-                    ContactQuantity& quantity) {
-  const UncertainValue found = *Identified(kind, fit, known);
-  const double sigma = fit.Find("sigma")->value;
-  const double slip_force = fit.Find("slip_force")->value;
-  const bool is_of_sigma = quantity.parameter == "sigma";
-  const auto way = [&](double value) -> std::optional<double> {
-    if (!(value > 0)) return std::nullopt;
-    const auto moved = contact::IdentifyContact(kind, is_of_sigma ? value : sigma,
-                                                is_of_sigma ? slip_force : value, known);
-    return moved ? std::optional(std::log(moved->value / found.value)) : std::nullopt;
-  };
-  const ParameterEstimate& parameter = *fit.Find(quantity.parameter);
-  // The step shows whether the quantity grows with the parameter. It is small because E may have no
-  // value further away. Where the contact radius is given, p₀ does not depend on the fit.
-  constexpr double kFurther = 1 + 1e-6;
-  const double trend = way(kFurther * parameter.value).value_or(0.0);
-  std::vector<Influence> of;
-  if (trend != 0) of.push_back({parameter, trend > 0, way});
-  Fill(fit, found, of, quantity);
 }
 
 struct QuantityRow {
@@ -149,6 +123,15 @@ constexpr std::array kOfSeries = {
     QuantityRow{"youngs_modulus", "E", "Pa", "sigma", Kind::kSphereYoungsModulus},
 };
 
+Formula FormulaOf(Kind kind, const KnownContact& known) {
+  return [kind, &known](const Values& at) -> std::optional<UncertainValue> {
+    const double sigma = at.at("sigma");
+    const double slip_force = at.at("slip_force");
+    if (!(sigma > 0 && slip_force > 0)) return std::nullopt;
+    return contact::IdentifyContact(kind, sigma, slip_force, known);
+  };
+}
+
 constexpr std::string_view kWhyNoSphere =
     "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
 
@@ -168,20 +151,25 @@ bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
 /// Returns the force at which the contact slips in one direction, Tc(1 ± A).
 /// @param sense  +1 towards positive displacement, −1 the other way
 void FillSlipForce(const FitResult& fit, double sense, ContactQuantity& quantity) {
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
-  const double share = 1 + sense * asymmetry.value;
-  if (!slip_force.is_known() || !asymmetry.is_known() || !(share > 0)) {
+  const Formula formula = [sense](const Values& at) -> std::optional<UncertainValue> {
+    const double force = at.at("slip_force") * (1 + sense * at.at("asymmetry"));
+    return force > 0 ? std::optional<UncertainValue>(force) : std::nullopt;
+  };
+  const std::optional<UncertainValue> found = formula(ValuesOf(fit));
+  if (!fit.Find("slip_force")->is_known() || !fit.Find("asymmetry")->is_known() || !found) {
     quantity.why = "slip_force or asymmetry is not identifiable";
-    return;
-  }
-  if (!IsThatOfThePlateau(fit, sense, slip_force.value * share)) {
+  } else if (!IsThatOfThePlateau(fit, sense, found->value)) {
     quantity.why = "the measured strokes do not show it: it stands for an offset of the force";
-    return;
+  } else {
+    Fill(fit, formula, quantity);
   }
-  const Influence of_asymmetry = {asymmetry, sense > 0,
-                                  [&](double value) { return (value - asymmetry.value) / share; }};
-  Fill(fit, slip_force.value * share, {FactorOf(slip_force), of_asymmetry}, quantity);
+}
+
+constexpr double kThird = contact::kMindlinShapeExponent;  // of α, and Hertz's of the load
+
+bool ExcludesAThird(const ParameterEstimate& estimate) {
+  return (estimate.lower95 && *estimate.lower95 > kThird) ||
+         (estimate.upper95 && *estimate.upper95 < kThird);
 }
 
 ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
@@ -206,7 +194,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
         .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter};
     const ParameterEstimate& parameter = *fit.Find(row.parameter);
     const bool needs_fit = !(row.name == "maximum_pressure" && known.contact_radius);
-    const std::optional<UncertainValue> at_estimate = Identified(row.kind, fit, known);
+    const Formula formula = FormulaOf(row.kind, known);
+    const std::optional<UncertainValue> at_estimate = formula(ValuesOf(fit));
     if (row.is_of_sphere && denies_hertz) {
       quantity.why = kWhyNoSphere;
     } else if (!at_estimate) {
@@ -221,7 +210,7 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
         quantity.lower = at_estimate->value * *parameter.lower95 / parameter.value;
       }
     } else {
-      FillIdentified(fit, known, row.kind, quantity);
+      Fill(fit, formula, quantity);
     }
     return quantity;
   };
@@ -237,7 +226,8 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
     }
   }
   for (const QuantityRow& row : kOfSeries) {
-    if (!fit.is_load_series() || !known.normal_load || !Identified(row.kind, fit, known)) continue;
+    const bool is_known = FormulaOf(row.kind, known)(ValuesOf(fit)).has_value();
+    if (!fit.is_load_series() || !known.normal_load || !is_known) continue;
     const auto old = std::ranges::find(quantities, row.name, &ContactQuantity::name);
     if (old == quantities.end()) {
       quantities.push_back(describe(row));
@@ -247,16 +237,15 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   }
   ContactQuantity gross_slip{
       .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
-  const ParameterEstimate& sigma = *fit.Find("sigma");
-  const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  const std::optional<bool> is_rejected = TestAlpha(fit).is_rejected;
-  if (!sigma.is_known() || !slip_force.is_known()) {
+  if (!fit.Find("sigma")->is_known() || !fit.Find("slip_force")->is_known()) {
     gross_slip.why = "needs an identifiable sigma and slip_force";
-  } else if (is_rejected && *is_rejected) {
+  } else if (TestAlpha(fit).is_rejected.value_or(false)) {
     gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
   } else {
-    Fill(fit, 1.5 * slip_force.value / sigma.value,
-         {FactorOf(slip_force), FactorOf(sigma, /*raises=*/false)}, gross_slip);
+    const Formula formula = [](const Values& at) {
+      return 1.5 * at.at("slip_force") / at.at("sigma");
+    };
+    Fill(fit, formula, gross_slip);
   }
   quantities.push_back(std::move(gross_slip));
   quantities.push_back(NormalLoad(fit, known));
@@ -267,11 +256,9 @@ AlphaTest TestAlpha(const FitResult& fit) {
   AlphaTest test;
   const ParameterEstimate& alpha = *fit.Find("alpha");
   if (alpha.status == ParameterStatus::kFixed) return test;
-  constexpr double kThird = contact::kMindlinShapeExponent;
   test.minus_third = alpha.value - kThird;
   if (!alpha.is_known()) return test;
-  test.is_rejected =
-      (alpha.lower95 && *alpha.lower95 > kThird) || (alpha.upper95 && *alpha.upper95 < kThird);
+  test.is_rejected = ExcludesAThird(alpha);
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {
     test.p_value = PValueOfT(*test.minus_third / error, fit.ErrorDegreesOfFreedom());
@@ -279,44 +266,12 @@ AlphaTest TestAlpha(const FitResult& fit) {
   return test;
 }
 
-namespace {
-
-/// True if a load series may follow σ ∝ N^p with an exponent between two values: where the interval
-/// of the fitted one, or what it is held at, as written with three digits, reaches one of these.
-bool MayHaveExponent(const FitResult& fit, double least, double greatest) {
-  constexpr double kWritten = 1e-3;
-  const ParameterEstimate& fitted = *fit.Find("load_exponent");
-  if (fitted.status == ParameterStatus::kFixed) {
-    return fitted.value > least - kWritten && fitted.value < greatest + kWritten;
-  }
-  return !fitted.is_known() || !((fitted.lower95 && *fitted.lower95 > greatest) ||
-                                 (fitted.upper95 && *fitted.upper95 < least));
-}
-
-}  // namespace
-
-std::vector<std::string> TheoriesOfLoad(const FitResult& fit) {
-  std::vector<std::string> theories;
-  if (!fit.is_load_series() || !fit.Find("load_exponent")->is_known()) return theories;
-  const auto add = [&](const char* name, double exponent, double least, double greatest) {
-    if (!MayHaveExponent(fit, least, greatest)) return;
-    theories.push_back(fmt::format("{} ({:.3g})", name, exponent));
-  };
-  constexpr double kThird = contact::kMindlinShapeExponent;
-  const ParameterEstimate& alpha = *fit.Find("alpha");
-  add("smooth sphere", kThird, kThird, kThird);
-  add("elements in parallel, α", alpha.value, alpha.lower95.value_or(alpha.value),
-      alpha.upper95.value_or(alpha.value));
-  for (const auto& [name, exponent] :
-       {std::pair("cone", 0.5), {"flat punch", 0.0}, {"rough surfaces", 1.0}}) {
-    add(name, exponent, exponent, exponent);
-  }
-  return theories;
-}
-
 bool DeniesHertz(const FitResult& fit) {
-  constexpr double kThird = contact::kMindlinShapeExponent;
-  return fit.is_load_series() && !MayHaveExponent(fit, kThird, kThird);
+  if (!fit.is_load_series()) return false;
+  constexpr double kWritten = 1e-3;  // what it is held at is written with three digits
+  const ParameterEstimate& fitted = *fit.Find("load_exponent");
+  if (fitted.status == ParameterStatus::kFixed) return std::abs(fitted.value - kThird) >= kWritten;
+  return fitted.is_known() && ExcludesAThird(fitted);
 }
 
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,

@@ -13,6 +13,7 @@
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"
 #include "report/statements.h"
+#include "report/table.h"
 
 namespace mindahl::report {
 
@@ -111,16 +112,14 @@ Json Samples(const Report& report) {
 }
 
 Json LeftOutJson(const Report& report) {
-  Json list = Json::array();
-  for (const LeftOut& part : DescribeLeftOut(report)) {
-    const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
-    list.push_back({{"file", part.file},
-                    {"samples", part.samples},
-                    {"first", line(part.first)},
-                    {"last", line(part.last)},
-                    {"why", part.why}});
-  }
-  return list;
+  const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
+  return ListOf(DescribeLeftOut(report), [&](const LeftOut& part) -> Json {
+    return {{"file", part.file},
+            {"samples", part.samples},
+            {"first", line(part.first)},
+            {"last", line(part.last)},
+            {"why", part.why}};
+  });
 }
 
 // --- parameters
@@ -168,28 +167,24 @@ Json Correlations(const Report& report) {
 // --- adequacy and what is measured
 
 Json Causes(const Report& report) {
-  Json causes = Json::array();
-  for (const identification::Cause& cause : report.fit.adequacy.causes) {
-    causes.push_back({{"code", cause.code},
-                      {"term", cause.term.empty() ? Json() : Json(cause.term)},
-                      {"delta_aicc", NumberOrNull(cause.delta_aicc)},
-                      {"explains", NumberOrNull(cause.explains)}});
-  }
-  return causes;
+  return ListOf(report.fit.adequacy.causes, [](const identification::Cause& cause) -> Json {
+    return {{"code", cause.code},
+            {"term", cause.term.empty() ? Json() : Json(cause.term)},
+            {"delta_aicc", NumberOrNull(cause.delta_aicc)},
+            {"explains", NumberOrNull(cause.explains)}};
+  });
 }
 
 Json MeasuredCycles(const Report& report) {
-  Json cycles = Json::array();
-  if (report.failed()) return cycles;
-  for (const loop::CycleFacts& cycle : report.fit.WidestRecord().facts.cycles) {
-    cycles.push_back({{"start", cycle.start},
-                      {"amplitude", NumberOrNull(cycle.amplitude)},
-                      {"peak_force", NumberOrNull(cycle.peak_force)},
-                      {"half_gap", NumberOrNull(cycle.half_gap)},
-                      {"energy", NumberOrNull(cycle.energy)},
-                      {"energy_ratio", NumberOrNull(cycle.energy_ratio)}});
-  }
-  return cycles;
+  if (report.failed()) return Json::array();
+  return ListOf(report.fit.WidestRecord().facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
+    return {{"start", cycle.start},
+            {"amplitude", NumberOrNull(cycle.amplitude)},
+            {"peak_force", NumberOrNull(cycle.peak_force)},
+            {"half_gap", NumberOrNull(cycle.half_gap)},
+            {"energy", NumberOrNull(cycle.energy)},
+            {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
+  });
 }
 
 // --- law, contact, terms
@@ -220,15 +215,13 @@ constexpr std::string_view kNotTested =
     "alpha is held, at a bound or not identifiable, or it is a torque";
 
 Json ConsideredTerms(const Report& report) {
-  Json list = Json::array();
-  if (!report.terms) return list;
-  for (const identification::ConsideredTerm& term : report.terms->considered) {
-    list.push_back({{"name", term.name},
-                    {"gain", NumberOrNull(term.gain)},
-                    {"added", term.added},
-                    {"refused", term.obstacle}});
-  }
-  return list;
+  if (!report.terms) return Json::array();
+  return ListOf(report.terms->considered, [](const identification::ConsideredTerm& term) -> Json {
+    return {{"name", term.name},
+            {"gain", NumberOrNull(term.gain)},
+            {"added", term.added},
+            {"refused", term.obstacle}};
+  });
 }
 
 Json Next(const Report& report) {
@@ -413,9 +406,7 @@ const std::vector<Field>& Fields() {
        ConsideredTerms},
       {"terms.added", "", "names of the parameters in addition to the law's",
        [](R report) {
-         Json names = Json::array();
-         for (const ParameterEstimate* term : AddedTerms(report)) names.push_back(term->name);
-         return names;
+         return ListOf(AddedTerms(report), [](const auto* term) -> Json { return term->name; });
        }},
       {"next", "",
        "`text`, `options`, `misfit_before`, `misfit_after` over the half gap, of what was tried",
@@ -423,14 +414,18 @@ const std::vector<Field>& Fields() {
       {"confidence", "-", "of every interval", Of<&Report::fit, &FitResult::confidence>},
       {"warnings", "", "`code` and `message` of what a person should act on",
        [](R report) {
-         Json list = Json::array();
-         for (const auto& [code, message] : report.warnings) {
-           list.push_back({{"code", code}, {"message", message}});
-         }
-         return list;
+         return ListOf(report.warnings, [](const Warning& warning) -> Json {
+           return {{"code", warning.code}, {"message", warning.message}};
+         });
        }},
   };
   return fields;
+}
+
+std::string Document(std::string_view schema, const Json& members) {
+  Json document = {{"schema", schema}, {"version", Version()}};
+  document.update(members);
+  return Dump(document);
 }
 
 std::string ToJson(const Report& report) {
@@ -446,27 +441,23 @@ std::string ToJson(const Report& report) {
   return Dump(document);
 }
 
-std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
-                                                             std::string_view prefix) {
-  std::vector<std::pair<std::string, std::string>> values;
+std::vector<std::string> ValuesUnder(const Report& report, std::string_view section) {
+  std::vector<std::string> values;
   for (const Field& field : Fields()) {
-    if (!field.path.starts_with(prefix)) continue;
+    if (!field.path.starts_with(section)) continue;
     const Json value = field.get(report);
     if (value.is_null() || value.is_structured()) continue;
-    std::string name(field.path.substr(prefix.size()));
+    constexpr std::string_view kResponse = "response";
+    std::string unit = UnitIn(report.units, field.unit);
+    if (unit.starts_with(kResponse)) unit.replace(0, kResponse.size(), report.units.response);
+    std::string name(field.path.substr(std::min(section.size() + 1, field.path.size())));
     std::ranges::replace(name, '_', ' ');
     std::ranges::replace(name, '.', ' ');
-    const bool is_of_response = field.unit.starts_with("response");
-    const std::string unit =
-        is_of_response ? std::string(report.units.response) +
-                             std::string(field.unit.substr(std::string_view("response").size()))
-                       : UnitIn(report.units, field.unit);
-    std::string text = field.path.ends_with("p_value") ? ChanceText(value.get<double>()).substr(2)
-                       : value.is_boolean()            ? (value.get<bool>() ? "yes" : "no")
-                       : value.is_string()             ? value.get<std::string>()
-                       : value.is_number_float()       ? Quantity(value.get<double>(), unit, 4)
-                                                       : value.dump();
-    values.emplace_back(std::move(name), std::move(text));
+    values.push_back(fmt::format("{}{}{}", name, name.empty() ? "" : " ",
+                                 field.path.ends_with("p_value")
+                                     ? ChanceText(value.get<double>()).substr(2)
+                                 : value.is_number_float() ? Quantity(value.get<double>(), unit, 4)
+                                                           : CellText(value)));
   }
   return values;
 }
@@ -476,36 +467,27 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const io::RecordFile& file = report.records[r];
     const RecordFit& fit = report.fit.records[r];
-    const auto line = [&](std::size_t sample) {
-      return sample < file.lines.size() ? file.lines[sample] : sample + 1;
+    const auto add = [&](std::size_t samples, std::size_t first, bool are_in_a_row,
+                         const char* why) {
+      const auto line = [&](std::size_t sample) {
+        return !are_in_a_row ? 0 : sample < file.lines.size() ? file.lines[sample] : sample + 1;
+      };
+      if (samples == 0) return;
+      parts.push_back({.file = report.files[r],
+                       .samples = samples,
+                       .first = line(first),
+                       .last = line(first + samples - 1),
+                       .why = why});
     };
-    std::size_t rest = fit.left_out;
     const std::size_t faults = fit.glitches.total;
-    if (faults > 0) {
-      const std::size_t first = fit.glitches.first;
-      parts.push_back({.file = report.files[r],
-                       .samples = faults,
-                       .first = faults == 1 ? line(first) : 0,
-                       .last = faults == 1 ? line(first) : 0,
-                       .why = "faults"});
-      rest -= std::min(rest, faults);
-    }
-    if (rest > 0) {
-      const auto& counts = fit.counts;
-      const auto first = std::ranges::find(counts, 0);
-      const auto counted = std::find_if(first, counts.end(), [](auto c) { return c != 0; });
-      const bool is_one = faults == 0 && static_cast<std::size_t>(counted - first) == rest;
-      const auto at = static_cast<std::size_t>(first - counts.begin());
-      parts.push_back({.file = report.files[r],
-                       .samples = rest,
-                       .first = is_one ? line(at) : 0,
-                       .last = is_one ? line(at + rest - 1) : 0,
-                       .why = "selection"});
-    }
-    if (file.piece && file.piece->left_out > 0) {
-      parts.push_back(
-          {.file = report.files[r], .samples = file.piece->left_out, .why = "another load"});
-    }
+    const std::size_t rest = fit.left_out - std::min(fit.left_out, faults);
+    const auto first = std::ranges::find(fit.counts, 0);
+    const auto last =
+        std::find_if(first, fit.counts.end(), [](auto counts) { return counts != 0; });
+    add(faults, fit.glitches.first, faults == 1, "faults");
+    add(rest, static_cast<std::size_t>(first - fit.counts.begin()),
+        faults == 0 && static_cast<std::size_t>(last - first) == rest, "selection");
+    add(file.piece ? file.piece->left_out : 0, 0, /*are_in_a_row=*/false, "another load");
   }
   return parts;
 }

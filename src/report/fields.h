@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mindahl/report/report.h"
@@ -21,11 +20,29 @@ inline Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
+/// Returns what a place of a document has, "/model", null where there is no such place.
+inline Json At(const Json& document, std::string_view place) {
+  const Json::json_pointer pointer{std::string(place)};
+  return document.contains(pointer) ? document[pointer] : Json();
+}
+
+/// Returns a list of what a function makes of each row.
+template <typename Rows, typename Make>
+Json ListOf(const Rows& rows, Make make) {
+  Json list = Json::array();
+  for (const auto& row : rows) list.push_back(make(row));
+  return list;
+}
+
 /// Returns a document as the program writes it, with the end of line. A file name need not be
 /// UTF-8; JSON must.
 inline std::string Dump(const Json& json) {
   return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
 }
+
+/// Returns the document that a command writes with --json: its schema, "mindahl.plan/1", and the
+/// version of the program before its members.
+std::string Document(std::string_view schema, const Json& members);
 
 /// One row of the report.
 struct Field {
@@ -39,10 +56,9 @@ struct Field {
 
 const std::vector<Field>& Fields();
 
-/// Returns the numbers and words of fields whose path begins with `prefix`, "residuals.", as names
-/// without it and values with their units; none of what is null or has members.
-std::vector<std::pair<std::string, std::string>> ValuesUnder(const Report& report,
-                                                             std::string_view prefix);
+/// Returns the numbers and words in a section of the JSON, "rms 0.4 N", behind their names and with
+/// their units; none of what is null or has members.
+std::vector<std::string> ValuesUnder(const Report& report, std::string_view section);
 
 /// Returns the samples of each record that do not count.
 std::vector<LeftOut> DescribeLeftOut(const Report& report);

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/io/plot.h"
 #include "mindahl/report/page.h"
-#include "report/fields.h"
 #include "report/statements.h"
 
 // Parts of the pages, as HTML 5. Whatever is called a text, caption or sentence is escaped; with

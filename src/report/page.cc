@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "io/drawing.h"
-#include "report/fields.h"
 #include "report/html.h"
 #include "report/statements.h"
 
@@ -35,14 +34,6 @@ std::string NextHtml(const Report& report, const Provenance& provenance) {
                      fmt::format("{}<pre><code>{} {}</code></pre>\n",
                                  ParagraphHtml(NextStatement(report, *report.next) + ':'),
                                  Prose(command), Prose(report.next->options)));
-}
-
-std::string MeasuredHtml(const Report& report) {
-  std::vector<TableLine> rows;
-  for (const char* section : {"measured.", "input."}) {
-    for (const auto& [name, value] : ValuesUnder(report, section)) rows.push_back({name, {value}});
-  }
-  return TableHtml("of the record, without a model", {}, rows);
 }
 
 struct Bar {
@@ -152,9 +143,7 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                      figure.panels[1]),
           IntervalsHtml(report), NextHtml(report, provenance),
           SectionHtml("Answer", LinesHtml("", AnswerLines(report))),
-          SectionHtml("Details", SideBySide(LinesHtml("of the fit", DetailLines(report)) +
-                                            MeasuredHtml(report))),
-          ProvenanceHtml(provenance)));
+          SectionHtml("Details", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

@@ -1,14 +1,14 @@
 #include "mindahl/report/report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
@@ -66,11 +66,7 @@ void RequireMoreSamplesThanParameters(identification::FitResult& fit) {
 void CollectWarnings(Report& report) {
   for (const identification::Finding& finding : report.fit.findings) {
     if (finding.severity == identification::Severity::kNote) continue;
-    std::string message = Sentence(finding, report.fit, report.units);
-    if (!finding.parameters.empty()) {
-      message = fmt::format("{}: {}", fmt::join(finding.parameters, ", "), message);
-    }
-    report.warnings.push_back({std::string(finding.code), std::move(message)});
+    report.warnings.push_back({std::string(finding.code), WarningText(finding, report)});
   }
   if (!report.check.empty()) report.warnings.push_back({"check_input", report.check});
   if (report.is_torsional() || report.failed() || !report.check.empty()) return;
@@ -100,26 +96,21 @@ std::string LargeRadius(const Report& report) {
   return "";
 }
 
-/// Names the unit that most likely makes a contact larger or smaller by a factor than it can be.
-std::string WhichUnit(const Report& report) {
-  const io::RecordFile& first = report.records.front();
-  const bool has_load = report.known.normal_load.has_value();
-  const double friction =
-      has_load ? report.fit.law.slip_force / report.known.normal_load->value : 1.0;
-  if (friction > kMostFriction || friction < kLeastFriction) {
-    return fmt::format("the unit of the force, {}, or of the load", first.force.unit);
-  }
-  return fmt::format("the unit of the displacement, {}", first.displacement.unit);
-}
-
 /// Compares the contact with Hertz's, or with the radius that is known, and the pressure with what
-/// a solid bears: by the estimate alone, whatever its interval.
+/// a solid bears: by the estimate alone, whatever its interval. Names the unit that most likely
+/// makes it larger or smaller by a factor than it can be.
 std::string ImpossibleContact(const Report& report) {
   using Kind = contact::ContactQuantity;
   const auto value_of = [&](Kind kind) {
     return contact::IdentifyContact(kind, report.fit.law.tangential_stiffness,
                                     report.fit.law.slip_force, report.known);
   };
+  const io::RecordFile& first = report.records.front();
+  const double friction = value_of(Kind::kFrictionCoefficient).value_or(1.0);
+  const bool is_friction_off = friction > kMostFriction || friction < kLeastFriction;
+  const std::string unit =
+      is_friction_off ? fmt::format("the unit of the force, {}, or of the load", first.force.unit)
+                      : fmt::format("the unit of the displacement, {}", first.displacement.unit);
   const auto hertz_pressure = value_of(Kind::kHertzPressure);
   const auto ratio = value_of(Kind::kStiffnessRatio);
   if (ratio && (ratio->value > kMostOff || ratio->value < 1 / kMostOff)) {
@@ -128,40 +119,29 @@ std::string ImpossibleContact(const Report& report) {
     return fmt::format("the contact radius{} is {:.0f} times {} than {}: look at {}",
                        radius ? ", " + Quantity(radius->value, "m", 3) + "," : "", off,
                        ratio->value > 1 ? "larger" : "smaller",
-                       hertz_pressure ? "Hertz's" : "the given one", WhichUnit(report));
+                       hertz_pressure ? "Hertz's" : "the given one", unit);
   }
-  if (hertz_pressure && hertz_pressure->value > kMostPressure) {
-    return fmt::format(
-        "Hertz's pressure is {}, more than any solid bears: look at the units of "
-        "radius and load",
-        Quantity(hertz_pressure->value, "Pa", 3));
+  for (const auto& [pressure, name, look_at] :
+       {std::tuple(hertz_pressure, "Hertz's pressure", std::string("the units of radius and load")),
+        {value_of(Kind::kMaximumPressure), "the maximum pressure", unit}}) {
+    if (!pressure || pressure->value <= kMostPressure) continue;
+    return fmt::format("{} is {}, more than any solid bears: look at {}", name,
+                       Quantity(pressure->value, "Pa", 3), look_at);
   }
-  const auto pressure = value_of(Kind::kMaximumPressure);
-  if (pressure && pressure->value > kMostPressure) {
-    return fmt::format("the maximum pressure is {}, more than any solid bears: look at {}",
-                       Quantity(pressure->value, "Pa", 3), WhichUnit(report));
-  }
-  const auto friction_coefficient = value_of(Kind::kFrictionCoefficient);
-  if (friction_coefficient && report.fit.Find("slip_force")->is_known()) {
-    const double friction = friction_coefficient->value;
-    if (friction > kMostFriction || friction < kLeastFriction) {
-      return fmt::format("μ is {:.3g}: look at {}", friction, WhichUnit(report));
-    }
-  }
-  return "";
+  if (!is_friction_off || !report.fit.Find("slip_force")->is_known()) return "";
+  return fmt::format("μ is {:.3g}: look at {}", friction, unit);
 }
 
 /// Returns a question where half gaps of several files differ as loads would make them.
 std::string DifferentLoads(const Report& report) {
   if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = 0.0;
+  std::vector<double> half_gaps;
+  half_gaps.reserve(report.fit.records.size());
   for (const identification::RecordFit& record : report.fit.records) {
     if (!record.facts.half_gap) return "";
-    const double half_gap = std::abs(*record.facts.half_gap);
-    least = std::min(least, half_gap);
-    greatest = std::max(greatest, half_gap);
+    half_gaps.push_back(std::abs(*record.facts.half_gap));
   }
+  const auto [least, greatest] = std::ranges::minmax(half_gaps);
   if (!(greatest > report.options.thresholds.other_test * least)) return "";
   const std::string_view unit = report.units.force;
   return fmt::format("half gaps from {} to {}: {}separate tests? mindahl batch",

@@ -254,4 +254,10 @@ std::string Sentence(const Finding& finding, const FitResult& fit, const Units& 
   return sentence.append(text);
 }
 
+std::string WarningText(const Finding& finding, const Report& report) {
+  return fmt::format("{}{}{}", fmt::join(finding.parameters, ", "),
+                     finding.parameters.empty() ? "" : ": ",
+                     Sentence(finding, report.fit, report.units));
+}
+
 }  // namespace mindahl::report

@@ -95,6 +95,9 @@ std::string ChanceText(double p_value, int digits = 3);
 std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
                      const Units& units = kUnitsOfForce);
 
+/// Returns the same behind the names of its parameters.
+std::string WarningText(const identification::Finding& finding, const Report& report);
+
 /// A line of the answer, which the text prints and the page shows.
 struct Line {
   std::string label;  ///< "friction"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 namespace mindahl::report {
 
@@ -124,13 +123,11 @@ std::string Joined(const std::string& number, const ScaledUnit& unit) {
 
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit) {
   const double size = error.value_or(0.0);
-  const bool is_open = !std::isfinite(size);
-  const ScaledUnit scaled = UnitFor(unit, is_open ? value : std::max(std::abs(value), size));
-  const std::string number = RoundedTo(size / scaled.factor, value / scaled.factor);
-  if (is_open) return Joined(number + " ± open", scaled);
-  if (size == 0) return Joined(number, scaled);
-  const double rounded = size / scaled.factor;
-  return Joined(fmt::format("{} ± {}", number, RoundedTo(rounded, rounded)), scaled);
+  const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(value), size));
+  const double scaled_error = size / scaled.factor;
+  std::string number = RoundedTo(scaled_error, value / scaled.factor);
+  if (size > 0) number.append(" ± ").append(RoundedTo(scaled_error, scaled_error));
+  return Joined(number, scaled);
 }
 
 std::string QuantityWithInterval(double value, std::optional<double> lower,

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <deque>
 #include <filesystem>
 #include <future>
 #include <new>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "core/probability.h"
@@ -27,6 +27,7 @@
 namespace mindahl::request {
 
 using identification::ParameterEstimate;
+using report::At;
 using report::Dump;
 using report::Json;
 using report::NumberOrNull;
@@ -96,14 +97,10 @@ Json TableRows(std::span<const BatchEntry> entries) {
   Json rows = Json::array();
   for (const BatchEntry& entry : entries) {
     const Json fit = DocumentOf(entry);
-    const auto value_at = [&](std::string_view pointer) {
-      const Json::json_pointer at{std::string(pointer)};
-      return fit.contains(at) ? fit.at(at) : Json();
-    };
     Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) row[column.name] = value_at(column.pointer);
+    for (const ColumnRow& column : kBatchColumns) row[column.name] = At(fit, column.pointer);
     std::vector<std::string> codes;
-    for (const Json& warning : value_at("/warnings")) codes.push_back(warning["code"]);
+    for (const Json& warning : At(fit, "/warnings")) codes.push_back(warning["code"]);
     row["warnings"] = fmt::format("{}", fmt::join(codes, " "));
     row["fault"] = entry.fault;
     row["version"] = Version();
@@ -186,9 +183,8 @@ std::string Address(std::string_view name) {
   std::string address;
   for (const char character : name) {
     const auto byte = static_cast<unsigned char>(character);
-    const bool is_plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
-                          (byte >= '0' && byte <= '9') || character == '-' || character == '_' ||
-                          character == '.';
+    const bool is_plain = (byte < 128 && std::isalnum(byte) != 0) ||
+                          std::string_view("-_.").find(character) != std::string_view::npos;
     address += is_plain ? std::string(1, character) : fmt::format("%{:02X}", byte);
   }
   return address;
@@ -243,12 +239,7 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
         return FitSource(request, files[k], strictness, &ReadRecords,
                          page_of ? page_of(k) : WritePage());
       };
-      try {
-        at_work.push_back(std::async(std::launch::async, fit));
-      } catch (const std::system_error&) {  // no other thread: those that there are will do
-        threads = std::max<std::size_t>(1, at_work.size());
-        at_work.push_back(std::async(std::launch::deferred, fit));
-      }
+      at_work.push_back(std::async(fit));  // here where no thread can be started
       ++next;
     }
     entries.push_back(at_work.front().get());
@@ -277,18 +268,15 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
 }
 
 std::string ToJson(std::span<const BatchEntry> entries, const std::string& output) {
-  Json files = Json::array();
-  for (const BatchEntry& entry : entries) {
-    files.push_back({{"file", entry.file},
-                     {"done", entry.done},
-                     {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
-                     {"fit", DocumentOf(entry)}});
-  }
-  return Dump({{"schema", "mindahl.batch/1"},
-               {"version", Version()},
-               {"output", output.empty() ? Json() : Json(output)},
-               {"files", std::move(files)},
-               {"repeats", RepeatRows(entries)}});
+  Json files = report::ListOf(entries, [](const BatchEntry& entry) -> Json {
+    return {{"file", entry.file},
+            {"done", entry.done},
+            {"fault", entry.fault.empty() ? Json() : Json(entry.fault)},
+            {"fit", DocumentOf(entry)}};
+  });
+  return report::Document("mindahl.batch/1", {{"output", output.empty() ? Json() : Json(output)},
+                                              {"files", std::move(files)},
+                                              {"repeats", RepeatRows(entries)}});
 }
 
 std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {

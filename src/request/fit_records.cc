@@ -2,9 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -39,11 +37,8 @@ std::size_t LineOf(const RecordFile& input, std::size_t sample) {
   return sample < input.lines.size() ? input.lines[sample] : sample + 1;
 }
 
-/// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
-std::string PlaceOf(const std::string& file, const RecordFile& input,
-                    const io::ChosenColumn& column, std::size_t sample) {
-  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.index);
-  return fmt::format("{}:{}:{}", file, input.lines[sample], column.index);
+const report::Units& UnitsOf(const RecordFile& input) {
+  return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
 }
 
 /// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
@@ -57,23 +52,19 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
   if (half_range == 0 || (half_range >= kSmallest && half_range <= kLargest)) return half_range;
   const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
   throw InputError(
-      fmt::format("{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
+      fmt::format("{}:{}:{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
                   "choose other units",
-                  PlaceOf(file, input, column, static_cast<std::size_t>(widest - values.begin())),
-                  what, half_range, unit));
-}
-
-const report::Units& UnitsOf(const RecordFile& input) {
-  return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+                  file, LineOf(input, static_cast<std::size_t>(widest - values.begin())),
+                  column.index, what, half_range, unit));
 }
 
 [[noreturn]] void ThrowConstant(const std::string& file, const RecordFile& input,
                                 const io::ChosenColumn& column, double value, std::string_view what,
                                 std::string_view unit, std::string_view need) {
   throw InputError(
-      fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
-                  "choose another column with --{}",
-                  PlaceOf(file, input, column, 0), what, value, unit, need, what));
+      fmt::format("{}:{}:{}: the {} never changes, it is {} {} in every row: a fit needs a {} "
+                  "contact; choose another column with --{}",
+                  file, LineOf(input, 0), column.index, what, value, unit, need, what));
 }
 
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
@@ -378,22 +369,16 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFi
 }
 
 bool Established(const FitResult& fit, Strictness strictness) {
-  if (!fit.converged) return false;
+  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
+  const bool is_strict = strictness == Strictness::kAdequate;
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  switch (strictness) {
-    case Strictness::kNone:
-      return true;
-    case Strictness::kDoubtful:
-      return verdict != AdequacyVerdict::kInadequate &&
-             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
-    case Strictness::kAdequate:
-      return verdict == AdequacyVerdict::kAdequate &&
-             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-               return estimate.status == ParameterStatus::kFixed ||
-                      estimate.identifiability == Identifiability::kIdentifiable;
-             });
-  }
-  return false;
+  return (is_strict ? verdict == AdequacyVerdict::kAdequate
+                    : verdict != AdequacyVerdict::kInadequate) &&
+         std::ranges::all_of(fit.parameters, [&](const ParameterEstimate& estimate) {
+           return is_strict ? estimate.status == ParameterStatus::kFixed ||
+                                  estimate.identifiability == Identifiability::kIdentifiable
+                            : estimate.is_known();
+         });
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {

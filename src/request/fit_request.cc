@@ -1,11 +1,8 @@
 #include "mindahl/request/fit_request.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <span>
-#include <tuple>
 #include <utility>
 
 #include "core/nearest_name.h"

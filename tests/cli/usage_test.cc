@@ -193,7 +193,7 @@ const std::vector<BadUsage> kBadUsage = {
      "give one of the two"},
     {"contact --friction 0.3 --normal-load 1 --youngs-modulus-1 1e9 --poisson-1 0.3 "
      "--radius-1 inf --youngs-modulus-2 1e9 --poisson-2 0.3 --radius-2 inf",
-     "--radius-1 and --radius-2: relative curvature"},
+     "relative curvature 1/R1 + 1/R2 [1/m]"},
     {"contact --friction 0.3 --normal-load 1e300 --contact-radius 1e-200 --compliance 4e-300 "
      "--json #",
      "maximum pressure [Pa] = inf"},
@@ -362,7 +362,7 @@ TEST_F(Config, RefusesWhatItDoesNotKnow) {
         {"model = \"open\n", "options.toml:1: "},
         {"fix = [1, [2]]\n", "options.toml:1: the value is no string"},
         {"model = 2026-01-01\n", "options.toml:1: the value is no string"},
-        {"[fits]\nmodel = \"mindlin\"\n", "section 'fits' is no command"},
+        {"[fits]\nmodel = \"mindlin\"\n", "'fit.fits' is no option of fit"},
         {"model = \"coulomb\"\n", "--model"},
         {"normal-load = \"heavy\"\n", "--normal-load"}}) {
     SCOPED_TRACE(toml);

@@ -47,20 +47,6 @@ TEST(FitRecords, RefusesADisplacementThatNeverChangesAndAForceThatDoesInNoFile) 
   EXPECT_THAT(RefusalOf({LoopFile(), slack}), Not(HasSubstr("never changes")));
 }
 
-TEST(FitRecords, RefusesUnitsBeyondAnyAtTheWidestValue) {
-  io::RecordFile file = LoopFile();
-  file.record.displacement[20] = 4e101;
-  file.record.displacement[30] = -9e101;
-  EXPECT_THAT(RefusalOf({file}),
-              StartsWith("a.csv:33:2: half the range of the displacement is 6.5e+101 m"));
-  file = LoopFile();
-  for (double& force : file.record.force) force *= 1e-103;
-  EXPECT_THAT(RefusalOf({file}),
-              AllOf(StartsWith("a.csv:"), HasSubstr(":4: half the range of the force is")));
-  file.lines.clear();  // a record that no file gave
-  EXPECT_THAT(RefusalOf({file}), StartsWith("a.csv:4: half the range"));
-}
-
 TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   FitRequest request;
   request.fit.preparation.reversal_gate = 4.1e-6;

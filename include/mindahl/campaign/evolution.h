@@ -25,6 +25,9 @@ class Course {
     double least = 0.0;     ///< smallest of its values
     double greatest = 0.0;  ///< likewise
     std::size_t count = 0;
+
+    /// Takes in the bin that comes after it.
+    void Merge(const Bin& next);
   };
 
   static constexpr std::size_t kMostBins = 512;

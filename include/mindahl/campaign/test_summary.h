@@ -17,10 +17,6 @@ struct EnergyCounts {
   std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
 };
 
-/// Returns " (cycles that do not close, 2, count as the median of those before them; 1 count as
-/// zero)"; nothing where all were measured.
-std::string InWords(const EnergyCounts& counts);
-
 /// Energy [J] dissipated over a test, from fits in their order.
 ///
 /// A cycle that does not end where it began is no loop, and what is between its ends is no energy

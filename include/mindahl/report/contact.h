@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,11 +45,6 @@ struct AlphaTest {
   std::optional<double> p_value;  ///< two-sided, of Student's t; empty where α is at a bound
 };
 AlphaTest TestAlpha(const identification::FitResult& fit);
-
-/// Returns the theories of docs/theory.md §9 of how the stiffness follows the load, σ ∝ N^p, whose
-/// exponent lies within the interval of the fitted one, "smooth sphere (0.333)"; none where the
-/// records have one load, or it is open.
-std::vector<std::string> TheoriesOfLoad(const identification::FitResult& fit);
 
 /// True if a load series denies Hertz's law: 1/3 lies outside the interval of p, or p was held at
 /// another value. Then no ρ and no pressure follow from a contact radius.

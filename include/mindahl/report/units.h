@@ -47,8 +47,7 @@ std::string Quantity(double value, std::string_view unit, int digits = 5);
 /// @param error  > 0; where it is not, or not finite, the number has six digits
 std::string RoundedTo(double error, double value);
 
-/// Returns "48.142 ± 0.039 N/µm"; "± open" of an error that is not finite, no error where it is
-/// zero or there is none.
+/// Returns "48.142 ± 0.039 N/µm", no error where it is zero or there is none.
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit);
 
 /// Returns "48.14 N/µm (48.07 … 48.22)"; "open" for an end that there is not, no brackets without

@@ -1,38 +1,170 @@
-#include "cli/fit_request.h"
+#include "cli/request_options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <limits>
+#include <array>
+#include <cmath>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "cli/contact_options.h"
-#include "cli/options.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "core/text.h"
+#include "io/cells.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/request/fit_request.h"
 
 namespace mindahl::cli {
 
+using contact::KnownBody;
+using contact::UncertainValue;
 using identification::Interval;
 using identification::Term;
 
 namespace {
 
+constexpr const char* kGroup = "What is known of the contact";
+
+/// Value and uncertainty, which is empty where there is no separator.
+std::pair<std::string_view, std::optional<std::string_view>> SplitUncertainty(
+    std::string_view text) {
+  constexpr std::array<std::string_view, 3> kSeparators = {"±", "+/-", "+-"};
+  for (const std::string_view separator : kSeparators) {
+    const std::size_t at = text.find(separator);
+    if (at != std::string_view::npos) {
+      return {text.substr(0, at), text.substr(at + separator.size())};
+    }
+  }
+  return {text, std::nullopt};
+}
+
+void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
+              const std::string& description, const std::string& unit, const std::string& type) {
+  OptionGroup(command, kGroup)
+      .AddRead(
+          name,
+          [&target, name, unit](const std::string& text) {
+            target = ParseUncertainValue(text, name, unit);
+          },
+          description, type + "[+-U]");
+}
+
+/// "25,50±1%,100".
+void ReadNormalLoads(const std::string& text, ContactOptions& options) {
+  std::vector<UncertainValue> loads;
+  for (const std::string_view load : PartsOf(text, ',')) {
+    loads.push_back(ParseUncertainValue(load, "--normal-load", "N"));
+  }
+  SetNormalLoads(options, loads);
+}
+
+void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
+  AddKnown(command, fmt::format("--youngs-modulus-{}", number), body.youngs_modulus,
+           fmt::format("Young's modulus of body {} [Pa]", number), "Pa", "PA");
+  AddKnown(command, fmt::format("--poisson-{}", number), body.poisson_ratio,
+           fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "-", "NU");
+  AddKnown(command, fmt::format("--radius-{}", number), body.radius,
+           fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
+           "m", "M");
+}
+
+}  // namespace
+
+UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
+                                   std::string_view unit) {
+  const auto [number, uncertainty] = SplitUncertainty(text);
+  std::string stated(number);
+  std::optional<double> standard_error = 0.0;
+  bool is_percentage = false;
+  if (uncertainty) {
+    std::string_view magnitude = io::Trimmed(*uncertainty);
+    is_percentage = magnitude.ends_with('%');
+    if (is_percentage) magnitude.remove_suffix(1);
+    // A unit at the end is that of the value too.
+    if (io::Trimmed(number.substr(BeginOfUnit(number))).empty()) {
+      stated += magnitude.substr(BeginOfUnit(magnitude));
+    }
+    standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
+  }
+  const std::optional<double> value = ParseQuantity(stated, unit);
+  if (value && standard_error && is_percentage && std::isfinite(*value)) {
+    *standard_error *= 0.01 * std::abs(*value);
+  }
+  if (standard_error && !(std::isfinite(*standard_error) && *standard_error >= 0)) {
+    throw InputError(
+        fmt::format("{}: the standard uncertainty in '{}' is {}: must be finite and >= 0; leave it "
+                    "out where the value is exact",
+                    option, text, *standard_error));
+  }
+  if (!value || !standard_error) {
+    throw InputError(fmt::format(
+        "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
+        "50+-0.5, 50+/-0.5 or 50±1%",
+        option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit)));
+  }
+  return {*value, *standard_error};
+}
+
+void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
+  if (loads == NormalLoads::kOneAFile) {
+    OptionGroup(command, kGroup)
+        .AddRead(
+            "--normal-load",
+            [&options](const std::string& text) { ReadNormalLoads(text, options); },
+            "normal load N [N], one for all files or one a file: 25,50,100; like\n"
+            "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
+            "50+/-0.5, 50±1%",
+            "N[+-U],...");
+  } else {
+    AddKnown(command, "--normal-load", options.known.normal_load,
+             "normal load N [N]; like all below exact, or with a standard\n"
+             "uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%",
+             "N", "N");
+  }
+  AddBodyOptions(command, options.known.body_1, 1);
+  AddBodyOptions(command, options.known.body_2, 2);
+  AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "m",
+           "M");
+  AddKnown(command, "--compliance", options.known.tangential_compliance,
+           "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance (many texts write G* for its "
+           "inverse)",
+           "1/Pa", "1/PA");
+}
+
+void AddFrictionOption(CLI::App& command, ContactOptions& options) {
+  AddKnown(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]", "-",
+           "MU");
+}
+
+void AddLawOptions(CLI::App& command, LawOptions& request) {
+  const OptionGroup parameters(command, "Parameters");
+  parameters.AddQuantity("--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M",
+                         "N/m");
+  parameters.Add("--alpha", request.alpha,
+                 "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA");
+  parameters.AddQuantity("--slip-force", request.slip_force, "slip force Tc [N]", "N", "N");
+  AddContactOptions(command, request.contact);
+  AddFrictionOption(command, request.contact);
+}
+
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig) {
+  const double slip = models::GrossSlipDisplacement(law);
+  return (std::isfinite(slip) ? slip : 3 * law.slip_force / law.tangential_stiffness) +
+         law.slip_force / rig.stiffness;
+}
+
+namespace {
+
 constexpr std::string_view kFitIt = "fit";
+constexpr const char* kColumnGroup = "Columns and units";
 
 /// Returns the unit of a parameter; "-" of a name that is none, which the fit refuses.
 std::string_view UnitOf(std::string_view parameter) {
@@ -124,7 +256,7 @@ void ReadRig(const std::string& text, identification::FitOptions& fit) {
     fit.terms.emplace_back(kName);
     return;
   }
-  const contact::UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
+  const UncertainValue stated = ParseUncertainValue(text, kOption, "N/m");
   RequirePositive("--rig-stiffness [N/m]", stated.value);
   if (stated.standard_error == 0) return Hold(kOption, kName, stated.value, fit);
   fit.terms.emplace_back(kName);
@@ -151,9 +283,9 @@ void ReadSelection(std::string_view what, std::string_view range, const std::str
 }
 
 void AddSelections(CLI::App& command, FitRequest& request) {
-  const OptionGroup group(command, std::string(kColumnGroup));
+  const OptionGroup group(command, kColumnGroup);
   group
-      .AddReadAll(
+      .AddRead<std::vector<std::string>>(
           "--select",
           [&request](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
@@ -225,7 +357,7 @@ void AddJoin(CLI::App& command, FitRequest& options) {
 }
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
-  const OptionGroup group(command, std::string(kColumnGroup));
+  const OptionGroup group(command, kColumnGroup);
   group.Add("--displacement", columns.displacement,
             "displacement column: header name or number from 1, with its unit if\nthe header has "
             "none, \"3 [mm]\", or that alone, \"[mm]\"; or a sum of\ncolumns with factors and an "
@@ -281,7 +413,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       "K with standard uncertainty U; default rigid",
       "K[+-U]|fit");
   group
-      .AddReadAll(
+      .AddRead<std::vector<std::string>>(
           "--covariate",
           [&fit](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) ReadCovariate(text, fit);
@@ -295,7 +427,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->allow_extra_args(false);
   const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
-    group.AddReadAll(
+    group.AddRead<std::vector<std::string>>(
         name,
         [&target, name, form, parse](const std::vector<std::string>& texts) {
           ReadAssignments(texts, name, form, target, parse);
@@ -311,7 +443,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   add_assignments(
       "--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
       [](std::string_view value, std::string_view option, std::string_view, std::string_view unit) {
-        const contact::UncertainValue prior = ParseUncertainValue(value, option, unit);
+        const UncertainValue prior = ParseUncertainValue(value, option, unit);
         if (prior.standard_error > 0) {
           return identification::Prior{prior.value, prior.standard_error};
         }
@@ -321,16 +453,14 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       },
       "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
   group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
-  group
-      .Add("--force-noise", fit.force_noise,
-           "known standard deviation of the force [N]; default from the residuals", "N")
-      ->transform(InUnit("N"));
-  group
-      .Add("--displacement-noise", fit.preparation.displacement_noise,
-           "known standard deviation of the displacement [m]; default from the\ndata where they "
-           "show any",
-           "M")
-      ->transform(InUnit("m"));
+  group.AddQuantity("--force-noise", fit.force_noise,
+                    "known standard deviation of the force [N]; default from the residuals", "N",
+                    "N");
+  group.AddQuantity(
+      "--displacement-noise", fit.preparation.displacement_noise,
+      "known standard deviation of the displacement [m]; default from the\ndata where they "
+      "show any",
+      "M", "m");
   group.AddChoice("--loss", fit.loss,
                   {{"none", identification::Loss::kNone},
                    {"huber", identification::Loss::kHuber},
@@ -338,29 +468,24 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                    {"tukey", identification::Loss::kTukey}},
                   "weight of residuals that are large against their scatter: huber and\ncauchy "
                   "reduce it, tukey reduces it to zero");
-  group
-      .Add("--reversal-gate", fit.preparation.reversal_gate,
-           "excursions up to this [m] are noise, not reversals; default from the\ndata", "M")
-      ->transform(InUnit("m"));
+  group.AddQuantity("--reversal-gate", fit.preparation.reversal_gate,
+                    "excursions up to this [m] are noise, not reversals; default from the\ndata",
+                    "M", "m");
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request.columns);
   AddSelections(command, request);
-  const OptionGroup group(command, std::string(kColumnGroup));
+  const OptionGroup group(command, kColumnGroup);
   io::RecordColumns& columns = request.columns;
   group.Add("--with", columns.with,
             "another file of the same test, whose columns follow those of the file:\nby time "
             "where both have one, else row by row",
             "FILE");
-  group
-      .AddRead(
-          "--broken-rows",
-          [&columns](const std::string& text) { columns.skip_broken_rows = text == "skip"; },
-          "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
-          "empty cells, which are left out; skip: all are left out",
-          "TEXT")
-      ->check(OneOf({"refuse", "skip"}));
+  group.AddChoice(
+      "--broken-rows", columns.skip_broken_rows, {{"refuse", false}, {"skip", true}},
+      "refuse: a row without a number in a needed column is an error, but for\nup to 1 % of "
+      "empty cells, which are left out; skip: all are left out");
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }

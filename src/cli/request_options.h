@@ -1,19 +1,23 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "cli/app.h"
+#include "cli/options.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/models/response.h"
 #include "mindahl/request/contact_request.h"
+#include "mindahl/request/fit_request.h"
 
+// Options that make a request: for a contact, for a law, and for a fit.
 namespace mindahl::cli {
 
 using request::ContactOptions;
+using request::FitRequest;
 using LawOptions = request::LawRequest;
+using request::Strictness;
 
 /// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
 /// other option and, unless it is exact, one standard uncertainty, in percent of the number's
@@ -42,5 +46,19 @@ void AddLawOptions(CLI::App& command, LawOptions& request);
 /// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
 /// slip is only approached.
 double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
+
+void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
+
+void AddJoin(CLI::App& command, FitRequest& options);
+
+/// Adds the options that say which columns of a record are read, and in what unit.
+void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
+
+/// Adds the options of the model that is fitted to them.
+void AddModelOptions(CLI::App& command, FitRequest& request);
+
+/// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
+/// @param otherwise  what happens to a fit that is not: "exit status 3"
+void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise);
 
 }  // namespace mindahl::cli
