@@ -181,8 +181,7 @@ MINDAHL_INLINE void EvaluateBlock(const ScaledBranch& branch, double shape_expon
   });
 }
 
-MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch,
-                                       const Differentiation<DirectShape>::BranchGradient& start,
+MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch, const BranchGradient& start,
                                        double shape_exponent, double limit, std::size_t count,
                                        Block& block) {
   const RunConstants run = ConstantsOf(branch, shape_exponent);
@@ -240,9 +239,9 @@ namespace {
                                  std::size_t count, Block& block) {                               \
     EvaluateBlock(branch, shape_exponent, limit, count, block);                                   \
   }                                                                                               \
-  attributes void Differentiate##name(                                                            \
-      const ScaledBranch& branch, const Differentiation<DirectShape>::BranchGradient& start,      \
-      double shape_exponent, double limit, std::size_t count, Block& block) {                     \
+  attributes void Differentiate##name(const ScaledBranch& branch, const BranchGradient& start,    \
+                                      double shape_exponent, double limit, std::size_t count,     \
+                                      Block& block) {                                             \
     DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                       \
   }                                                                                               \
   constexpr BranchKernel k##name = {Evaluate##name, Differentiate##name};
@@ -296,8 +295,7 @@ void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, doubl
   }
 }
 
-void DifferentiateGeneralRun(const ScaledBranch& branch,
-                             const Differentiation<DirectShape>::BranchGradient& branch_gradient,
+void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,
                              const NormalizedGradient& gradient, const BranchKernel& kernel) {

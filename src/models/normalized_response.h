@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -27,10 +29,13 @@ struct NormalizedGradient {
   std::span<double> log_spring_travel;      ///< ∂t/∂ln c
   std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
 
+  /// Returns the columns in the order of ResponseParameter.
+  [[nodiscard]] std::array<std::span<double>, kParameters> columns() const {
+    return {log_rate, shape_exponent, unloaded_displacement, log_spring_travel, asymmetry};
+  }
   /// True if no derivative is wanted.
   [[nodiscard]] bool empty() const {
-    return log_rate.empty() && shape_exponent.empty() && unloaded_displacement.empty() &&
-           log_spring_travel.empty() && asymmetry.empty();
+    return std::ranges::all_of(columns(), [](const auto& column) { return column.empty(); });
   }
 };
 
@@ -71,16 +76,8 @@ class NormalizedResponse {
                               OriginSensitivity& sensitivity);
 
  private:
-  using Rigid = Differentiation<DirectShape>;
-  using Sprung = Differentiation<SprungShape<backbone::GeneralShape<double>>>;
-
-  auto& GradientsOf(const Rigid& /*differentiation*/) { return rigid_; }
-  auto& GradientsOf(const Sprung& /*differentiation*/) { return sprung_; }
-
   ScaledBranches branches_;
-  std::vector<double> per_asymmetry_;  // ∂t/∂a at the branches' origins
-  std::vector<Rigid::BranchGradient> rigid_;
-  std::vector<Sprung::BranchGradient> sprung_;
+  std::vector<BranchGradient> gradients_;
 };
 
 /// A record under a load that varies, as the law follows it: what LoadingPath is at constant load.
@@ -163,7 +160,7 @@ class NormalizedDisplacement {
   /// @param force  [N], its offset included
   /// @param d      written, of the same size
   /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
-  ///   nothing of use
+  ///   nothing of use from the first of these samples on, where it is not finite
   /// @throws InvalidArgument for sizes that differ and a model that is scaled by the peak
   bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
                 std::span<const double> force, std::span<double> d) {
@@ -187,13 +184,14 @@ class NormalizedDisplacement {
     double height = 0.0;     // m·v·Tc [N]
     double span = 1.0;       // m
     double remaining = 1.0;  // v
+    double unit = 1.0;       // m·v^β
     bool is_virgin = false;
     double remaining_per_log_rate = 0.0;
     double remaining_per_zero = 0.0;
     Point start = {};  // at the origin
   };
-  static bool PointOn(const Branch& branch, const ForcedLaw& law, double force, bool with_gradient,
-                      Point& point);
+  static Point PointOn(const Branch& branch, const ForcedLaw& law, double force,
+                       bool with_gradient);
 
   std::vector<Branch> branches_;
 };

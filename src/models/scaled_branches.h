@@ -28,27 +28,21 @@ const Shape& ShapeOn(const Shape& shape, const ScaledBranch& /*branch*/) {
   return shape;  // NOLINT(bugprone-return-const-ref-from-parameter): lives as long as the shape
 }
 
-/// ... but behind a spring each has its own stiffness in proportion to the spring's.
-template <typename Shape>
+/// ... but in series with a spring each has its own stiffness in proportion to the spring's.
 struct SprungShape {
-  Shape contact;
-  double spring_travel;  // c = Tc/k_r [m] of the spring at slip
+  double shape_exponent;
+  double spring_travel;  // c = Tc/k_r [m] of the spring at slip; 0 without one
 };
 
 /// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
 /// @throws InvalidArgument where the branch is too stiff for the spring
-inline double SeriesComplianceOn(const ScaledBranch& branch, double spring_travel) {
-  const double compliance = branch.height * branch.rate * spring_travel;
+inline backbone::InSeries<double> ShapeOn(const SprungShape& shape, const ScaledBranch& branch) {
+  const double compliance = branch.height * branch.rate * shape.spring_travel;
   if (!(compliance <= backbone::kLargestSeriesCompliance<double>)) {
     ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
                  "must be <= 1e100");
   }
-  return compliance;
-}
-
-template <typename Shape>
-backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledBranch& branch) {
-  return {shape.contact, SeriesComplianceOn(branch, shape.spring_travel)};
+  return {shape.shape_exponent, compliance};
 }
 
 /// Calls use(shape) with the cheapest shape that is exact for α, behind a spring unless it is
@@ -56,13 +50,11 @@ backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledB
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
 template <typename Use>
 void WithShapeBehindSpring(double shape_exponent, double spring_travel, const Use& use) {
-  backbone::WithShape(shape_exponent, [&](const auto& contact) {
-    if (spring_travel == 0) {
-      use(contact);
-    } else {
-      use(SprungShape{contact, spring_travel});
-    }
-  });
+  if (spring_travel == 0) {
+    backbone::WithShape(shape_exponent, use);
+  } else {
+    use(SprungShape{shape_exponent, spring_travel});
+  }
 }
 
 /// A model's rules for how branches start, at σ/Tc and α of a law, behind a spring or none.
