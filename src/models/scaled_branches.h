@@ -73,6 +73,22 @@ class BranchScaling {
     return model_.steady_peak(ContactAmplitude(y), shape_exponent_);
   }
 
+  /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
+  /// left side is increasing and concave, so that Newton's rule rises to the root from below.
+  [[nodiscard]] double ContactAmplitude(double total) const {
+    if (series_compliance_ == 0) return total;
+    constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
+    constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
+    double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
+    for (int i = 0; i < kIterations && y > 0; ++i) {
+      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
+      const double residual = (total - y) - series_compliance_ * peak.force;
+      if (residual <= kRounding * total) break;
+      y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
+    }
+    return y;
+  }
+
   /// Peak at the amplitude of spring and contact together, by the implicit function theorem:
   ///   y + κ·t*(y) = Y   ⇒   dt*/dY = t*'/(1 + κt*')
   struct PeakInSeries {
@@ -128,22 +144,6 @@ class BranchScaling {
   }
 
  private:
-  /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
-  /// left side is increasing and concave, so that Newton's rule rises to the root from below.
-  [[nodiscard]] double ContactAmplitude(double total) const {
-    if (series_compliance_ == 0) return total;
-    constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
-    constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
-    double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
-    for (int i = 0; i < kIterations && y > 0; ++i) {
-      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
-      const double residual = (total - y) - series_compliance_ * peak.force;
-      if (residual <= kRounding * total) break;
-      y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
-    }
-    return y;
-  }
-
   /// Returns k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
   [[nodiscard]] double RateOf(const BranchScale& scale) const {
     constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
