@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -23,17 +24,6 @@ namespace {
 BranchLaw LawOf(const NormalizedLaw& law) {
   return {
       .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
-}
-
-/// Computes forces over Tc of one run.
-template <typename ShapeOnBranch>
-void EvaluateResponseRun(const ScaledBranch& branch, const ShapeOnBranch& shape, double limit,
-                         std::span<const double> displacement, std::span<double> t) {
-  models::EvaluateRun(branch, shape, 1.0, limit, displacement, t);
-}
-void EvaluateResponseRun(const ScaledBranch& branch, const backbone::GeneralShape<double>& shape,
-                         double limit, std::span<const double> displacement, std::span<double> t) {
-  EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
 }
 
 /// Computes what the kernel does not: of a branch in series with a spring, or by an asymmetry.
@@ -69,8 +59,13 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
     for (const BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
       const ScaledBranch& branch = branches_[static_cast<std::size_t>(run.branch)];
-      EvaluateResponseRun(branch, ShapeOn(shape, branch), limit,
-                          displacement.subspan(run.begin, count), t.subspan(run.begin, count));
+      const std::span<const double> places = displacement.subspan(run.begin, count);
+      const std::span<double> of_run = t.subspan(run.begin, count);
+      if constexpr (std::is_same_v<decltype(shape), const backbone::GeneralShape<double>&>) {
+        EvaluateGeneralRun(branch, law.shape_exponent, limit, places, of_run);
+      } else {
+        EvaluateRun(branch, ShapeOn(shape, branch), 1.0, limit, places, of_run);
+      }
     }
   });
 }

@@ -34,16 +34,8 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
   Validate(law);
   RequireSizes(path, displacement, "force", force);
   const double travel = IsRigid(rig) ? 0.0 : SpringTravel(model, law, rig);
-  const double limit = ForceLimit(model, path.asymmetry);
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
-    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law, travel), path, shape);
-    RequireReach(law, branches, displacement);
-    for (const BranchRun& run : path.runs) {
-      const std::size_t count = run.end - run.begin;
-      const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-      EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
-                  displacement.subspan(run.begin, count), force.subspan(run.begin, count));
-    }
+    EvaluatePath(model, law, travel, shape, path, displacement, force);
   });
 }
 

@@ -181,14 +181,6 @@ void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const 
   }
 }
 
-template <typename Shape>
-ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
-                             const Shape& shape) {
-  ScaledBranches scaled;
-  ScaleBranches(scaling, path, shape, scaled);
-  return scaled;
-}
-
 /// @throws InvalidArgument unless a path and what becomes of it are of the displacements
 inline void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
                          std::string_view what, std::span<const double> written) {
@@ -233,6 +225,23 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
 inline double ForceLimit(const FrictionModel& model, double asymmetry = 0.0) {
   return model.bounded ? 1 + std::abs(asymmetry) : 2.0;
+}
+
+/// Computes the forces [N] along a path.
+/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+template <typename Shape>
+void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double spring_travel,
+                  const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
+                  std::span<double> force) {
+  ScaledBranches branches;
+  ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
+  RequireReach(law, branches, displacement);
+  for (const BranchRun& run : path.runs) {
+    const std::size_t count = run.end - run.begin;
+    const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
+    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, ForceLimit(model, path.asymmetry),
+                displacement.subspan(run.begin, count), force.subspan(run.begin, count));
+  }
 }
 
 /// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):
