@@ -104,6 +104,7 @@ double VirginForce(const IwanElements& elements, double x) {
 
 /// The steady loop of a law between ±X.
 struct SteadyLoop {
+  double peak;                          // T* [N]
   double energy;                        // W [J]
   std::vector<double> corners;          // distances [m] at which the rising branch bends
   std::function<double(double)> force;  // on it [N], of distances [m] that do not fall
@@ -119,7 +120,8 @@ SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
           of.law.tangential_stiffness * std::pow(scale.remaining, of.law.shape_exponent),
       .shape_exponent = of.law.shape_exponent,
       .slip_force = of.law.slip_force * scale.span * scale.remaining};
-  return {models::SteadyLoopEnergy(*of.model, of.law, amplitude),
+  return {peak,
+          models::SteadyLoopEnergy(*of.model, of.law, amplitude),
           {models::GrossSlipDisplacement(branch)},
           [=](double distance) { return models::BackboneForce(branch, distance) - peak; }};
 }
@@ -130,20 +132,24 @@ SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
   const BoucWenBranch::State start{-branch.Peak(per_travel * amplitude)};
   BoucWenBranch::State end = start;
   branch.Rise(end, 2 * per_travel * amplitude);
-  return {law.slip_force / per_travel * 2 * end.work, {}, [=, at = start](double distance) mutable {
+  return {-law.slip_force * start.force,
+          law.slip_force / per_travel * 2 * end.work,
+          {},
+          [=, at = start](double distance) mutable {
             branch.Rise(at, per_travel * distance);
             return law.slip_force * at.force;
           }};
 }
 
 SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
-  SteadyLoop loop{};
+  SteadyLoop loop{
+      .peak = VirginForce(elements, amplitude), .energy = 0.0, .corners = {}, .force = {}};
   for (std::size_t j = 0; j < elements.size(); ++j) {
     const double stick = elements.slip_force[j] / elements.stiffness[j];
     loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - stick, 0.0);
     loop.corners.push_back(2 * stick);
   }
-  loop.force = [elements, peak = VirginForce(elements, amplitude)](double distance) {
+  loop.force = [elements, peak = loop.peak](double distance) {
     return 2 * VirginForce(elements, distance / 2) - peak;
   };
   return loop;
@@ -168,13 +174,13 @@ Scales ScalesOf(const ModelLaw& contact, double amplitude, const SteadyLaw& unit
   const auto excess = [&](double log_y) {
     const double y = std::exp(log_y);
     const SteadyLoop loop = LoopOf(unit, y);
-    return loop.energy / (4 * y * loop.force(2 * y)) - fullness;
+    return loop.energy / (4 * y * loop.peak) - fullness;
   };
   double log_y = std::log(1e-3);
   const double high = std::log(1e12);
   if (excess(log_y) < 0) log_y = excess(high) > 0 ? Solve(excess, log_y, high) : high;
   const double y = std::exp(log_y);
-  const double slip_force = wanted_peak / PeakForce(unit, y);
+  const double slip_force = wanted_peak / LoopOf(unit, y).peak;
   return {y * slip_force / amplitude, slip_force};
 }
 

@@ -231,7 +231,7 @@ struct SeriesDerivatives {
 ///
 /// For 0 <= κ <= kLargestSeriesCompliance and 0 <= Y <= kLargestDisplacement; Φ has a relative
 /// error below 4 ε. At most 3 iterations, found over 3e7 points; each is two or three
-/// transcendentals. Without a spring, κ = 0, there is none.
+/// transcendentals. Without a spring, κ = 0, and for α = 0 there is none.
 template <typename Real>
 class InSeries {
  public:
@@ -251,6 +251,7 @@ class InSeries {
 
   /// Returns Φ.
   [[nodiscard]] Real Force(Real total) const {
+    if (shape_exponent_ == 0) return std::min(total / (1 + compliance_), Real(1));
     if (compliance_ == 0) return GeneralShape<Real>{shape_exponent_}.Force(total);
     return Slips(total) ? Real(1) : ForceAt(LogShare(total));
   }
@@ -292,6 +293,7 @@ class InSeries {
   [[nodiscard]] Real DisplacementAt(Real log_share) const { return DecayOf(beta_, log_share).sum; }
   /// Returns y at Y short of slip.
   [[nodiscard]] Real ContactDisplacement(Real total) const {
+    if (shape_exponent_ == 0) return total / (1 + compliance_);
     return compliance_ == 0 ? total : DisplacementAt(LogShare(total));
   }
   [[nodiscard]] static Real ForceAt(Real log_share) { return -std::expm1(-log_share); }
