@@ -13,7 +13,6 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/variable_load.h"
-#include "models/load_zones.h"
 
 namespace {
 

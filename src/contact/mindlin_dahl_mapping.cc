@@ -166,38 +166,74 @@ std::optional<KnownContact> WithCommonPoissonRatio(KnownContact known) {
   return known;
 }
 
-std::optional<UncertainValue> IdentifyMaterial(ContactQuantity quantity, double stiffness,
-                                               const KnownContact& known) {
+/// Returns one of the last three quantities, what a smooth sphere of known radius tells of its
+/// materials; empty where the inputs do not determine it.
+/// @param one_ratio  as from WithCommonPoissonRatio()
+std::optional<double> MaterialOf(ContactQuantity quantity, double stiffness,
+                                 const KnownContact& known, bool one_ratio) {
   if (!known.normal_load || !KnowsRadii(known)) return std::nullopt;
+  const double load_radius = known.normal_load->value * EquivalentRadiusOf(known);
+  const auto wanted = [&](double compliance, double effective_modulus) {
+    return quantity == ContactQuantity::kSphereCompliance ? compliance : effective_modulus;
+  };
   if (KnowsCompliance(known)) {
     if (AreElastic(known) || quantity != ContactQuantity::kSphereEffectiveModulus) {
       return std::nullopt;
     }
-    return Propagated(known, [&](const KnownContact& at) {
-      return 0.75 * at.normal_load->value * EquivalentRadiusOf(at) /
-             std::pow(0.125 * stiffness * ComplianceOf(at), 3);
-    });
+    return 0.75 * load_radius / std::pow(0.125 * stiffness * ComplianceOf(known), 3);
   }
   if (const int body = BodyOfUnknownModulus(known); body != 0) {
-    if (!WithModulusOfStiffness(known, body, stiffness)) return std::nullopt;
-    return Propagated(known, [&](const KnownContact& at) {
-      std::optional<KnownContact> whole = WithModulusOfStiffness(at, body, stiffness);
-      if (!whole) return std::numeric_limits<double>::infinity();
-      return quantity == ContactQuantity::kSphereCompliance ? ComplianceOf(*whole)
-             : quantity == ContactQuantity::kSphereEffectiveModulus
-                 ? EffectiveModulusOf(*whole)
-                 : ModulusOf(*whole, body)->value;
-    });
+    std::optional<KnownContact> whole = WithModulusOfStiffness(known, body, stiffness);
+    if (!whole) return std::nullopt;
+    return quantity == ContactQuantity::kSphereYoungsModulus
+               ? ModulusOf(*whole, body)->value
+               : wanted(ComplianceOf(*whole), EffectiveModulusOf(*whole));
   }
-  const std::optional<KnownContact> common = WithCommonPoissonRatio(known);
-  if (!common || quantity == ContactQuantity::kSphereYoungsModulus) return std::nullopt;
-  return Propagated(*common, [&](const KnownContact& at) {
-    const double nu = at.body_1.poisson_ratio->value;
-    const double product = 2 * (2 - nu) / (1 - nu);  // G*E*
-    const double compliance = std::sqrt(384 * at.normal_load->value * EquivalentRadiusOf(at) /
-                                        product / std::pow(stiffness, 3));
-    return quantity == ContactQuantity::kSphereCompliance ? compliance : product / compliance;
-  });
+  if (quantity == ContactQuantity::kSphereYoungsModulus || !one_ratio) return std::nullopt;
+  const double ratio = *known.body_1.poisson_ratio;
+  const double product = 2 * (2 - ratio) / (1 - ratio);  // G*E*
+  const double compliance = std::sqrt(384 * load_radius / product / std::pow(stiffness, 3));
+  return wanted(compliance, product / compliance);
+}
+
+/// Returns a quantity by the values of what is known; empty where they do not determine it.
+std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double slip_force,
+                              const KnownContact& known, bool one_ratio) {
+  const bool has_compliance = KnowsCompliance(known);
+  const double fitted_radius = has_compliance ? 0.125 * stiffness * ComplianceOf(known) : 0.0;
+  const double radius = known.contact_radius ? known.contact_radius->value : fitted_radius;
+  const bool has_pressure = known.normal_load && radius > 0;
+  switch (quantity) {
+    case ContactQuantity::kFrictionCoefficient:
+      if (!known.normal_load) return std::nullopt;
+      return InRange("friction coefficient [-]",
+                     static_cast<long double>(slip_force) / known.normal_load->value);
+    case ContactQuantity::kContactRadius:
+      if (!has_compliance) return std::nullopt;
+      return fitted_radius;
+    case ContactQuantity::kTangentialCompliance:
+      if (!known.contact_radius) return std::nullopt;
+      return 8.0 * radius / stiffness;
+    case ContactQuantity::kEquivalentRadius:
+      if (!has_pressure || !AreElastic(known)) return std::nullopt;
+      return HertzEquivalentRadius(known.normal_load->value, radius, EffectiveModulusOf(known));
+    case ContactQuantity::kMaximumPressure:
+      if (!has_pressure) return std::nullopt;
+      return HertzMaximumPressure(known.normal_load->value, radius);
+    case ContactQuantity::kStiffnessRatio:
+      if (!KnowsHertz(known) && !(known.contact_radius && has_compliance)) return std::nullopt;
+      return stiffness /
+             MindlinTangentialStiffness(KnowsHertz(known) ? HertzRadiusOf(known) : radius,
+                                        ComplianceOf(known));
+    case ContactQuantity::kHertzPressure:
+      if (!KnowsHertz(known)) return std::nullopt;
+      return HertzMaximumPressure(known.normal_load->value, HertzRadiusOf(known));
+    case ContactQuantity::kSphereCompliance:
+    case ContactQuantity::kSphereEffectiveModulus:
+    case ContactQuantity::kSphereYoungsModulus:
+      break;
+  }
+  return MaterialOf(quantity, stiffness, known, one_ratio);
 }
 
 // Names of the missing ones, in words.
@@ -320,55 +356,14 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
   RequirePositive("tangential stiffness [N/m]", stiffness);
   RequirePositive("slip force [N]", slip_force);
   Validate(known);
-  const auto radius_of = [&](const KnownContact& at) {
-    return at.contact_radius ? at.contact_radius->value : 0.125 * stiffness * ComplianceOf(at);
+  const std::optional<KnownContact> common = WithCommonPoissonRatio(known);
+  const auto value_at = [&](const KnownContact& at) {
+    return ValueOf(quantity, stiffness, slip_force, at, common.has_value());
   };
-  const bool has_pressure = known.normal_load && (known.contact_radius || KnowsCompliance(known));
-  switch (quantity) {
-    case ContactQuantity::kFrictionCoefficient:
-      if (!known.normal_load) return std::nullopt;
-      return Propagated(known, [&](const KnownContact& at) {
-        return InRange("friction coefficient [-]",
-                       static_cast<long double>(slip_force) / at.normal_load->value);
-      });
-    case ContactQuantity::kContactRadius:
-      if (!KnowsCompliance(known)) return std::nullopt;
-      return Propagated(
-          known, [&](const KnownContact& at) { return 0.125 * stiffness * ComplianceOf(at); });
-    case ContactQuantity::kTangentialCompliance:
-      if (!known.contact_radius) return std::nullopt;
-      return Propagated(known, [&](const KnownContact& at) {
-        return 8.0 * at.contact_radius->value / stiffness;
-      });
-    case ContactQuantity::kEquivalentRadius:
-      if (!has_pressure || !AreElastic(known)) return std::nullopt;
-      return Propagated(known, [&](const KnownContact& at) {
-        return HertzEquivalentRadius(at.normal_load->value, radius_of(at), EffectiveModulusOf(at));
-      });
-    case ContactQuantity::kMaximumPressure:
-      if (!has_pressure) return std::nullopt;
-      return Propagated(known, [&](const KnownContact& at) {
-        return HertzMaximumPressure(at.normal_load->value, radius_of(at));
-      });
-    case ContactQuantity::kStiffnessRatio: {
-      const bool by_hertz = KnowsHertz(known);
-      if (!by_hertz && !(known.contact_radius && KnowsCompliance(known))) return std::nullopt;
-      return Propagated(known, [&](const KnownContact& at) {
-        const double radius = by_hertz ? HertzRadiusOf(at) : at.contact_radius->value;
-        return stiffness / MindlinTangentialStiffness(radius, ComplianceOf(at));
-      });
-    }
-    case ContactQuantity::kHertzPressure:
-      if (!KnowsHertz(known)) return std::nullopt;
-      return Propagated(known, [](const KnownContact& at) {
-        return HertzMaximumPressure(at.normal_load->value, HertzRadiusOf(at));
-      });
-    case ContactQuantity::kSphereCompliance:
-    case ContactQuantity::kSphereEffectiveModulus:
-    case ContactQuantity::kSphereYoungsModulus:
-      break;
-  }
-  return IdentifyMaterial(quantity, stiffness, known);
+  if (!value_at(common.value_or(known))) return std::nullopt;
+  return Propagated(common.value_or(known), [&](const KnownContact& at) {
+    return value_at(at).value_or(std::numeric_limits<double>::infinity());
+  });
 }
 
 std::vector<std::string> DoubtsAbout(const KnownContact& known,

@@ -9,6 +9,7 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -34,23 +35,6 @@ double Solve(const Function& function, double low, double high) {
       function, low, high, boost::math::tools::eps_tolerance<double>(kBits), iterations);
   return std::midpoint(from, to);
 }
-
-/// A model's rising branch, T = f(d) − T*.
-struct ModelBranch {
-  double peak;     // T*
-  BranchLaw from;  // f: the law of a virgin curve
-
-  ModelBranch(const ModelLaw& of, double amplitude)
-      : peak(models::SteadyPeakForce(*of.model, of.law, amplitude)) {
-    const double share = peak / of.law.slip_force;
-    const models::BranchScale scale = of.model->scale(-share, share, /*virgin=*/false);
-    // t(x) = t₀ + span·v·φ(k·x): the branch law of the stiffness σ·v^α with the limit span·v·Tc.
-    from = {.tangential_stiffness =
-                of.law.tangential_stiffness * std::pow(scale.remaining, of.law.shape_exponent),
-            .shape_exponent = of.law.shape_exponent,
-            .slip_force = of.law.slip_force * scale.span * scale.remaining};
-  }
-};
 
 /// Bouc's and Wen's law over y = kx/Tc, t = T/Tc, which has no closed form.
 class BoucWenBranch {
@@ -104,15 +88,6 @@ class BoucWenBranch {
     return excess(1.0) > -2 * kTolerance ? 1.0 : Solve(excess, 0.0, 1.0);
   }
 
-  /// Returns W·k/Tc² of the loop between ±y.
-  [[nodiscard]] double Energy(double y) const {
-    State state{-Peak(y)};
-    Rise(state, 2 * y);
-    return 2 * state.work;
-  }
-
-  [[nodiscard]] double Normalize(double x) const { return law_.stiffness / law_.slip_force * x; }
-
  private:
   static constexpr double kTolerance = 1e-12;
   BoucWenLaw law_;
@@ -127,71 +102,63 @@ double VirginForce(const IwanElements& elements, double x) {
   return force;
 }
 
-struct Rising {
-  double amplitude;
-  std::span<const double> distance;
-  std::span<double> force;
-
-  void operator()(const ModelLaw& of) const {
-    const ModelBranch branch(of, amplitude);
-    for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = models::BackboneForce(branch.from, distance[i]) - branch.peak;
-    }
-  }
-
-  void operator()(const BoucWenLaw& law) const {
-    const BoucWenBranch branch(law);
-    BoucWenBranch::State state{-branch.Peak(branch.Normalize(amplitude))};
-    for (std::size_t i = 0; i < distance.size(); ++i) {
-      branch.Rise(state, branch.Normalize(distance[i]));
-      force[i] = law.slip_force * state.force;
-    }
-  }
-
-  void operator()(const IwanElements& elements) const {
-    const double peak = VirginForce(elements, amplitude);
-    for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = 2 * VirginForce(elements, distance[i] / 2) - peak;
-    }
-  }
+/// The steady loop of a law between ±X.
+struct SteadyLoop {
+  double peak;                          // T* [N]
+  double energy;                        // W [J]
+  std::vector<double> corners;          // distances [m] at which the rising branch bends
+  std::function<double(double)> force;  // on it [N], of distances [m] that do not fall
 };
 
-/// Adds distances at which a rising branch bends.
-struct Corners {
-  double amplitude;
-  std::vector<double>& distance;
+SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
+  const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
+  const double share = peak / of.law.slip_force;
+  const models::BranchScale scale = of.model->scale(-share, share, /*virgin=*/false);
+  // t(x) = t₀ + span·v·φ(k·x): the branch law of the stiffness σ·v^α with the limit span·v·Tc.
+  const BranchLaw branch = {
+      .tangential_stiffness =
+          of.law.tangential_stiffness * std::pow(scale.remaining, of.law.shape_exponent),
+      .shape_exponent = of.law.shape_exponent,
+      .slip_force = of.law.slip_force * scale.span * scale.remaining};
+  return {peak,
+          models::SteadyLoopEnergy(*of.model, of.law, amplitude),
+          {models::GrossSlipDisplacement(branch)},
+          [=](double distance) { return models::BackboneForce(branch, distance) - peak; }};
+}
 
-  void operator()(const ModelLaw& of) const {
-    distance.push_back(models::GrossSlipDisplacement(ModelBranch(of, amplitude).from));
-  }
-  void operator()(const BoucWenLaw& /*law*/) const {}
-  void operator()(const IwanElements& elements) const {
-    for (std::size_t j = 0; j < elements.size(); ++j) {
-      distance.push_back(2 * elements.slip_force[j] / elements.stiffness[j]);
-    }
-  }
-};
+SteadyLoop LoopOf(const BoucWenLaw& law, double amplitude) {
+  const BoucWenBranch branch(law);
+  const double per_travel = law.stiffness / law.slip_force;
+  const BoucWenBranch::State start{-branch.Peak(per_travel * amplitude)};
+  BoucWenBranch::State end = start;
+  branch.Rise(end, 2 * per_travel * amplitude);
+  return {-law.slip_force * start.force,
+          law.slip_force / per_travel * 2 * end.work,
+          {},
+          [=, at = start](double distance) mutable {
+            branch.Rise(at, per_travel * distance);
+            return law.slip_force * at.force;
+          }};
+}
 
-struct Energy {
-  double amplitude;
+SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
+  SteadyLoop loop{
+      .peak = VirginForce(elements, amplitude), .energy = 0.0, .corners = {}, .force = {}};
+  for (std::size_t j = 0; j < elements.size(); ++j) {
+    const double stick = elements.slip_force[j] / elements.stiffness[j];
+    loop.energy += 4 * elements.slip_force[j] * std::max(amplitude - stick, 0.0);
+    loop.corners.push_back(2 * stick);
+  }
+  loop.force = [elements, peak = loop.peak](double distance) {
+    return 2 * VirginForce(elements, distance / 2) - peak;
+  };
+  return loop;
+}
 
-  double operator()(const ModelLaw& of) const {
-    return models::SteadyLoopEnergy(*of.model, of.law, amplitude);
-  }
-  double operator()(const BoucWenLaw& law) const {
-    const BoucWenBranch branch(law);
-    return law.slip_force * law.slip_force / law.stiffness *
-           branch.Energy(branch.Normalize(amplitude));
-  }
-  double operator()(const IwanElements& elements) const {
-    double energy = 0.0;
-    for (std::size_t j = 0; j < elements.size(); ++j) {
-      const double stick = elements.slip_force[j] / elements.stiffness[j];
-      energy += 4 * elements.slip_force[j] * std::max(amplitude - stick, 0.0);
-    }
-    return energy;
-  }
-};
+SteadyLoop LoopOf(const SteadyLaw& law, double amplitude) {
+  RequirePositive("amplitude [m]", amplitude);
+  return std::visit([&](const auto& of) { return LoopOf(of, amplitude); }, law);
+}
 
 /// Stiffness and slip force with which a law has a contact's peak force and energy at an amplitude.
 struct Scales {
@@ -199,21 +166,21 @@ struct Scales {
   double slip_force;
 };
 
-/// @param peak, energy  of the law with a stiffness and a slip force of 1, at the amplitude y
-template <typename Peak, typename Energy>
-Scales ScalesOf(const ModelLaw& contact, double amplitude, const Peak& peak, const Energy& energy) {
+/// @param unit  the law with a stiffness and a slip force of 1
+Scales ScalesOf(const ModelLaw& contact, double amplitude, const SteadyLaw& unit) {
   const double wanted_peak = PeakForce(contact, amplitude);
   const double fullness = LoopEnergy(contact, amplitude) / (4 * amplitude * wanted_peak);
   // W/(4·y·t*) grows from 0 for a loop that sticks to 1 for one that slides.
   const auto excess = [&](double log_y) {
     const double y = std::exp(log_y);
-    return energy(y) / (4 * y * peak(y)) - fullness;
+    const SteadyLoop loop = LoopOf(unit, y);
+    return loop.energy / (4 * y * loop.peak) - fullness;
   };
   double log_y = std::log(1e-3);
   const double high = std::log(1e12);
   if (excess(log_y) < 0) log_y = excess(high) > 0 ? Solve(excess, log_y, high) : high;
   const double y = std::exp(log_y);
-  const double slip_force = wanted_peak / peak(y);
+  const double slip_force = wanted_peak / LoopOf(unit, y).peak;
   return {y * slip_force / amplitude, slip_force};
 }
 
@@ -221,47 +188,37 @@ Scales ScalesOf(const ModelLaw& contact, double amplitude, const Peak& peak, con
 
 void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
                           std::span<double> force) {
-  RequirePositive("amplitude [m]", amplitude);
   RequireSameSize("distance", distance.size(), "force", force.size());
-  std::visit(Rising{amplitude, distance, force}, law);
+  std::ranges::transform(distance, force.begin(), LoopOf(law, amplitude).force);
 }
 
 double PeakForce(const SteadyLaw& law, double amplitude) {
-  double peak = 0.0;
-  EvaluateRisingBranch(law, amplitude, std::array{2 * amplitude}, std::span(&peak, 1));
-  return peak;
+  return LoopOf(law, amplitude).force(2 * amplitude);
 }
 
-double LoopEnergy(const SteadyLaw& law, double amplitude) {
-  RequirePositive("amplitude [m]", amplitude);
-  return std::visit(Energy{amplitude}, law);
-}
+double LoopEnergy(const SteadyLaw& law, double amplitude) { return LoopOf(law, amplitude).energy; }
 
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
-  RequirePositive("amplitude [m]", amplitude);
   constexpr int kPlaces = 512;
-  std::vector<double> distance;
-  std::visit(Corners{amplitude, distance}, law);
-  std::visit(Corners{amplitude, distance}, reference);
+  const SteadyLoop loop = LoopOf(law, amplitude);
+  const SteadyLoop expected = LoopOf(reference, amplitude);
+  std::vector<double> distance = loop.corners;
+  distance.insert(distance.end(), expected.corners.begin(), expected.corners.end());
   std::erase_if(distance, [&](double at) { return !(at < 2 * amplitude); });
   for (int i = 0; i <= kPlaces; ++i) {
     distance.push_back(2 * amplitude * std::pow(static_cast<double>(i) / kPlaces, 3));
   }
   std::ranges::sort(distance);
-  std::vector<double> force(distance.size());
-  std::vector<double> expected(distance.size());
-  EvaluateRisingBranch(law, amplitude, distance, force);
-  EvaluateRisingBranch(reference, amplitude, distance, expected);
-  LoopError error;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    error.force = std::max(error.force, std::abs(force[i] - expected[i]) / expected.back());
+  double largest = 0.0;
+  double peak = 0.0;
+  for (const double at : distance) {
+    peak = expected.force(at);
+    largest = std::max(largest, std::abs(loop.force(at) - peak));
   }
-  const double energy = LoopEnergy(law, amplitude);
-  const double lost = LoopEnergy(reference, amplitude);
-  error.energy = lost > 0      ? energy / lost - 1
-                 : energy == 0 ? 0.0
-                               : std::numeric_limits<double>::infinity();
-  return error;
+  return {.force = largest / peak,
+          .energy = expected.energy > 0 ? loop.energy / expected.energy - 1
+                    : loop.energy == 0  ? 0.0
+                                        : std::numeric_limits<double>::infinity()};
 }
 
 BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
@@ -272,19 +229,15 @@ BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
     const double slid = LoopEnergy(contact, amplitude) / (4 * peak);
     return {peak / (amplitude - slid), 0.0, peak};
   }
-  const BranchLaw unit{1.0, shape_exponent, 1.0};
-  const auto [stiffness, slip_force] = ScalesOf(
-      contact, amplitude, [&](double y) { return models::SteadyPeakForce(model, unit, y); },
-      [&](double y) { return models::SteadyLoopEnergy(model, unit, y); });
+  const auto [stiffness, slip_force] =
+      ScalesOf(contact, amplitude, ModelLaw{&model, {1.0, shape_exponent, 1.0}});
   return {stiffness, shape_exponent, slip_force};
 }
 
 BoucWenLaw BoucWenOf(const ModelLaw& contact, double amplitude, double beta) {
   const auto law_of = [&](double exponent) {
-    const BoucWenBranch unit({1.0, 1.0, exponent, beta});
-    const auto [stiffness, slip_force] = ScalesOf(
-        contact, amplitude, [&](double y) { return unit.Peak(y); },
-        [&](double y) { return unit.Energy(y); });
+    const auto [stiffness, slip_force] =
+        ScalesOf(contact, amplitude, BoucWenLaw{1.0, 1.0, exponent, beta});
     return BoucWenLaw{stiffness, slip_force, exponent, beta};
   };
   constexpr int kBits = 20;

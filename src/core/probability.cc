@@ -52,10 +52,6 @@ double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) 
   return Above(FisherF(numerator_degrees, degrees_of_freedom), f);
 }
 
-double PValueOfF(double f, double degrees_of_freedom) {
-  return PValueOfF(f, 1.0, degrees_of_freedom);
-}
-
 double FQuantile(double numerator_degrees, double degrees_of_freedom, double chance) {
   return boost::math::quantile(
       boost::math::complement(FisherF(numerator_degrees, degrees_of_freedom), chance));

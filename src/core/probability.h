@@ -18,8 +18,6 @@ double PValueOfT(double t, double degrees_of_freedom);
 
 /// P(F(k, ν) > f)
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
-/// P(F(1, ν) > f)
-double PValueOfF(double f, double degrees_of_freedom);
 /// P(F(k, ν) > f) = chance at f
 double FQuantile(double numerator_degrees, double degrees_of_freedom, double chance);
 

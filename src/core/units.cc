@@ -53,13 +53,13 @@ constexpr std::array kAngles = {
     Entry{"rev", 2 * std::numbers::pi, 1, "revolutions"},
 };
 constexpr std::array kTorques = {
-    Entry{"N m", 1, 1},
-    Entry{"mN m", 1, 1e3},
-    Entry{"uN m", 1, 1e6},
-    Entry{"kN m", 1e3, 1},
-    Entry{"N mm", 1, 1e3},
-    Entry{"lbf in", 4.4482216152605 * 0.0254, 1},
-    Entry{"lbf ft", 4.4482216152605 * 0.3048, 1},
+    Entry{"N m", 1, 1, "Nm N·m N⋅m N*m N-m"},
+    Entry{"mN m", 1, 1e3, "mNm mN·m mN⋅m mN*m mN-m"},
+    Entry{"uN m", 1, 1e6, "uNm uN·m uN⋅m uN*m uN-m"},
+    Entry{"kN m", 1e3, 1, "kNm kN·m kN⋅m kN*m kN-m"},
+    Entry{"N mm", 1, 1e3, "Nmm N·mm N⋅mm N*mm N-mm"},
+    Entry{"lbf in", 4.4482216152605 * 0.0254, 1, "lbfin lbf·in lbf⋅in lbf*in lbf-in"},
+    Entry{"lbf ft", 4.4482216152605 * 0.3048, 1, "lbfft lbf·ft lbf⋅ft lbf*ft lbf-ft"},
 };
 constexpr std::array kTimes = {
     Entry{"s", 1, 1, "sec secs second seconds sek seg 秒 с"},
@@ -96,28 +96,12 @@ std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) 
     if (entry.symbol == ascii) return true;
     const std::vector<std::string_view> words = PartsOf(entry.words, ' ');
     // A single letter, or two, differ by their case: g and G, mN and MN.
-    return std::ranges::find(words, symbol) != words.end() ||
+    return std::ranges::find(words, ascii) != words.end() ||
            (symbol.size() >= 3 && std::ranges::find(words, lower) != words.end());
   };
   const auto entry = symbol.empty() ? table.end() : std::ranges::find_if(table, is_it);
   if (entry == table.end()) return std::nullopt;
   return Unit{std::string(entry->symbol), entry->numerator, entry->denominator};
-}
-
-/// Returns "Nm", "N·m", "N*m" and "N-m" as the table has it, "N m".
-std::string WithBlank(std::string_view symbol) {
-  std::string letters = WithAsciiMicro(symbol);
-  for (const std::string_view sign : {"·", "⋅", "*", "-", " "}) {
-    for (std::size_t at = letters.find(sign); at != std::string::npos; at = letters.find(sign)) {
-      letters.erase(at, sign.size());
-    }
-  }
-  for (const Entry& entry : kTorques) {
-    std::string joined(entry.symbol);
-    std::erase(joined, ' ');
-    if (joined == letters) return std::string(entry.symbol);
-  }
-  return std::string(symbol);
 }
 
 std::string Symbols(std::span<const Entry> table) {
@@ -133,9 +117,7 @@ std::string Symbols(std::span<const Entry> table) {
 
 std::optional<Unit> LengthUnit(std::string_view symbol) { return Find(kLengths, symbol); }
 std::optional<Unit> AngleUnit(std::string_view symbol) { return Find(kAngles, symbol); }
-std::optional<Unit> TorqueUnit(std::string_view symbol) {
-  return Find(kTorques, WithBlank(symbol));
-}
+std::optional<Unit> TorqueUnit(std::string_view symbol) { return Find(kTorques, symbol); }
 std::optional<Unit> ForceUnit(std::string_view symbol) { return Find(kForces, symbol); }
 bool IsPressureUnit(std::string_view symbol) { return Find(kPressures, symbol).has_value(); }
 std::optional<Unit> TimeUnit(std::string_view symbol) { return Find(kTimes, symbol); }

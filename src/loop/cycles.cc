@@ -75,70 +75,38 @@ double CountSwings(std::span<const double> displacement, std::span<const std::si
   return static_cast<double>(points.size() - 1) + (head + tail) / (2 * amplitude);
 }
 
-/// Describes a stroke from one turning point to the next.
-struct Swing {
-  bool rising = false;
-  double lowest = 0.0;  // [m]
-  double highest = 0.0;
-  double lower_end_force = 0.0;  // [N]
-  double upper_end_force = 0.0;
-  double least_force = 0.0;  // of the moving mean
-  double greatest_force = 0.0;
-};
-
-Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last) {
-  const std::size_t count = last - first + 1;
-  const Extremes displacement = ExtremesOf(record.displacement.subspan(first, count));
-  const auto [least, greatest] = MovingMeanRange(record.force.subspan(first, count));
-  const bool rising = record.displacement[last] > record.displacement[first];
-  return {.rising = rising,
-          .lowest = displacement.least,
-          .highest = displacement.greatest,
-          .lower_end_force = record.force[rising ? first : last],
-          .upper_end_force = record.force[rising ? last : first],
-          .least_force = least,
-          .greatest_force = greatest};
-}
-
-/// Returns the swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
-/// run-out.
-/// Without two turning points the whole record is one.
-std::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points) {
-  std::vector<Swing> swings;
-  if (points.size() < 2) {
-    swings.push_back(MeasureSwing(record, 0, record.size() - 1));
-    return swings;
-  }
-  swings.reserve(points.size());
+/// Returns the strokes that reach as far as the widest, to a twentieth: not nested loops, run-in or
+/// run-out. Without two turning points the whole record is one.
+std::vector<Stroke> MainStrokes(const RecordView& record, std::span<const std::size_t> points) {
+  if (points.size() < 2) return {StrokeOf(record, 0, record.size() - 1)};
+  std::vector<Stroke> strokes;
+  strokes.reserve(points.size());
   double widest = 0.0;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-    swings.push_back(MeasureSwing(record, points[k], points[k + 1]));
-    widest = std::max(widest, swings.back().highest - swings.back().lowest);
+    strokes.push_back(StrokeOf(record, points[k], points[k + 1]));
+    widest = std::max(widest, strokes.back().range());
   }
-  std::erase_if(swings, [&](const Swing& swing) {
-    return swing.highest - swing.lowest < CycleRules().steady * widest;
-  });
-  return swings;
+  std::erase_if(
+      strokes, [&](const Stroke& stroke) { return stroke.range() < CycleRules().steady * widest; });
+  return strokes;
 }
 
-double MeanOf(std::span<const Swing> swings, double Swing::*member) {
+template <typename Quantity>
+double MeanOf(std::span<const Stroke> strokes, Quantity quantity) {
   double sum = 0.0;
-  for (const Swing& swing : swings) sum += swing.*member;
-  return sum / static_cast<double>(swings.size());
+  for (const Stroke& stroke : strokes) sum += quantity(stroke);
+  return sum / static_cast<double>(strokes.size());
 }
 
-/// Returns the typical extreme of the swings of one direction, the larger by `compare` of the two
-/// directions. Medians: a spike in one swing must not make the peak force.
-template <typename Compare>
-double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare) {
-  std::vector<double> rising;
-  std::vector<double> falling;
-  rising.reserve(swings.size());
-  falling.reserve(swings.size());
-  for (const Swing& swing : swings) (swing.rising ? rising : falling).push_back(swing.*member);
-  if (rising.empty()) return Median(falling);
-  if (falling.empty()) return Median(rising);
-  return std::max(Median(rising), Median(falling), compare);
+/// Returns the typical extreme of the strokes of one direction, the larger by `compare` of the two
+/// directions. Medians: a spike in one stroke must not make the peak force.
+template <typename Quantity, typename Compare>
+double UsualExtreme(std::span<const Stroke> strokes, Quantity quantity, Compare compare) {
+  std::array<std::vector<double>, 2> of;
+  for (const Stroke& stroke : strokes) of[stroke.rises() ? 0 : 1].push_back(quantity(stroke));
+  if (of[0].empty()) return Median(of[1]);
+  if (of[1].empty()) return Median(of[0]);
+  return std::max(Median(of[0]), Median(of[1]), compare);
 }
 
 int SignOf(double value) { return (value > 0) - (value < 0); }
@@ -180,18 +148,22 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   const std::span<const double> x = record.displacement;
   LoopMeasures measures;
   const std::vector<std::size_t> points = TurningPoints(x, reversals);
-  const std::vector<Swing> swings = MainSwings(record, points);
-  const double highest = MeanOf(swings, &Swing::highest);
-  const double lowest = MeanOf(swings, &Swing::lowest);
+  const std::vector<Stroke> strokes = MainStrokes(record, points);
+  const double highest =
+      MeanOf(strokes, [](const Stroke& of) { return ExtremesOf(of.displacement).greatest; });
+  const double lowest =
+      MeanOf(strokes, [](const Stroke& of) { return ExtremesOf(of.displacement).least; });
   measures.amplitude = (highest - lowest) / 2;
   measures.centre = lowest + measures.amplitude;
   // Most loops peak where they turn; some before, when the force relaxes in a dwell.
-  const double lower_end = MeanOf(swings, &Swing::lower_end_force);
-  const double upper_end = MeanOf(swings, &Swing::upper_end_force);
+  const double lower_end = MeanOf(strokes, [](const Stroke& of) { return of.lower_end_force(); });
+  const double upper_end = MeanOf(strokes, [](const Stroke& of) { return of.upper_end_force(); });
+  const auto least = [](const Stroke& of) { return MovingMeanRange(of.force).first; };
+  const auto greatest = [](const Stroke& of) { return MovingMeanRange(of.force).second; };
   const double greatest_force =
-      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>())});
+      std::max({lower_end, upper_end, UsualExtreme(strokes, greatest, std::less<>())});
   const double least_force =
-      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>())});
+      std::min({lower_end, upper_end, UsualExtreme(strokes, least, std::greater<>())});
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 

@@ -16,19 +16,6 @@ namespace {
 using Column = std::span<const double>;
 using Points = std::span<const std::size_t>;
 
-/// Describes a stroke between two turning points, the force with the displacement's sign.
-struct Stroke {
-  Column displacement;  // [m]
-  Column force;         // [N]
-
-  [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
-};
-
-Stroke StrokeOf(const RecordView& record, std::size_t first, std::size_t last) {
-  return {record.displacement.subspan(first, last - first + 1),
-          record.force.subspan(first, last - first + 1)};
-}
-
 /// Means of y over ranges of x that follow on each other, `edges` from the lowest: of a line from
 /// sample to sample ∫ y dx by trapezia, to and fro, over each range. Empty where the line does not
 /// cross one of them once in all.

@@ -6,10 +6,30 @@
 #include <utility>
 #include <vector>
 
+#include "core/extremes.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::loop {
+
+/// The samples from one turning point to the next.
+struct Stroke {
+  std::span<const double> displacement;  // [m]
+  std::span<const double> force;         // [N]
+
+  [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
+  [[nodiscard]] double range() const {
+    const Extremes extremes = ExtremesOf(displacement);
+    return extremes.greatest - extremes.least;
+  }
+  [[nodiscard]] double lower_end_force() const { return rises() ? force.front() : force.back(); }
+  [[nodiscard]] double upper_end_force() const { return rises() ? force.back() : force.front(); }
+};
+
+inline Stroke StrokeOf(const RecordView& record, std::size_t first, std::size_t last) {
+  return {record.displacement.subspan(first, last - first + 1),
+          record.force.subspan(first, last - first + 1)};
+}
 
 /// A pair of neighbouring extremes that is left when all smaller ones are taken out: under a gate
 /// of its range or more it makes no reversal.

@@ -138,15 +138,8 @@ Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
                        const Resolution& resolution) {
   const auto shape = std::make_shared<const TableShape>(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
-    const LoadingPath path = MakeDrivePath(model, drive);
-    const models::ScaledBranches branches =
-        models::ScaleBranches(models::BranchScaling(model, law), path, *shape);
-    for (const models::BranchRun& run : path.runs) {
-      const std::size_t count = run.end - run.begin;
-      models::EvaluateRun(branches[static_cast<std::size_t>(run.branch)], *shape, law.slip_force,
-                          models::ForceLimit(model), drive.displacement.subspan(run.begin, count),
-                          force.subspan(run.begin, count));
-    }
+    models::EvaluatePath(model, law, 0.0, *shape, MakeDrivePath(model, drive), drive.displacement,
+                         force);
   };
 }
 

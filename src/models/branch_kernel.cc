@@ -20,6 +20,10 @@ using Column = std::array<double, kBlock>;
 
 constexpr std::int64_t kExponentBias = std::int64_t{1023} << 52;
 
+/// ln 2 in two parts, the first of 33 bits: its products with whole numbers are exact.
+constexpr double kLog2High = 6.93147180369123816490e-01;
+constexpr double kLog2Low = 1.90821492927058770002e-10;
+
 /// Selects by bits, not by a condition: compilers compute both branches in vectors anyway.
 MINDAHL_INLINE double Choose(std::uint64_t all_ones, double one, double other) {
   return std::bit_cast<double>((std::bit_cast<std::uint64_t>(one) & all_ones) |
@@ -76,9 +80,6 @@ struct Exponential {
 };
 MINDAHL_INLINE Exponential Exponentiate(double x) {
   constexpr double kPerLog2 = 1.4426950408889634;
-  constexpr double kLog2High =
-      6.93147180369123816490e-01;  // 33 bits: its products with n are exact
-  constexpr double kLog2Low = 1.90821492927058770002e-10;
   constexpr double kRound = 6755399441055744.0;  // 1.5·2⁵²: adding it rounds to an integer
   constexpr double kLowest = -708.0;             // 2ⁿ is normal
   const double bounded = x > kLowest ? x : kLowest;
@@ -118,8 +119,6 @@ struct Sample {
 };
 
 MINDAHL_INLINE Sample SampleAt(const RunConstants& run, double displacement) {
-  constexpr double kLog2High = 6.93147180369123816490e-01;
-  constexpr double kLog2Low = 1.90821492927058770002e-10;
   Sample sample{};
   const double e = displacement - run.origin;
   const double length = std::abs(e);
@@ -181,8 +180,7 @@ MINDAHL_INLINE void EvaluateBlock(const ScaledBranch& branch, double shape_expon
   });
 }
 
-MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch,
-                                       const Differentiation<DirectShape>::BranchGradient& start,
+MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch, const BranchGradient& start,
                                        double shape_exponent, double limit, std::size_t count,
                                        Block& block) {
   const RunConstants run = ConstantsOf(branch, shape_exponent);
@@ -240,9 +238,9 @@ namespace {
                                  std::size_t count, Block& block) {                               \
     EvaluateBlock(branch, shape_exponent, limit, count, block);                                   \
   }                                                                                               \
-  attributes void Differentiate##name(                                                            \
-      const ScaledBranch& branch, const Differentiation<DirectShape>::BranchGradient& start,      \
-      double shape_exponent, double limit, std::size_t count, Block& block) {                     \
+  attributes void Differentiate##name(const ScaledBranch& branch, const BranchGradient& start,    \
+                                      double shape_exponent, double limit, std::size_t count,     \
+                                      Block& block) {                                             \
     DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                       \
   }                                                                                               \
   constexpr BranchKernel k##name = {Evaluate##name, Differentiate##name};
@@ -296,8 +294,7 @@ void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, doubl
   }
 }
 
-void DifferentiateGeneralRun(const ScaledBranch& branch,
-                             const Differentiation<DirectShape>::BranchGradient& branch_gradient,
+void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,
                              const NormalizedGradient& gradient, const BranchKernel& kernel) {

@@ -29,8 +29,7 @@ void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, doubl
                         const BranchKernel& kernel = WidestBranchKernel());
 
 /// Computes t and its derivatives; a column of `gradient` that is empty is not wanted.
-void DifferentiateGeneralRun(const ScaledBranch& branch,
-                             const Differentiation<DirectShape>::BranchGradient& branch_gradient,
+void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,
                              const NormalizedGradient& gradient,

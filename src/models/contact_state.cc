@@ -44,10 +44,9 @@ ScaledBranch ContactState::Open(const Branch& branch, double origin_force) const
 }
 
 ContactState::Shape ContactState::ShapeOn(const ScaledBranch& branch) const {
-  return backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
-    if (!sprung_) return contact;
-    return mindahl::models::ShapeOn(SprungShape{contact, spring_travel_}, branch);
-  });
+  if (sprung_) return models::ShapeOn(SprungShape{law_.shape_exponent, spring_travel_}, branch);
+  return backbone::WithShape(law_.shape_exponent,
+                             [](const auto& contact) -> Shape { return contact; });
 }
 
 std::vector<double> ContactState::Memory() const {

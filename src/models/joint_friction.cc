@@ -1,10 +1,7 @@
 #include "mindahl/models/joint_friction.h"
 
 #include "mindahl/core/error.h"
-#include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/loading_path.h"
-#include "mindahl/models/response.h"
 
 namespace mindahl::models {
 namespace {
@@ -31,16 +28,10 @@ void Validate(const JointFriction& joint) {
 
 void EvaluateJointFriction(const JointFriction& joint, std::span<const double> displacement,
                            std::span<const double> load, std::span<double> force) {
-  const BranchLaw law = LawOfState(joint);
   RequireSameSize("displacement", displacement.size(), "load", load.size());
-  for (const double value : load) RequireFinite("load [N]", value);
-  const LoadingPath path = MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0),
-                                           Memory::kNone, InitialContact{});
-  EvaluateForce(DahlsOwnLaw(), law, path, displacement, force);
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    force[i] = joint.law.slip_force *
-               JointForce(force[i], load[i] / joint.reference_load, joint.asymmetry);
-  }
+  RequireSameSize("displacement", displacement.size(), "force", force.size());
+  JointState state(joint);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = state.Move(displacement[i], load[i]);
 }
 
 JointState::JointState(const JointFriction& joint, double unloaded_displacement)

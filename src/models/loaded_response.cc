@@ -1,18 +1,14 @@
+#include "models/loaded_response.h"
+
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
-#include "models/load_zones.h"
-#include "models/normalized_response.h"
 
 namespace mindahl::models {
 namespace {
-
-/// Directions of the derivatives; the last is left out where there is no such parameter.
-enum Direction : std::size_t { kLogRate, kShapeExponent, kUnloadedDisplacement };
 
 /// δc and Tc over μN₀ under a load: δc = (N/N₀)^β/(κβ), β = 1 − α.
 class RimLaw {
@@ -26,16 +22,12 @@ class RimLaw {
         load_ratio > 0 ? std::exp(remaining_ * log_load_ratio - log_rate_) / remaining_ : 0.0;
   }
 
-  template <std::size_t kDirections>
-  void At(double load_ratio, double log_load_ratio, LoadRim<Tangent<kDirections>>& rim) const {
+  void At(double load_ratio, double log_load_ratio, LoadRim<Tangent>& rim) const {
     LoadRim<double> values;
     At(load_ratio, log_load_ratio, values);
+    const double at = values.slip_displacement;
     rim.slip_force = values.slip_force;
-    rim.slip_displacement = values.slip_displacement;
-    if (!(load_ratio > 0)) return;
-    rim.slip_displacement.slope[kLogRate] = -values.slip_displacement;
-    rim.slip_displacement.slope[kShapeExponent] =
-        values.slip_displacement * (1 / remaining_ - log_load_ratio);
+    rim.slip_displacement = {at, {-at, at * (1 / remaining_ - log_load_ratio), 0.0}};
   }
 
  private:
@@ -43,61 +35,28 @@ class RimLaw {
   double remaining_;
 };
 
-/// Fraction of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
-template <typename Shape>
-struct ShareOfWidth {
-  Shape shape;
-  double shape_exponent;
-
-  double operator()(double width, double slip_displacement) const {
-    return shape.Force(width / (slip_displacement * (1 - shape_exponent)));
-  }
-
-  template <std::size_t kDirections>
-  Tangent<kDirections> operator()(const Tangent<kDirections>& width,
-                                  const Tangent<kDirections>& slip_displacement) const {
-    const Tangent<kDirections> remaining =
-        Tangent<kDirections>::Along(1 - shape_exponent, kShapeExponent, -1.0);
-    const Tangent<kDirections> y = width / (slip_displacement * remaining);
-    const auto phi = backbone::Differentiate(y.value, shape_exponent);
-    Tangent<kDirections> share = y.Through(phi.force, phi.slope);
-    share.slope[kShapeExponent] += phi.shape_derivative;
-    return share;
-  }
-};
-
 /// Runs through a history.
 /// @param at_rest  where the contact is unloaded, with its derivatives
 /// @param keep     takes each sample and its force over μN₀
 template <typename Real, typename Share, typename Keep>
 void Follow(const LoadedHistory& history, const RimLaw& law, const Share& share,
-            const Real& at_rest, std::vector<LoadZone<Real>>& zones, Keep keep) {
-  LoadStep<Real> step;
+            const Real& at_rest, ZonedContact<Real>& contact, Keep keep) {
   const std::size_t first = history.before.empty() ? 0 : history.before.front();
-  law.At(history.load_ratio[first], history.log_load_ratio[first], step.from);
-  step.from_displacement = ValueOf(at_rest);
-  step.force = Real(0.0);
-  zones.clear();
-  if (ValueOf(step.from.slip_displacement) > 0) {
-    zones.push_back({Real(0.0), Real(0.0), at_rest, Real(0.0), Real(0.0)});
-  }
   double load = history.load_ratio[first];
+  LoadRim<Real> rim;
+  law.At(load, history.log_load_ratio[first], rim);
+  StartUnloaded(rim, at_rest, contact);
   const auto move = [&](std::size_t i) {
-    if (history.load_ratio[i] == load) {
-      step.to = step.from;
-    } else {
+    if (history.load_ratio[i] != load) {
       load = history.load_ratio[i];
-      law.At(load, history.log_load_ratio[i], step.to);
+      law.At(load, history.log_load_ratio[i], rim);
     }
-    step.displacement = history.displacement[i];
-    step.force = TakeLoadStep(step, share, zones);
-    step.from = step.to;
-    step.from_displacement = step.displacement;
+    MoveTo(rim, history.displacement[i], share, contact);
   };
   for (const std::size_t i : history.before) move(i);
   for (std::size_t i = 0; i < history.displacement.size(); ++i) {
     move(i);
-    keep(i, step.force);
+    keep(i, contact.force);
   }
 }
 
@@ -193,7 +152,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
   const double at_rest = history.before.empty() ? unloaded : 0.0;
   backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
     Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
-           ShareOfWidth<std::decay_t<decltype(shape)>>{shape, law.shape_exponent}, at_rest, plain_,
+           ShareOfWidth{shape, law.shape_exponent}, at_rest, plain_,
            [&](std::size_t i, double force) { t[i] = force; });
   });
 }
@@ -209,28 +168,19 @@ void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const Loa
   const auto keep = [](std::span<double> column, std::size_t i, double value) {
     if (!column.empty()) column[i] = value;
   };
-  const RimLaw rim(std::log(law.rate), law.shape_exponent);
-  using Share = ShareOfWidth<backbone::GeneralShape<double>>;
-  const Share share{backbone::GeneralShape<double>{law.shape_exponent}, law.shape_exponent};
-  const auto follow = [&]<std::size_t kDirections>(const Tangent<kDirections>& at_rest,
-                                                   auto& zones) {
-    Follow(history, rim, share, at_rest, zones,
-           [&](std::size_t i, const Tangent<kDirections>& force) {
-             t[i] = force.value;
-             keep(gradient.log_rate, i, force.slope[kLogRate]);
-             keep(gradient.shape_exponent, i, force.slope[kShapeExponent]);
-             if constexpr (kDirections > kUnloadedDisplacement) {
-               keep(gradient.unloaded_displacement, i, force.slope[kUnloadedDisplacement]);
-             }
-           });
-  };
+  using Shape = backbone::GeneralShape<double>;
+  const bool has_origin = history.before.empty();
+  Tangent at_rest(has_origin ? unloaded : 0.0);
+  if (has_origin) at_rest.derivatives()[kUnloadedDisplacement] = 1.0;
   std::ranges::fill(gradient.log_spring_travel, 0.0);
-  if (!history.before.empty() || gradient.unloaded_displacement.empty()) {
-    std::ranges::fill(gradient.unloaded_displacement, 0.0);
-    follow(Tangent<2>(history.before.empty() ? unloaded : 0.0), by_law_);
-  } else {
-    follow(Tangent<3>::Along(unloaded, kUnloadedDisplacement), by_all_);
-  }
+  Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
+         ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent}, at_rest, with_derivatives_,
+         [&](std::size_t i, const Tangent& force) {
+           t[i] = force.value();
+           keep(gradient.log_rate, i, force.derivatives()[kLogRate]);
+           keep(gradient.shape_exponent, i, force.derivatives()[kShapeExponent]);
+           keep(gradient.unloaded_displacement, i, force.derivatives()[kUnloadedDisplacement]);
+         });
 }
 
 }  // namespace mindahl::models

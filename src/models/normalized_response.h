@@ -1,12 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
-#include "models/load_zones.h"
 #include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 
@@ -27,10 +28,13 @@ struct NormalizedGradient {
   std::span<double> log_spring_travel;      ///< ∂t/∂ln c
   std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
 
+  /// Returns the columns in the order of ResponseParameter.
+  [[nodiscard]] std::array<std::span<double>, kParameters> columns() const {
+    return {log_rate, shape_exponent, unloaded_displacement, log_spring_travel, asymmetry};
+  }
   /// True if no derivative is wanted.
   [[nodiscard]] bool empty() const {
-    return log_rate.empty() && shape_exponent.empty() && unloaded_displacement.empty() &&
-           log_spring_travel.empty() && asymmetry.empty();
+    return std::ranges::all_of(columns(), [](const auto& column) { return column.empty(); });
   }
 };
 
@@ -71,66 +75,8 @@ class NormalizedResponse {
                               OriginSensitivity& sensitivity);
 
  private:
-  using Rigid = Differentiation<DirectShape>;
-  using Sprung = Differentiation<SprungShape<backbone::GeneralShape<double>>>;
-
-  auto& GradientsOf(const Rigid& /*differentiation*/) { return rigid_; }
-  auto& GradientsOf(const Sprung& /*differentiation*/) { return sprung_; }
-
   ScaledBranches branches_;
-  std::vector<double> per_asymmetry_;  // ∂t/∂a at the branches' origins
-  std::vector<Rigid::BranchGradient> rigid_;
-  std::vector<Sprung::BranchGradient> sprung_;
-};
-
-/// A record under a load that varies, as the law follows it: what LoadingPath is at constant load.
-struct LoadedHistory {
-  std::vector<double> displacement;    ///< δ, from reversal to reversal one way
-  std::vector<double> load_ratio;      ///< N/N₀ >= 0
-  std::vector<double> log_load_ratio;  ///< ln(N/N₀); 0 where lifted off
-  /// Samples that the contact has been through before the first: of a steady one the extremes of
-  /// the record, and its first cycle.
-  std::vector<std::size_t> before;
-};
-
-/// Makes the history of a record under the load ratios given. Between reversals the law takes any
-/// step back for one: where samples step back within the gate, the displacement is the nearest that
-/// does not (least squares, by pooling neighbours: Ayer et al. 1955).
-///
-/// A contact that had settled has no closed form under a varying load, but repeats itself exactly
-/// from the second cycle of (δ, N) on: a steady one is taken, from unloaded at 0, to the record's
-/// extremes, the last of them that from which it starts away, and once through its first cycle.
-/// @param displacement  [m], finite, not empty; 0 is midway between its extremes where steady
-/// @param load_ratio    N/N₀, finite, >= 0; of the same size
-/// @param reversals     as from FindReversals on the same displacements
-/// @throws InvalidArgument where sizes differ, the record is empty or a load ratio is negative
-void MakeLoadedHistory(std::span<const double> displacement, std::span<const double> load_ratio,
-                       std::span<const std::size_t> reversals, InitialState state,
-                       LoadedHistory& history);
-
-/// EvaluateForceUnderLoad over μN₀ and its gradient, for solvers: σ_ref is that under N₀, and
-/// t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
-class NormalizedLoadedResponse {
- public:
-  /// @param law       α < 1; no spring in series, behind which the contact's own displacement would
-  ///                  depend on the force
-  /// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at
-  ///                  where it has been through samples before
-  /// @param t         written, of the record's size; |t| <= N/N₀
-  /// @throws InvalidArgument for a law or sizes that break a rule
-  void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
-                std::span<double> t);
-
-  /// Computes the same with derivatives: exact, where t has them. They are taken along with the
-  /// recursion, at two to three times its cost.
-  /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0
-  void Differentiate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
-                     std::span<double> t, const NormalizedGradient& gradient);
-
- private:
-  std::vector<LoadZone<double>> plain_;
-  std::vector<LoadZone<Tangent<2>>> by_law_;
-  std::vector<LoadZone<Tangent<3>>> by_all_;
+  std::vector<BranchGradient> gradients_;
 };
 
 /// Holds the parameters on which a displacement over Tc/σ depends along a path of forces: the
@@ -163,7 +109,7 @@ class NormalizedDisplacement {
   /// @param force  [N], its offset included
   /// @param d      written, of the same size
   /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
-  ///   nothing of use
+  ///   nothing of use from the first of these samples on, where it is not finite
   /// @throws InvalidArgument for sizes that differ and a model that is scaled by the peak
   bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
                 std::span<const double> force, std::span<double> d) {
@@ -187,13 +133,14 @@ class NormalizedDisplacement {
     double height = 0.0;     // m·v·Tc [N]
     double span = 1.0;       // m
     double remaining = 1.0;  // v
+    double unit = 1.0;       // m·v^β
     bool is_virgin = false;
     double remaining_per_log_rate = 0.0;
     double remaining_per_zero = 0.0;
     Point start = {};  // at the origin
   };
-  static bool PointOn(const Branch& branch, const ForcedLaw& law, double force, bool with_gradient,
-                      Point& point);
+  static Point PointOn(const Branch& branch, const ForcedLaw& law, double force,
+                       bool with_gradient);
 
   std::vector<Branch> branches_;
 };

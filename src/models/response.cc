@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/loading_path.h"
+#include "models/normalized_response.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
@@ -35,40 +34,12 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
   Validate(law);
   RequireSizes(path, displacement, "force", force);
   const double travel = IsRigid(rig) ? 0.0 : SpringTravel(model, law, rig);
-  const double limit = ForceLimit(model, path.asymmetry);
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
-    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law, travel), path, shape);
-    RequireReach(law, branches, displacement);
-    for (const BranchRun& run : path.runs) {
-      const std::size_t count = run.end - run.begin;
-      const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-      EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
-                  displacement.subspan(run.begin, count), force.subspan(run.begin, count));
-    }
+    EvaluatePath(model, law, travel, shape, path, displacement, force);
   });
 }
 
 namespace {
-
-/// A branch as the force runs along it.
-struct CompliantBranch {
-  double force = 0.0;         // Tᵣ [N], at its origin
-  double displacement = 0.0;  // δᵣ [m], at its origin
-  double height = 0.0;        // span·v·Tc [N]
-  double rate = 0.0;          // k [1/m]
-
-  /// Returns δ [m]; NaN where rounding leaves nothing between the force and slip.
-  [[nodiscard]] double DisplacementAt(double at_force, double shape_exponent) const {
-    // The difference and what its rounding leaves out (Knuth's sum): next to slip all of it counts.
-    const double way = at_force - force;
-    const double back = way - at_force;
-    const double rest = (at_force - (way - back)) - (force + back);
-    const double left = (height - std::abs(way)) - std::copysign(1.0, way) * rest;
-    if (!(left > 0)) return std::numeric_limits<double>::quiet_NaN();
-    const double y = ReducedDisplacement(shape_exponent, std::abs(way) / height, left / height);
-    return displacement + std::copysign(y / rate, way);
-  }
-};
 
 void RequireForces(const BranchLaw& law, std::span<const double> force) {
   if (force.empty()) throw InvalidArgument("the force history is empty: must have samples");
@@ -101,33 +72,16 @@ void EvaluateDisplacement(const FrictionModel& model, const BranchLaw& law,
   Validate(law);
   Validate(rig);
   RequireSameSize("force", force.size(), "displacement", displacement.size());
-  if (model.scaled_by_peak) {
-    throw InvalidArgument(fmt::format(
-        "model {} is scaled by the peak of the steady loop at the amplitude of an imposed "
-        "displacement: must be another model where the force is imposed",
-        model.name));
-  }
   RequireForces(law, force);
   // Rules and bounds are the same numbers, in newtons.
   const LoadingPath path = MakeLoadingPath(force, loop::FindReversals(force, 0.0), model.memory,
                                            {.state = InitialState::kVirgin});
-  const BranchScaling scaling(model, law);
-  std::vector<CompliantBranch> branches;
-  branches.reserve(path.branches.size());
-  for (const Branch& branch : path.branches) {
-    const ScaledBranch scaled = scaling.Start(branch, branch.origin / law.slip_force);
-    const double origin = branch.start == BranchStart::kReversal
-                              ? branches[static_cast<std::size_t>(branch.parent)].DisplacementAt(
-                                    branch.origin, law.shape_exponent)
-                              : 0.0;
-    branches.push_back({branch.origin, origin, scaled.height * law.slip_force, scaled.rate});
-  }
-  for (const BranchRun& run : path.runs) {
-    const CompliantBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      const double contact = branch.DisplacementAt(force[i], law.shape_exponent);
-      displacement[i] = RequireDisplacement(i, force[i], contact + force[i] / rig.stiffness);
-    }
+  NormalizedDisplacement normalized;
+  normalized.Evaluate(model, {law.slip_force, law.shape_exponent}, path, force, displacement);
+  const double elastic_limit = law.slip_force / law.tangential_stiffness;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const double contact = elastic_limit * displacement[i];
+    displacement[i] = RequireDisplacement(i, force[i], contact + force[i] / rig.stiffness);
   }
 }
 

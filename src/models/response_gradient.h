@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "mindahl/models/backbone.h"
@@ -14,54 +13,27 @@
 
 namespace mindahl::models {
 
-/// Numbers the parameters on which forces over Tc depend: ln(σ/Tc), α, δ₀ and, with a spring, ln c,
-/// c = Tc/k_r its travel at slip.
-inline constexpr std::size_t kRate = 0;
-inline constexpr std::size_t kShape = 1;
-inline constexpr std::size_t kUnloaded = 2;
-inline constexpr std::size_t kSpring = 3;
+/// Numbers the parameters on which forces over Tc depend: ln(σ/Tc), α, δ₀, ln c of a spring, c =
+/// Tc/k_r its travel at slip, and the asymmetry a of slip forces Tc(1 ± a).
+enum ResponseParameter : std::size_t { kRate, kShape, kUnloaded, kSpring, kAsymmetry, kParameters };
+using Gradient = std::array<double, kParameters>;
 
-/// φ of the contact alone, in the form that InSeries has.
-struct DirectShape {
-  double shape_exponent;
-
-  [[nodiscard]] double Force(double y) const {
-    return backbone::GeneralShape<double>{shape_exponent}.Force(y);
-  }
-  [[nodiscard]] backbone::SeriesDerivatives<double> Differentiate(double y) const {
-    return {.contact = backbone::Differentiate(y, shape_exponent)};
-  }
+/// Holds the derivatives of a branch.
+struct BranchGradient {
+  Gradient force{};
+  Gradient height{};
+  Gradient log_rate{};
+  double origin_per_unloaded = 0.0;  // 1 on the virgin curve, which moves with δ₀
+  /// True of a virgin curve that is run both ways, on which a larger limit on one side is a smaller
+  /// one on the other: ∂height/∂a has the sign of e there.
+  bool runs_both_ways = false;
 };
 
-/// Calls use(shape) with the shape that derivatives are of: behind a spring unless it is rigid.
-/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
-template <typename Use>
-void WithDifferentiableShape(double shape_exponent, double spring_travel, const Use& use) {
-  if (spring_travel == 0) {
-    use(DirectShape{shape_exponent});
-  } else {
-    use(SprungShape{backbone::GeneralShape<double>{shape_exponent}, spring_travel});
-  }
-}
-
 /// The derivatives of a model's branches and of the forces on them.
-/// @tparam Shape  DirectShape, or a SprungShape
-template <typename Shape>
 class Differentiation {
  public:
-  static constexpr bool kSprung = !std::is_same_v<Shape, DirectShape>;
-  static constexpr std::size_t kParameters = kSprung ? kSpring + 1 : kSpring;
-  using Gradient = std::array<double, kParameters>;
-
-  struct BranchGradient {
-    Gradient force{};
-    Gradient height{};
-    Gradient log_rate{};
-    double origin_per_unloaded = 0.0;  // 1 on the virgin curve, which moves with δ₀
-  };
-
-  Differentiation(const BranchScaling& scaling, const BranchLaw& law, const Shape& shape)
-      : scaling_(scaling), shape_(shape), shape_exponent_(law.shape_exponent) {}
+  Differentiation(const BranchScaling& scaling, const SprungShape& shape)
+      : scaling_(scaling), shape_(shape) {}
 
   /// Writes the derivatives of every branch of `scaled`, which ScaleBranches made.
   void Differentiate(const LoadingPath& path, const ScaledBranches& scaled,
@@ -69,7 +41,7 @@ class Differentiation {
     gradients.clear();
     gradients.reserve(path.branches.size());
     for (std::size_t i = 0; i < path.branches.size(); ++i) {
-      gradients.push_back(DifferentiateStart(path.branches[i], scaled[i].force,
+      gradients.push_back(DifferentiateStart(path, path.branches[i], scaled[i].force,
                                              OriginGradient(path.branches[i], scaled, gradients)));
     }
   }
@@ -77,24 +49,23 @@ class Differentiation {
   /// Returns how a branch changes with the force over Tc at its origin, in the place of ln rate.
   [[nodiscard]] BranchGradient DifferentiateByOriginForce(const Branch& branch,
                                                           double origin_force) const {
-    const SteadyPeak peak = scaling_.PeakThatScales(branch);
-    const BranchScale scale = scaling_.ScaleOf(branch, origin_force, peak);
+    const BranchScale scale =
+        scaling_.ScaleOf(branch, origin_force, scaling_.PeakThatScales(branch));
     BranchGradient result;
     result.force[kRate] = 1.0;
     result.origin_per_unloaded = 1.0;
     if (scale.remaining <= 0) return result;
     const double remaining = scale.remaining_per_force * branch.direction;
     result.height[kRate] = scale.span * remaining;
-    result.log_rate[kRate] = (shape_exponent_ - 1) * remaining / scale.remaining;
+    result.log_rate[kRate] = (shape_.shape_exponent - 1) * remaining / scale.remaining;
     return result;
   }
 
-  /// Returns ∂t/∂(ln rate, α, δ₀, ln c) at `displacement`, and t itself.
+  /// Returns the derivatives of t at `displacement`, and t itself.
   /// @param shape  that of the branch
-  template <typename ShapeOnBranch>
-  static Gradient DifferentiateSample(const ShapeOnBranch& shape, const ScaledBranch& branch,
-                                      const BranchGradient& gradient, double displacement,
-                                      double& force) {
+  static Gradient DifferentiateSample(const backbone::InSeries<double>& shape,
+                                      const ScaledBranch& branch, const BranchGradient& gradient,
+                                      double displacement, double& force) {
     const double e = displacement - branch.origin;
     const auto series = shape.Differentiate(branch.Normalize(e));
     const auto& phi = series.contact;
@@ -107,26 +78,29 @@ class Differentiation {
                   sign * (gradient.height[j] * (series.share * phi.force) +
                           branch.height * (series.share * phi.elastic) * gradient.log_rate[j]);
     }
+    if (gradient.runs_both_ways) result[kAsymmetry] *= sign;
     result[kShape] += sign * branch.height * (series.share * phi.shape_derivative);
     result[kUnloaded] -=
         gradient.origin_per_unloaded * branch.height * branch.rate * (series.share * phi.slope);
-    if constexpr (kSprung) result[kSpring] += sign * branch.height * series.log_compliance;
+    result[kSpring] += sign * branch.height * series.log_compliance;
     return result;
   }
 
  private:
   [[nodiscard]] Gradient OriginGradient(const Branch& branch, const ScaledBranches& scaled,
                                         std::span<const BranchGradient> gradients) const {
+    Gradient gradient{};
     switch (branch.start) {
       case BranchStart::kUnloaded:
+        return gradient;
       case BranchStart::kSteadyCentre:
-        return {};
+        gradient[kAsymmetry] = 1.0;
+        return gradient;
       case BranchStart::kSteadyExtreme: {
         const auto [peak, per_log_spring_travel] = scaling_.DifferentiatePeak(branch);
-        Gradient gradient{};
         gradient[kRate] = -branch.direction * peak.per_log_stiffness;
         gradient[kShape] = -branch.direction * peak.per_shape;
-        if constexpr (kSprung) gradient[kSpring] = -branch.direction * per_log_spring_travel;
+        gradient[kSpring] = -branch.direction * per_log_spring_travel;
         return gradient;
       }
       case BranchStart::kReversal:
@@ -138,13 +112,13 @@ class Differentiation {
                                branch.origin, force);
   }
 
-  [[nodiscard]] BranchGradient DifferentiateStart(const Branch& branch, double origin_force,
+  [[nodiscard]] BranchGradient DifferentiateStart(const LoadingPath& path, const Branch& branch,
+                                                  double origin_force,
                                                   const Gradient& origin_gradient) const {
     const SteadyPeak peak = scaling_.PeakThatScales(branch);
     const BranchScale scale = scaling_.ScaleOf(branch, origin_force, peak);
     BranchGradient result;
     result.force = origin_gradient;
-    result.origin_per_unloaded = branch.start == BranchStart::kUnloaded ? 1.0 : 0.0;
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) return result;
     const Gradient peak_gradient{peak.per_log_stiffness, peak.per_shape};
@@ -152,15 +126,20 @@ class Differentiation {
       const double remaining = scale.remaining_per_force * branch.direction * origin_gradient[j] +
                                scale.remaining_per_peak * peak_gradient[j];
       result.height[j] = scale.span * remaining;
-      result.log_rate[j] += (shape_exponent_ - 1) * remaining / scale.remaining;
+      result.log_rate[j] += (shape_.shape_exponent - 1) * remaining / scale.remaining;
     }
     result.log_rate[kShape] += std::log(scale.remaining);
+    if (branch.start != BranchStart::kUnloaded) return result;
+    result.origin_per_unloaded = 1.0;
+    // As high as its limit and as much slower: of l·φ(κ|e|/l), l = VirginLimit(), by a.
+    result.runs_both_ways = path.asymmetry == 0;
+    result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
+    result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);
     return result;
   }
 
   const BranchScaling& scaling_;
-  const Shape& shape_;
-  double shape_exponent_;
+  const SprungShape& shape_;
 };
 
 }  // namespace mindahl::models

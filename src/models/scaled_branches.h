@@ -28,27 +28,21 @@ const Shape& ShapeOn(const Shape& shape, const ScaledBranch& /*branch*/) {
   return shape;  // NOLINT(bugprone-return-const-ref-from-parameter): lives as long as the shape
 }
 
-/// ... but behind a spring each has its own stiffness in proportion to the spring's.
-template <typename Shape>
+/// ... but in series with a spring each has its own stiffness in proportion to the spring's.
 struct SprungShape {
-  Shape contact;
-  double spring_travel;  // c = Tc/k_r [m] of the spring at slip
+  double shape_exponent;
+  double spring_travel;  // c = Tc/k_r [m] of the spring at slip; 0 without one
 };
 
 /// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
 /// @throws InvalidArgument where the branch is too stiff for the spring
-inline double SeriesComplianceOn(const ScaledBranch& branch, double spring_travel) {
-  const double compliance = branch.height * branch.rate * spring_travel;
+inline backbone::InSeries<double> ShapeOn(const SprungShape& shape, const ScaledBranch& branch) {
+  const double compliance = branch.height * branch.rate * shape.spring_travel;
   if (!(compliance <= backbone::kLargestSeriesCompliance<double>)) {
     ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
                  "must be <= 1e100");
   }
-  return compliance;
-}
-
-template <typename Shape>
-backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledBranch& branch) {
-  return {shape.contact, SeriesComplianceOn(branch, shape.spring_travel)};
+  return {shape.shape_exponent, compliance};
 }
 
 /// Calls use(shape) with the cheapest shape that is exact for α, behind a spring unless it is
@@ -56,13 +50,11 @@ backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape, const ScaledB
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
 template <typename Use>
 void WithShapeBehindSpring(double shape_exponent, double spring_travel, const Use& use) {
-  backbone::WithShape(shape_exponent, [&](const auto& contact) {
-    if (spring_travel == 0) {
-      use(contact);
-    } else {
-      use(SprungShape{contact, spring_travel});
-    }
-  });
+  if (spring_travel == 0) {
+    backbone::WithShape(shape_exponent, use);
+  } else {
+    use(SprungShape{shape_exponent, spring_travel});
+  }
 }
 
 /// A model's rules for how branches start, at σ/Tc and α of a law, behind a spring or none.
@@ -79,6 +71,22 @@ class BranchScaling {
   [[nodiscard]] SteadyPeak Peak(const Branch& branch) const {
     const double y = rate_ * std::min(branch.amplitude, backbone::Reach(rate_));
     return model_.steady_peak(ContactAmplitude(y), shape_exponent_);
+  }
+
+  /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
+  /// left side is increasing and concave, so that Newton's rule rises to the root from below.
+  [[nodiscard]] double ContactAmplitude(double total) const {
+    if (series_compliance_ == 0) return total;
+    constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
+    constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
+    double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
+    for (int i = 0; i < kIterations && y > 0; ++i) {
+      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
+      const double residual = (total - y) - series_compliance_ * peak.force;
+      if (residual <= kRounding * total) break;
+      y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
+    }
+    return y;
   }
 
   /// Peak at the amplitude of spring and contact together, by the implicit function theorem:
@@ -136,22 +144,6 @@ class BranchScaling {
   }
 
  private:
-  /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
-  /// left side is increasing and concave, so that Newton's rule rises to the root from below.
-  [[nodiscard]] double ContactAmplitude(double total) const {
-    if (series_compliance_ == 0) return total;
-    constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
-    constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
-    double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
-    for (int i = 0; i < kIterations && y > 0; ++i) {
-      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
-      const double residual = (total - y) - series_compliance_ * peak.force;
-      if (residual <= kRounding * total) break;
-      y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
-    }
-    return y;
-  }
-
   /// Returns k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
   [[nodiscard]] double RateOf(const BranchScale& scale) const {
     constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
@@ -187,14 +179,6 @@ void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const 
                                    scaling.OriginForce(branch, force_of_parent, path.asymmetry),
                                    VirginLimit(path, branch)));
   }
-}
-
-template <typename Shape>
-ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
-                             const Shape& shape) {
-  ScaledBranches scaled;
-  ScaleBranches(scaling, path, shape, scaled);
-  return scaled;
 }
 
 /// @throws InvalidArgument unless a path and what becomes of it are of the displacements
@@ -241,6 +225,23 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
 inline double ForceLimit(const FrictionModel& model, double asymmetry = 0.0) {
   return model.bounded ? 1 + std::abs(asymmetry) : 2.0;
+}
+
+/// Computes the forces [N] along a path.
+/// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+template <typename Shape>
+void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double spring_travel,
+                  const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
+                  std::span<double> force) {
+  ScaledBranches branches;
+  ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
+  RequireReach(law, branches, displacement);
+  for (const BranchRun& run : path.runs) {
+    const std::size_t count = run.end - run.begin;
+    const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
+    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, ForceLimit(model, path.asymmetry),
+                displacement.subspan(run.begin, count), force.subspan(run.begin, count));
+  }
 }
 
 /// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):

@@ -8,6 +8,7 @@
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/friction_model.h"
 #include "models/requirements.h"
+#include "models/scaled_branches.h"
 
 namespace mindahl::models {
 
@@ -15,9 +16,7 @@ namespace {
 
 /// Returns t* at the amplitude.
 double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
-  const double rate = law.tangential_stiffness / law.slip_force;
-  const double y = rate * std::min(amplitude, backbone::Reach(rate));
-  return model.steady_peak(y, law.shape_exponent).force;
+  return BranchScaling(model, law).Peak({.amplitude = amplitude}).force;
 }
 
 }  // namespace
@@ -50,17 +49,11 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude) {
   RequireLawAndAmplitude(law, amplitude);
-  if (std::isinf(rig.stiffness)) return amplitude;
-  // X − T*(X_c)/k_r falls in X_c.
-  double low = 0.0;
-  double high = amplitude;
-  constexpr int kBisections = 200;
-  for (int i = 0; i < kBisections && high - low > 1e-15 * amplitude; ++i) {
-    const double middle = low + (high - low) / 2;
-    const double whole = middle + SteadyPeakForce(model, law, middle) / rig.stiffness;
-    (whole < amplitude ? low : high) = middle;
-  }
-  return low + (high - low) / 2;
+  Validate(rig);
+  if (IsRigid(rig)) return amplitude;
+  const double spring_travel = law.slip_force / rig.stiffness;
+  const double rate = law.tangential_stiffness / law.slip_force;
+  return BranchScaling(model, law, spring_travel).ContactAmplitude(rate * amplitude) / rate;
 }
 
 double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <string>
+#include <string_view>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/loading_path.h"
@@ -12,6 +12,11 @@
 #include "models/requirements.h"
 
 namespace mindahl::models {
+
+BranchLaw ReferenceLaw(const LoadDependentLaw& law) {
+  return {law.reference_stiffness, law.shape_exponent,
+          law.friction_coefficient * law.reference_load};
+}
 
 void Validate(const LoadDependentLaw& law) {
   RequirePositive("friction coefficient [-]", law.friction_coefficient);
@@ -50,56 +55,52 @@ LoadedContactState::LoadedContactState(const LoadDependentLaw& law, const Initia
     : law_(law), initial_(initial) {
   Validate(law);
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
-  reference_slip_displacement_ = ReferenceSlipDisplacement(law);
-  shape_ = backbone::WithShape(law.shape_exponent,
-                               [](const auto& shape) -> decltype(shape_) { return shape; });
+  reference_slip_displacement_ = GrossSlipDisplacement(ReferenceLaw(law));
   Reset();
 }
 
 void LoadedContactState::Reset() {
-  rim_ = RimUnder(initial_.normal_load);
-  displacement_ = initial_.unloaded_displacement;
-  force_ = 0.0;
-  zones_.clear();
-  if (rim_.at.slip_displacement > 0) zones_.push_back({.intercept = displacement_});
+  StartUnloaded(RimUnder(initial_.normal_load), initial_.unloaded_displacement, contact_);
+  normal_load_ = initial_.normal_load;
 }
 
 double LoadedContactState::Move(double displacement, double normal_load) {
   RequireWithinReach("displacement [m]", displacement);
-  const Rim rim = RimUnder(normal_load);
-  force_ = StepTo(zones_, rim, displacement);
-  rim_ = rim;
-  displacement_ = displacement;
-  return force_;
+  MoveTo(RimUnder(normal_load), displacement, contact_);
+  normal_load_ = normal_load;
+  return contact_.force;
 }
 
 double LoadedContactState::Peek(double displacement, double normal_load) const {
   RequireWithinReach("displacement [m]", displacement);
-  std::vector<Zone> zones = zones_;
-  return StepTo(zones, RimUnder(normal_load), displacement);
+  ZonedContact<double> moved = contact_;
+  MoveTo(RimUnder(normal_load), displacement, moved);
+  return moved.force;
 }
 
-LoadedContactState::Rim LoadedContactState::RimUnder(double normal_load) const {
-  if (normal_load == rim_.normal_load) return rim_;
-  const SlipAtLoad slip = SlipUnder(law_, reference_slip_displacement_, normal_load);
-  RequireLoad("normal load [N]", normal_load, slip);
-  return {normal_load, {slip.displacement, slip.force}};
+/// Returns Tc = μN, δc = δc(N_ref)·(N/N_ref)^{1−α}.
+LoadRim<double> LoadedContactState::RimUnder(double normal_load) const {
+  constexpr std::string_view kQuantity = "normal load [N]";
+  if (normal_load == normal_load_) return contact_.rim;
+  RequireNonNegative(kQuantity, normal_load);
+  const double load_ratio = normal_load / law_.reference_load;
+  const double root = std::cbrt(load_ratio);
+  const double growth =
+      law_.shape_exponent == 1.0 / 3 ? root * root : std::pow(load_ratio, 1 - law_.shape_exponent);
+  const LoadRim<double> rim{reference_slip_displacement_ * growth,
+                            law_.friction_coefficient * normal_load};
+  if (!(rim.slip_displacement <= kLargestPathDisplacement && std::isfinite(rim.slip_force))) {
+    ThrowInvalid(kQuantity, normal_load,
+                 "must keep the slip force finite and its displacement <= 1e307 m");
+  }
+  return rim;
 }
 
-/// Steps straight in (δ, δc) from the present displacement and rim; the zones are those to be
-/// changed. If adding a zone runs out of memory none has been dropped.
-double LoadedContactState::StepTo(std::vector<Zone>& zones, const Rim& rim,
-                                  double displacement) const {
-  const auto share = [this](double width, double slip_displacement) {
-    const double y = width / (slip_displacement * (1 - law_.shape_exponent));
-    return std::visit([y](const auto& shape) { return shape.Force(y); }, shape_);
-  };
-  return TakeLoadStep(LoadStep<double>{.from = rim_.at,
-                                       .to = rim.at,
-                                       .from_displacement = displacement_,
-                                       .displacement = displacement,
-                                       .force = force_},
-                      share, zones);
+void LoadedContactState::MoveTo(const LoadRim<double>& rim, double displacement,
+                                ZonedContact<double>& contact) const {
+  backbone::WithShape(law_.shape_exponent, [&](const auto& shape) {
+    models::MoveTo(rim, displacement, ShareOfWidth{shape, law_.shape_exponent}, contact);
+  });
 }
 
 }  // namespace mindahl::models

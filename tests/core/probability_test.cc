@@ -28,7 +28,7 @@ TEST(Probability, FOfOneDegreeIsTheSquareOfT) {
   // P(|t| > x) of one degree: 1 − 2·atan(x)/π.
   const double chance = 1 - 2 * std::atan(2.0) / std::numbers::pi;
   EXPECT_NEAR(PValueOfT(2, 1), chance, kRounding);
-  EXPECT_NEAR(PValueOfF(4, 1), chance, kRounding);
+  EXPECT_NEAR(PValueOfF(4, 1, 1), chance, kRounding);
 }
 
 TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {

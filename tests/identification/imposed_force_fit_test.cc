@@ -153,11 +153,14 @@ TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
 
 TEST(ImposedForceFit, EvidenceForALawDoesNotDependOnTheUnit) {
   const auto evidence = [](double sigma) {
-    const FitResult fit = FitOne(ForcedLoop({sigma, 0.4, kSlipForce}), OfDisplacement());
+    Generator generator(9);
+    const Record loop =
+        WithDisplacementNoise(ForcedLoop({sigma, 0.4, kSlipForce}), 1e-6, generator);
+    const FitResult fit = FitOne(loop, OfDisplacement());
     return fit.law_choice && fit.law_choice->delta_aicc ? *fit.law_choice->delta_aicc : 0.0;
   };
   EXPECT_GT(evidence(5e5), 300);
-  EXPECT_NEAR(evidence(5e3) / evidence(5e5), 1.0, 0.3) << "of residuals that are rounding";
+  EXPECT_NEAR(evidence(5e3) / evidence(5e5), 1.0, 1e-6);
 }
 
 TEST(ImposedForceFit, RefusesOptionsOfForceFits) {

@@ -234,10 +234,10 @@ TEST(Noise, DegreesOfFreedomAreEffectiveSamplesLessParameters) {
 TEST(Distributions, AreThoseOfClosedForms) {
   // F(1, ν) is Student's t squared. P(|t| > x) = 1 − 2/π·arctan x at ν = 1, 1 − x/√(2 + x²) at 2.
   for (const double f : {0.1, 1.0, 3.84, 50.0}) {
-    EXPECT_NEAR(PValueOfF(f, 1.0), 1 - 2 / std::acos(-1.0) * std::atan(std::sqrt(f)), kRounding);
-    EXPECT_NEAR(PValueOfF(f, 2.0), 1 - std::sqrt(f / (2 + f)), kRounding);
+    EXPECT_NEAR(PValueOfF(f, 1, 1.0), 1 - 2 / std::acos(-1.0) * std::atan(std::sqrt(f)), kRounding);
+    EXPECT_NEAR(PValueOfF(f, 1, 2.0), 1 - std::sqrt(f / (2 + f)), kRounding);
   }
-  EXPECT_EQ(PValueOfF(0.0, 7.0), 1.0);
+  EXPECT_EQ(PValueOfF(0.0, 1, 7.0), 1.0);
   EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11);
   EXPECT_NEAR(StudentQuantile(2.0, 0.95), 0.95 * std::sqrt(2 / (1 - 0.95 * 0.95)), 1e-11);
   EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11)

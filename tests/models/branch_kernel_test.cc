@@ -12,7 +12,6 @@
 namespace mindahl::models::branch_kernel_test {
 namespace {
 
-using Gradient = Differentiation<DirectShape>::BranchGradient;
 using Reference = long double;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -20,8 +19,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// t = φ(δ), δ >= 0, with ∂t/∂ln κ = yφ' and ∂t/∂δ₀ = −φ'.
 const ScaledBranch kBranch{
     .origin = 0, .force = 0, .height = 1, .rate = 1, .reach = backbone::Reach(1.0)};
-Gradient GradientOfBranch() {
-  Gradient gradient;
+BranchGradient GradientOfBranch() {
+  BranchGradient gradient;
   gradient.log_rate[kRate] = 1;
   gradient.origin_per_unloaded = 1;
   return gradient;

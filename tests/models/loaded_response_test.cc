@@ -1,6 +1,7 @@
+#include "models/loaded_response.h"
+
 #include "../support/histories.h"
 #include "mindahl/models/variable_load.h"
-#include "models/normalized_response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::loaded_response_test {

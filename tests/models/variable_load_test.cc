@@ -4,7 +4,6 @@
 
 #include "../support/histories.h"
 #include "../support/winkler_foundation.h"
-#include "models/load_zones.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::variable_load_test {

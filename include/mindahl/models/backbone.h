@@ -32,6 +32,10 @@ template <typename Real>
 inline constexpr Real kLargestDisplacement = std::numeric_limits<Real>::max() /
                                              (kLargestShapeExponent<Real> * Real(1e8));
 
+/// Largest κ of a spring in series: Y − κ is still beyond slip at kLargestDisplacement.
+template <typename Real>
+inline constexpr Real kLargestSeriesCompliance = kLargestShapeExponent<Real>;
+
 /// Returns the largest |x| that y = rate·|x| may be formed from.
 template <typename Real>
 [[nodiscard]] Real Reach(Real rate) {
@@ -227,24 +231,18 @@ struct SeriesDerivatives {
 ///
 /// For 0 <= κ <= kLargestSeriesCompliance and 0 <= Y <= kLargestDisplacement; Φ has a relative
 /// error below 4 ε. At most 3 iterations, found over 3e7 points; each is two or three
-/// transcendentals.
-template <typename Shape>
-class InSeries;
-
-/// Largest κ: Y − κ is still beyond slip at kLargestDisplacement.
+/// transcendentals. Without a spring, κ = 0, and for α = 0 there is none.
 template <typename Real>
-inline constexpr Real kLargestSeriesCompliance = kLargestShapeExponent<Real>;
-
-template <typename Real>
-class InSeries<GeneralShape<Real>> {
+class InSeries {
  public:
-  InSeries(const GeneralShape<Real>& shape, Real compliance)
-      : shape_exponent_(shape.shape_exponent),
-        beta_(1 - shape.shape_exponent),
-        compliance_(compliance),
-        balance_force_(ForceAt(Balance())),
-        balance_displacement_(DisplacementAt(Balance())),
-        balance_total_(balance_displacement_ + compliance * balance_force_) {}
+  InSeries(Real shape_exponent, Real compliance)
+      : shape_exponent_(shape_exponent), beta_(1 - shape_exponent), compliance_(compliance) {
+    if (compliance <= 1) return;  // φ' <= 1: the spring is the stiffer everywhere
+    const Real balance = Balance();
+    balance_force_ = ForceAt(balance);
+    balance_displacement_ = DisplacementAt(balance);
+    balance_total_ = balance_displacement_ + compliance * balance_force_;
+  }
 
   /// Beyond slip the contact's displacement is Y − κ.
   [[nodiscard]] bool Slips(Real total) const {
@@ -253,19 +251,21 @@ class InSeries<GeneralShape<Real>> {
 
   /// Returns Φ.
   [[nodiscard]] Real Force(Real total) const {
+    if (shape_exponent_ == 0) return std::min(total / (1 + compliance_), Real(1));
+    if (compliance_ == 0) return GeneralShape<Real>{shape_exponent_}.Force(total);
     return Slips(total) ? Real(1) : ForceAt(LogShare(total));
   }
 
   /// Returns dΦ/dY = φ'/(1+κφ').
   [[nodiscard]] Real Slope(Real total) const {
     if (Slips(total)) return 0;
-    const Real slope = GeneralShape<Real>{shape_exponent_}.Slope(DisplacementAt(LogShare(total)));
+    const Real slope = GeneralShape<Real>{shape_exponent_}.Slope(ContactDisplacement(total));
     return slope / (1 + compliance_ * slope);
   }
 
   [[nodiscard]] SeriesDerivatives<Real> Differentiate(Real total) const {
     if (Slips(total)) return {.contact = {.force = 1}};
-    const auto contact = backbone::Differentiate(DisplacementAt(LogShare(total)), shape_exponent_);
+    const auto contact = backbone::Differentiate(ContactDisplacement(total), shape_exponent_);
     const Real yielding = compliance_ * contact.slope;
     return {contact, 1 / (1 + yielding), -contact.force * (yielding / (1 + yielding))};
   }
@@ -291,12 +291,16 @@ class InSeries<GeneralShape<Real>> {
     return {change / rate, 1 - change};
   }
   [[nodiscard]] Real DisplacementAt(Real log_share) const { return DecayOf(beta_, log_share).sum; }
+  /// Returns y at Y short of slip.
+  [[nodiscard]] Real ContactDisplacement(Real total) const {
+    if (shape_exponent_ == 0) return total / (1 + compliance_);
+    return compliance_ == 0 ? total : DisplacementAt(LogShare(total));
+  }
   [[nodiscard]] static Real ForceAt(Real log_share) { return -std::expm1(-log_share); }
 
-  /// Returns ℓ where κφ' = κ·e^{−αℓ} = 1; 0 where κ < 1, kFarthest where u underflows before.
+  /// Returns ℓ where κφ' = κ·e^{−αℓ} = 1, of κ > 1; kFarthest where u underflows before.
   [[nodiscard]] Real Balance() const {
     constexpr Real kFarthest = Real(-2) * std::numeric_limits<Real>::min_exponent;
-    if (compliance_ <= 1) return 0;
     const Real log_compliance = std::log(compliance_);
     return log_compliance < kFarthest * shape_exponent_ ? log_compliance / shape_exponent_
                                                         : kFarthest;
@@ -356,30 +360,9 @@ class InSeries<GeneralShape<Real>> {
   Real shape_exponent_;
   Real beta_;
   Real compliance_;
-  Real balance_force_;         // φ where κφ' = 1
-  Real balance_displacement_;  // y there
-  Real balance_total_;         // Y there
-};
-
-template <typename Real>
-class InSeries<MindlinShape<Real>> : public InSeries<GeneralShape<Real>> {
- public:
-  InSeries(const MindlinShape<Real>& /*shape*/, Real compliance)
-      : InSeries<GeneralShape<Real>>(GeneralShape<Real>{Real(1) / 3}, compliance) {}
-};
-
-template <typename Real>
-class InSeries<JenkinsShape<Real>> {
- public:
-  InSeries(const JenkinsShape<Real>& /*shape*/, Real compliance) : total_slope_(1 + compliance) {}
-
-  [[nodiscard]] Real Force(Real total) const { return std::min(total / total_slope_, Real(1)); }
-  [[nodiscard]] Real Slope(Real total) const {
-    return total < total_slope_ ? 1 / total_slope_ : Real(0);
-  }
-
- private:
-  Real total_slope_;  // 1 + κ
+  Real balance_force_ = 0;         // φ where κφ' = 1
+  Real balance_displacement_ = 0;  // y there
+  Real balance_total_ = 0;         // Y there
 };
 
 /// Integrals of the normalised branch law φ(y) (backbone.h), with y = σx/Tc >= 0 and α >= 0. In

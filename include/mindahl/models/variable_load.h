@@ -2,10 +2,8 @@
 
 #include <cstddef>
 #include <span>
-#include <variant>
 #include <vector>
 
-#include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 
 namespace mindahl::models {
@@ -27,6 +25,9 @@ struct LoadDependentLaw {
   double reference_stiffness = 0.0;   ///< σ_ref [N/m], at the reference load, finite, > 0
   double shape_exponent = 1.0 / 3.0;  ///< α [–], >= 0, < 1: slip is complete at a finite δc
 };
+
+/// Returns the branch law under the reference load.
+BranchLaw ReferenceLaw(const LoadDependentLaw& law);
 
 /// @throws InvalidArgument naming the parameter, its value and the rule, also where the branch law
 /// at the reference load is invalid
@@ -72,6 +73,17 @@ struct LoadRim {
   Real slip_force{};         ///< Tc(N) [N]
 };
 
+/// A contact under a load that is moved from step to step.
+template <typename Real>
+struct ZonedContact {
+  /// Cover 0 <= h < δc, innermost first; the elements at the rim carry nothing, so that δ need not
+  /// be kept with them.
+  std::vector<LoadZone<Real>> zones;
+  LoadRim<Real> rim{};
+  double displacement = 0.0;  ///< δ [m]
+  Real force{};               ///< T [N]
+};
+
 /// The contact before its first step: T = 0.
 struct InitialLoading {
   double normal_load = 0.0;            ///< N₀ [N], finite, >= 0; 0 for bodies yet to touch
@@ -107,47 +119,32 @@ class LoadedContactState {
   [[nodiscard]] double Peek(double displacement, double normal_load) const;
 
   /// Returns T [N] after the last step.
-  [[nodiscard]] double Force() const { return force_; }
+  [[nodiscard]] double Force() const { return contact_.force; }
 
   /// Returns δ [m].
-  [[nodiscard]] double Displacement() const { return displacement_; }
+  [[nodiscard]] double Displacement() const { return contact_.displacement; }
 
   /// Returns N [N].
-  [[nodiscard]] double NormalLoad() const { return rim_.normal_load; }
+  [[nodiscard]] double NormalLoad() const { return normal_load_; }
 
   /// Returns to the contact before its first step; keeps the memory that was reserved.
   void Reset();
 
   /// Makes room for so many zones, after which Move allocates nothing before they are more.
-  void Reserve(std::size_t zones) { zones_.reserve(zones); }
+  void Reserve(std::size_t zones) { contact_.zones.reserve(zones); }
 
   /// Zones that are remembered.
-  [[nodiscard]] std::size_t RememberedZones() const { return zones_.size(); }
+  [[nodiscard]] std::size_t RememberedZones() const { return contact_.zones.size(); }
 
  private:
-  using Zone = LoadZone<double>;
-
-  /// The rim under a load.
-  struct Rim {
-    double normal_load = 0.0;
-    LoadRim<double> at;
-  };
-
-  [[nodiscard]] Rim RimUnder(double normal_load) const;
-  [[nodiscard]] double StepTo(std::vector<Zone>& zones, const Rim& rim, double displacement) const;
+  [[nodiscard]] LoadRim<double> RimUnder(double normal_load) const;
+  void MoveTo(const LoadRim<double>& rim, double displacement, ZonedContact<double>& contact) const;
 
   LoadDependentLaw law_;
   InitialLoading initial_;
   double reference_slip_displacement_;
-  std::variant<backbone::JenkinsShape<double>, backbone::MindlinShape<double>,
-               backbone::GeneralShape<double>>
-      shape_;
-  /// Cover 0 <= h < δc, innermost first; the elements at the rim carry nothing, so that δ need not
-  /// be kept with them.
-  std::vector<Zone> zones_;
-  Rim rim_;
-  double displacement_ = 0.0;
-  double force_ = 0.0;
+  ZonedContact<double> contact_;
+  double normal_load_ = 0.0;
 };
 
 }  // namespace mindahl::models

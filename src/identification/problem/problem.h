@@ -13,6 +13,7 @@
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
+#include "models/loaded_response.h"
 #include "models/normalized_response.h"
 
 namespace mindahl::identification {
