@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "mindahl/loop/disturbances.h"
-#include "mindahl/loop/facts.h"
 
 namespace mindahl::identification {
 namespace {
@@ -186,10 +185,12 @@ bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitO
   return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
 }
 
-/// True if a loop that is not seen to slide leaves open that it is far from it.
+/// True if a loop that hardly dissipates leaves open that it is far from slip.
 bool MayBeFarFromSlip(const FittedProblem& fitted, const FitResult& result,
                       const FitOptions& options, Solver& solver) {
-  if (fitted.problem.parameters[kSlipForce].fixed || loop::Slides(result.WidestRecord().facts)) {
+  constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
+  if (fitted.problem.parameters[kSlipForce].fixed ||
+      result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
   HeldParameter held(fitted, kSlipForce, SolverOptionsOf(options), solver);
