@@ -182,6 +182,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
     std::ranges::sort(said);
   }
   std::vector<std::string> lines;
+  lines.reserve(said.size() + 1);
   for (const Statement* statement : said) lines.push_back(statement->text);
   if (said.size() < statements.size()) {
     lines.push_back(
