@@ -76,6 +76,7 @@ class Writer {
     AddShape();
     AddLoad();
     AddTerms();
+    AddPriors();
     AddColumnsNotTried();
     AddLaw();
     Add("misfit", MisfitStatement(report_), JudgementOf(VerdictWord(report_)));
@@ -215,6 +216,17 @@ class Writer {
       if (!IsMoot(report_, *term)) terms.push_back(TextOf(term->name, *term));
     }
     Add("terms", fmt::format("{}", fmt::join(terms, ", ")));
+  }
+
+  /// Says what was given of parameters before the record: it is a part of their intervals.
+  void AddPriors() {
+    std::vector<std::string> priors;
+    for (const auto& [name, prior] : report_.options.priors) {
+      priors.push_back(fmt::format(
+          "{} {}", name,
+          QuantityWithError(prior.value, prior.standard_uncertainty, fit_.Find(name)->unit)));
+    }
+    Add("prior", fmt::format("{}", fmt::join(priors, ", ")));
   }
 
   /// Says which columns the choice of terms took for repeats of another: one may be the cause.

@@ -231,6 +231,14 @@ TEST(Answer, HasATermOnceInAnswerAndDetails) {
   EXPECT_EQ(text.find("viscous"), text.rfind("viscous")) << text;
 }
 
+TEST(Answer, SaysWhatWasGivenBeforeTheRecord) {
+  ReportInput input = MadeInput();
+  EXPECT_EQ(LineOf(input, "prior"), "");
+  input.options.priors["alpha"] = {1.0 / 3, 0.02};
+  input.options.priors["sigma"] = {5e7, 1e6};
+  EXPECT_EQ(LineOf(input, "prior"), "alpha 0.333 ± 0.020, sigma 50.0 ± 1.0 N/µm");
+}
+
 TEST(Answer, SaysThatTheMeasureIsOfTheWholeRecordWhereAPartIsFitted) {
   ReportInput input = Doubtful();
   input.fit.records[0].facts = Facts(10.0);
