@@ -221,6 +221,7 @@ class Writer {
   /// Says what was given of parameters before the record: it is a part of their intervals.
   void AddPriors() {
     std::vector<std::string> priors;
+    priors.reserve(report_.options.priors.size());
     for (const auto& [name, prior] : report_.options.priors) {
       priors.push_back(fmt::format(
           "{} {}", name,
