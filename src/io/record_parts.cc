@@ -41,9 +41,6 @@ void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
   if (pieces.empty()) return {{.name = file, .file = input}};
-  const auto line = [&](std::size_t sample) {
-    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
-  };
   std::vector<NamedRecord> records;
   std::size_t left_out = input.record.size();
   for (const loop::ConstantLoad& piece : pieces) {
@@ -53,8 +50,8 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
     KeepSamples(added.file, piece.first, piece.last);
     added.file.notes.clear();
     added.file.piece = {.normal_load = piece.normal_load,
-                        .first_line = line(piece.first),
-                        .last_line = line(piece.last - 1)};
+                        .first_line = input.LineOf(piece.first),
+                        .last_line = input.LineOf(piece.last - 1)};
     added.name =
         fmt::format("{}:{}-{}", file, added.file.piece->first_line, added.file.piece->last_line);
   }

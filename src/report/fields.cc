@@ -469,9 +469,7 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
     const RecordFit& fit = report.fit.records[r];
     const auto add = [&](std::size_t samples, std::size_t first, bool are_in_a_row,
                          const char* why) {
-      const auto line = [&](std::size_t sample) {
-        return !are_in_a_row ? 0 : sample < file.lines.size() ? file.lines[sample] : sample + 1;
-      };
+      const auto line = [&](std::size_t sample) { return are_in_a_row ? file.LineOf(sample) : 0; };
       if (samples == 0) return;
       parts.push_back({.file = report.files[r],
                        .samples = samples,

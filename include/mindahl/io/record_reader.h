@@ -61,6 +61,11 @@ struct RecordFile {
   std::vector<std::string> notes;  ///< assumptions of the reader, one sentence each
   LeftOutRows left_out = {};
   std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
+
+  /// Returns the line of a sample; its number from 1 where the record does not know its lines.
+  [[nodiscard]] std::size_t LineOf(std::size_t sample) const {
+    return sample < lines.size() ? lines[sample] : sample + 1;
+  }
 };
 
 /// Largest number of columns that a record keeps without being asked for.
