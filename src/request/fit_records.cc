@@ -33,10 +33,6 @@ using loop::Record;
 
 namespace {
 
-std::size_t LineOf(const RecordFile& input, std::size_t sample) {
-  return sample < input.lines.size() ? input.lines[sample] : sample + 1;
-}
-
 const report::Units& UnitsOf(const RecordFile& input) {
   return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
 }
@@ -54,7 +50,7 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
   throw InputError(
       fmt::format("{}:{}:{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
                   "choose other units",
-                  file, LineOf(input, static_cast<std::size_t>(widest - values.begin())),
+                  file, input.LineOf(static_cast<std::size_t>(widest - values.begin())),
                   column.index, what, half_range, unit));
 }
 
@@ -64,7 +60,7 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
   throw InputError(
       fmt::format("{}:{}:{}: the {} never changes, it is {} {} in every row: a fit needs a {} "
                   "contact; choose another column with --{}",
-                  file, LineOf(input, 0), column.index, what, value, unit, need, what));
+                  file, input.LineOf(0), column.index, what, value, unit, need, what));
 }
 
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
@@ -160,8 +156,8 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
     for (const loop::LeftOut& part : test.left_out) {
       left_out.push_back({.file = names[r],
                           .samples = part.last - part.first,
-                          .first = LineOf(records[r], part.first),
-                          .last = LineOf(records[r], part.last - 1),
+                          .first = records[r].LineOf(part.first),
+                          .last = records[r].LineOf(part.last - 1),
                           .why = std::string(NameOf(part.reason))});
     }
     io::KeepSamples(records[r], test.first, test.last);
@@ -369,16 +365,22 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFi
 }
 
 bool Established(const FitResult& fit, Strictness strictness) {
-  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
-  const bool is_strict = strictness == Strictness::kAdequate;
+  if (!fit.converged) return false;
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  return (is_strict ? verdict == AdequacyVerdict::kAdequate
-                    : verdict != AdequacyVerdict::kInadequate) &&
-         std::ranges::all_of(fit.parameters, [&](const ParameterEstimate& estimate) {
-           return is_strict ? estimate.status == ParameterStatus::kFixed ||
-                                  estimate.identifiability == Identifiability::kIdentifiable
-                            : estimate.is_known();
-         });
+  switch (strictness) {
+    case Strictness::kNone:
+      return true;
+    case Strictness::kDoubtful:
+      return verdict != AdequacyVerdict::kInadequate &&
+             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
+    case Strictness::kAdequate:
+      return verdict == AdequacyVerdict::kAdequate &&
+             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
+               return estimate.status == ParameterStatus::kFixed ||
+                      estimate.identifiability == Identifiability::kIdentifiable;
+             });
+  }
+  return false;
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {
