@@ -34,8 +34,10 @@ class HeldParameter {
   HeldParameter(const HeldParameter&) = delete;
   HeldParameter& operator=(const HeldParameter&) = delete;
 
+  /// @param start  θ of the others
   /// @returns F of the best fit against that with the parameter at θ, which is in solution()
-  double At(double theta, const std::vector<double>& start) {
+  double At(double theta, std::vector<double> start) {
+    start[parameter_] = theta;
     solver_.HoldAt(parameter_, theta);
     solver_.Solve(start, options_, solution_);
     return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
@@ -87,12 +89,6 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
   return outside ? std::optional(step) : std::nullopt;
 }
 
-/// Returns a start beside a solution.
-std::vector<double> Continue(std::vector<double> theta, std::size_t parameter, double to) {
-  theta[parameter] = to;
-  return theta;
-}
-
 /// Finds θ where F of a held parameter is the critical one on one side of the best fit; the bound
 /// where it is less up to there; nothing where that is a limit of the search, or F is less for a
 /// factor of a thousand.
@@ -109,9 +105,7 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
       std::min({estimates.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
   std::vector<double> last = estimates.Beside(parameter, towards * first);
   const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
-    const double theta = from + towards * at;
-    const double root =
-        std::sqrt(held.At(theta, Continue(last, parameter, theta)) / estimates.critical());
+    const double root = std::sqrt(held.At(from + towards * at, last) / estimates.critical());
     last = held.solution().theta;
     return root;
   });
@@ -130,8 +124,7 @@ bool IsOpenAbove(HeldParameter& held, const FittedProblem& fitted, const Thresho
   const double far = std::log(thresholds.far_slip_force);
   const Parameter& of = fitted.problem.parameters[kSlipForce];
   if (far > of.upper || far < fitted.solution.theta[kSlipForce]) return false;
-  return held.At(far, Continue(fitted.solution.theta, kSlipForce, far)) <
-         thresholds.open_slip_force;
+  return held.At(far, fitted.solution.theta) < thresholds.open_slip_force;
 }
 
 /// Returns the force [N] that the contact is seen to carry, the more of two: the fitted one less
@@ -227,10 +220,11 @@ Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOption
   const auto value_of = [&](std::optional<double> theta) {
     return theta ? std::optional(of.ToValue(*theta)) : std::nullopt;
   };
-  Ends ends{.lower = value_of(LikelihoodEnd(held, fitted, parameter, -1.0)),
-            .upper = value_of(LikelihoodEnd(held, fitted, parameter, 1.0))};
-  if (parameter == kSlipForce && IsOpenAbove(held, fitted, options.thresholds)) ends.upper.reset();
-  return ends;
+  const std::optional<double> lower = LikelihoodEnd(held, fitted, parameter, -1.0);
+  if (parameter == kSlipForce && IsOpenAbove(held, fitted, options.thresholds)) {
+    return {.lower = value_of(lower), .upper = std::nullopt};
+  }
+  return {.lower = value_of(lower), .upper = value_of(LikelihoodEnd(held, fitted, parameter, 1.0))};
 }
 
 ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
