@@ -47,6 +47,7 @@ std::optional<std::vector<double>> WaysTo(bool up, const FitResult& fit, const F
   std::vector<double> ways(fit.parameters.size(), 0.0);
   for (std::size_t k = 0; k < ways.size(); ++k) {
     const ParameterEstimate& estimate = fit.parameters[k];
+    if (estimate.status == ParameterStatus::kFixed) continue;
     const auto change = [&](double value) -> std::optional<double> {
       Values moved = values;
       moved[estimate.name] = value;
@@ -57,7 +58,7 @@ std::optional<std::vector<double>> WaysTo(bool up, const FitResult& fit, const F
     // no value further away. Where the contact radius is given, p₀ does not depend on the fit.
     const double step = 1e-6 * (estimate.value == 0 ? 1.0 : std::abs(estimate.value));
     const double trend = change(estimate.value + step).value_or(0.0);
-    if (trend == 0 || estimate.status == ParameterStatus::kFixed) continue;
+    if (trend == 0) continue;
     const bool rises = up == (trend > 0);
     const std::optional<double> end = rises ? estimate.upper95 : estimate.lower95;
     const std::optional<double> way = end ? change(*end) : std::nullopt;
