@@ -131,7 +131,8 @@ class Differentiation {
     result.log_rate[kShape] += std::log(scale.remaining);
     if (branch.start != BranchStart::kUnloaded) return result;
     result.origin_per_unloaded = 1.0;
-    // As high as its limit and as much slower: of l·φ(κ|e|/l), l = VirginLimit(), by a.
+    // The virgin curve is l·φ(κ|e|/l) with l = VirginLimit(): by a its height grows as l does, and
+    // its rate falls as 1/l does.
     result.runs_both_ways = path.asymmetry == 0;
     result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
     result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);

@@ -2,7 +2,7 @@
 
 #include "support/prelude.h"
 
-// What a whole test says: repeats of it, and the energy that it dissipated.
+// Tests the summary of a whole test: its repeats and the energy that it dissipated.
 namespace mindahl::campaign::test_summary_test {
 namespace {
 

@@ -44,7 +44,7 @@ class FitTerms : public CommandTest {
   }
 };
 
-// The rig's spring in series gives way by T/k.
+// The rig, a spring in series, deflects by T/k.
 TEST_F(FitTerms, KnownRigIsTakenOffTheDisplacement) {
   std::vector<Sample> loop = Simulate();
   for (Sample& sample : loop) sample.displacement += sample.force / 8e7;

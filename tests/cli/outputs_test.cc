@@ -6,8 +6,8 @@
 #include "io/source.h"
 #include "support/text.h"
 
-// Where results go: no output replaces an input or another output, what cannot be written is an
-// error that is said, and --report writes pages for people.
+// Tests the outputs: none replaces an input or another output, one that cannot be written is an
+// error, and --report writes a page.
 namespace mindahl::cli::outputs_test {
 namespace {
 

@@ -59,7 +59,7 @@ const std::vector<BadUsage> kBadUsage = {
      "is chosen twice as a covariate: choose it once"},
     {"fit & --covariate pressure",
      "no column is called 'pressure' (for the covariate): the columns are"},
-    // What is fitted
+    // The model
     {"fit @ --model simplified-dahl", "--model"},
     {"fit @ --model mindin",
      "--model: 'mindin' is unknown: did you mean 'mindlin'? must be one of auto, mindlin-dahl, "
@@ -96,7 +96,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --reversal-gate 1", "--reversal-gate 1: the motion ranges over "},
     {"fit @ --normal-load 0", "--normal-load [N] = 0"},
     {"fit @ --normal-load 25,", "--normal-load: ''"},
-    // Which samples
+    // The selection of samples
     {"fit @ --time-window 50:60", "holds no sample"},
     {"fit @ --select load",
      "--select: 'load' is incomplete: write cycles=LO:HI, time, load or samples"},
@@ -114,7 +114,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --select samples=5:4",
      "--select samples: '5:4' is empty: the first number must not be the larger"},
     {"fit @ --samples 100000:200000", "samples 100000:200000 contain nothing of record 1: it has"},
-    // Where results go
+    // The outputs
     {"fit @ --json # --plot loop.txt", ".svg or .png"},
     {"fit @ --json /no/such/x.json --residuals #", "there is no directory '/no/such'"},
     {"fit @ --json /tmp --residuals #", "is a directory"},

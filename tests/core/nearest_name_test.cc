@@ -20,7 +20,7 @@ TEST(NearestName, HasFewestEditsAndOfEqualsIsTheFirst) {
   EXPECT_EQ(NearestName("--displacemnt-unit", kOptions), "--displacement-unit");
   EXPECT_EQ(NearestName("--stiffness", kOptions), std::nullopt);
   EXPECT_EQ(NearestName("", kOptions), std::nullopt);
-  // Of what begins with an abbreviation it is the shortest.
+  // An abbreviation is completed to the shortest name that begins with it.
   EXPECT_EQ(NearestName("--disp", kOptions), "--displacement");
   EXPECT_EQ(NearestName("fitt", std::vector<std::string>{"fits", "fit"}), "fits");
   EXPECT_EQ(NearestName("FORCE_N", std::vector<std::string>{"Time", "Force_N"}), "Force_N");

@@ -76,7 +76,7 @@ TEST_P(OfEveryLaw, GradientsAgreeWithDifferences) {
     // Off the minimum, and off the neutral value of the term.
     for (CeresParameter& parameter : problem.parameters()) {
       if (!parameter.fixed) parameter.theta += 0.003;
-      // Where the law holds α at 0, differences need room below.
+      // The lower bound of α is 0: a central difference needs a point below α.
       if (parameter.name == "alpha") parameter.theta = std::max(parameter.theta, 0.05);
     }
     const auto cost = problem.MakeCostFunction();

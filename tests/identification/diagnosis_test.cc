@@ -35,7 +35,7 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
 }
 
 // ---
-// What is found in records, from facts made by hand, and what a whole fit makes of them.
+// Tests the findings of records, from facts made by hand, and in the result of a whole fit.
 
 using namespace loop;
 using namespace models;

@@ -149,7 +149,7 @@ TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
 }
 
 // ---
-// What a fit may not say at once.
+// Tests that no result contradicts itself.
 
 using namespace models;
 
@@ -165,7 +165,7 @@ Record NoisyLoop(const BranchLaw& law, double amplitude, double noise, std::uint
       generator);
 }
 
-/// What must hold of every result, whatever the record.
+/// Expects the relations that every result must obey, whatever the record.
 void ExpectNoContradiction(const FitResult& fit) {
   for (const ParameterEstimate& estimate : fit.parameters) {
     SCOPED_TRACE(estimate.name);

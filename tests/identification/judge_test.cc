@@ -125,7 +125,7 @@ TEST(Judge, EarlierVerdictIsForgotten) {
 }
 
 // ---
-// What a fit is good for, by the force that it misses over what was measured without a model.
+// Tests the use of a fit, by the ratio of the missed force to the measured half gap.
 
 constexpr double kRounding = 1e-14;
 
@@ -178,8 +178,8 @@ TEST(Grade, WhiteNoiseIsNotMissed) {
   EXPECT_NEAR(MissedForce(fit), 1.0, kRounding);
   SetResiduals({1, -1, 1, -1, 1, -1}, fit);
   EXPECT_EQ(MissedForce(fit), 0.0);
-  // Of 0, 0, 3, 0, 0, 0 the distances are 0.5·3, −3, 0.5·3 and 0: mean square 13.5/4, variance
-  // 2/3 of it, 2.25, of a mean square of 1.5.
+  // The residuals 0, 0, 3, 0, 0, 0 have the second differences 0.5·3, −3, 0.5·3 and 0, of mean
+  // square 13.5/4; the white variance is 2/3 of it, 2.25, and exceeds the mean square of 1.5.
   SetResiduals({0, 0, 3, 0, 0, 0}, fit);
   EXPECT_EQ(MissedForce(fit), 0.0);
   // Twice 2 beside it: mean square (4·5 + 9)/6, distances 0, −0.5, 1, −0.5, 0 without the ends.

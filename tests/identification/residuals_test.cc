@@ -56,7 +56,7 @@ TEST(ResidualStatistics, ConstantForceExplainsNothing) {
 }
 
 // ---
-// What comes back in every stroke, told from noise.
+// Tests that residuals which repeat in every stroke are distinguished from noise.
 
 using namespace loop;
 

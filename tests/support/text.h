@@ -12,7 +12,7 @@ inline std::string Unbroken(std::string page) {
   return std::regex_replace(page, kBreaks, "$1");
 }
 
-/// What a pattern's first group matches.
+/// Returns the matches of a pattern's first group.
 inline std::set<std::string> Matches(const std::string& text, const std::string& pattern) {
   std::set<std::string> found;
   const std::regex regex(pattern);
