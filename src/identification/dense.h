@@ -16,11 +16,6 @@ Eigen::MatrixXd TransposedProduct(const MatrixView& a, const MatrixView& b);
 
 /// Solves AX = B with a symmetric A, by LDLᵀ with pivots.
 Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b);
-/// Solves AX = B in the sense of least squares, by QR with column pivots.
-/// @param a     may have no columns
-/// @param rank  written where it is asked for: of A
-Eigen::MatrixXd SolveLeastSquares(const MatrixView& a, const MatrixView& b,
-                                  Eigen::Index* rank = nullptr);
 /// Returns what the columns of A leave of B: B − A·argmin |B − AX|.
 Eigen::MatrixXd LeftOver(const MatrixView& a, const MatrixView& b);
 

@@ -71,7 +71,6 @@ void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& d
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
-  result.parameters = WithRepeatErrors(fitted, thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByOmittedTerms(problem, solution, test, causes,
                       StudentQuantile(test.degrees_of_freedom, options.confidence),

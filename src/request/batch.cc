@@ -131,18 +131,19 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits, con
     }
     const Json& verdict = rows[k].at(fmt::format("{}_verdict", parameter));
     const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
-    const auto estimate = std::ranges::find(fit.parameters, parameter, &ParameterEstimate::name);
-    std::optional<double> own = number(parameter, "_error");
-    if (estimate != fit.parameters.end() && estimate->repeat_error) own = estimate->repeat_error;
     const std::optional<double> of_parameter = number(parameter, "");
-    if (!is_known || !of_parameter || !own || !(*own > 0)) continue;
-    values.push_back(*value);
-    errors.push_back(*own * (*value / *of_parameter));  // μ = Tc/N scatters as Tc does
     const std::optional<double> lower = number(quantity.name, "_lower95");
     const std::optional<double> upper = number(quantity.name, "_upper95");
+    if (!is_known || !of_parameter) continue;
     constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
     const double whole = lower && upper ? (*upper - *lower) / kWidth : 0.0;
-    common.push_back(std::sqrt(std::max(0.0, whole * whole - errors.back() * errors.back())));
+    // μ = Tc/N scatters as Tc does; a parameter at a bound has an interval only.
+    const double own = number(parameter, "_error").value_or(0.0) * (*value / *of_parameter);
+    const double error = own > 0 ? own : whole;
+    if (!(error > 0)) continue;
+    values.push_back(*value);
+    errors.push_back(error);
+    common.push_back(std::sqrt(std::max(0.0, whole * whole - error * error)));
   }
   return campaign::DescribeRepeats(values, errors, common);
 }

@@ -123,35 +123,6 @@ TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
   EXPECT_TRUE(Covers(slip_force, *fit.WidestRecord().facts.half_gap));
 }
 
-TEST(RepeatError, IsTheScatterOfRepeatsAndNotWhatTheModelMissesInAll) {
-  constexpr std::uint64_t kRepeats = 12;
-  double sum = 0.0;
-  double squares = 0.0;
-  double stated = 0.0;
-  double standard_error = 0.0;
-  for (std::uint64_t seed = 1; seed <= kRepeats; ++seed) {
-    const ParameterEstimate slip_force = *FitNoisy(OfPosition(0.1), seed).Find("slip_force");
-    ASSERT_TRUE(slip_force.repeat_error && slip_force.standard_error);
-    const double off = slip_force.value - kLaw.slip_force;
-    sum += off;
-    squares += off * off;
-    stated += *slip_force.repeat_error * *slip_force.repeat_error / kRepeats;
-    standard_error = *slip_force.standard_error;
-  }
-  const double chi_squared = (squares - sum * sum / kRepeats) / stated;
-  // Quantiles of 0.1 and 99.9 % of χ²(11), and as much again for a jackknife of five cycles.
-  EXPECT_GT(chi_squared, 1.48 / 2);
-  EXPECT_LT(chi_squared, 31.3 * 2);
-  // The standard error takes what is missed in every stroke for noise.
-  EXPECT_GT(standard_error * standard_error, 4 * stated);
-}
-
-TEST(RepeatError, IsTheStandardErrorOfAnAdequateModel) {
-  const FitResult fit = FitNoisy(Loop());
-  ASSERT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
-  EXPECT_EQ(fit.Find("slip_force")->repeat_error, fit.Find("slip_force")->standard_error);
-}
-
 TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
   FitOptions options;
   options.bounds["slip_force"] = {1.0, 500.0};

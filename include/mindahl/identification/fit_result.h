@@ -74,10 +74,6 @@ struct ParameterEstimate {
   ParameterStatus status = ParameterStatus::kFixed;
   bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
   Identifiability identifiability = Identifiability::kNotIdentifiable;
-  /// Standard deviation that repeats of the test would have: `standard_error` of a model that is
-  /// adequate, else what leaving out one part of the record's cycles after the other changes. A
-  /// discrepancy that all repeats have in common is not in it.
-  std::optional<double> repeat_error = {};
 
   /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {

@@ -1,13 +1,11 @@
 #include "identification/diagnosis/discrepancy.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 
 #include "core/probability.h"
-#include "identification/dense.h"
 #include "identification/diagnosis/residuals.h"
 
 namespace mindahl::identification {
@@ -49,60 +47,6 @@ double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
   if (!facts.half_gap_standard_deviation || cycles < 3) return 0.0;
   return StudentQuantile(cycles - 1, confidence) * *facts.half_gap_standard_deviation *
          std::sqrt(1 + 1 / cycles);
-}
-
-/// Standard errors of the free θ from leaving out one after the other of up to twelve parts of the
-/// record, whole cycles that follow on each other: √((1 − f)²/f·Σ(θ₋ₖ − θ̄)²/(n − 1)), the jackknife
-/// of n parts that have a fraction f of the samples each, each θ₋ₖ by one linear step of all free
-/// parameters. What the model misses in the same way in every cycle is not in them.
-/// @returns none of fewer than three cycles, or where the rest does not determine them
-std::vector<double> ErrorsBetweenCycles(const Problem& problem, const Estimates& estimates,
-                                        const Thresholds& thresholds) {
-  constexpr std::size_t kFewest = 3;
-  constexpr std::size_t kMost = 12;
-  struct Rows {
-    Eigen::Index begin;
-    Eigen::Index count;
-  };
-  std::vector<Rows> strokes;
-  Eigen::Index begin = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const Stroke& stroke : MainStrokes(record, thresholds)) {
-      strokes.push_back({begin + static_cast<Eigen::Index>(stroke.begin),
-                         static_cast<Eigen::Index>(stroke.end - stroke.begin)});
-    }
-    begin += static_cast<Eigen::Index>(record.size());
-  }
-  const Eigen::MatrixXd& jacobian = estimates.jacobian();
-  const Eigen::Index count = jacobian.cols();
-  const std::size_t cycles = strokes.size() / 2;
-  if (cycles < kFewest || count == 0) return {};
-  const std::size_t parts = std::min(cycles, kMost);
-  std::vector<Eigen::MatrixXd> matrices(parts, TransposedProduct(jacobian, jacobian));
-  std::vector<Eigen::VectorXd> vectors(parts, -(jacobian.transpose() * estimates.residual()));
-  double left_out = 0.0;
-  // An odd stroke at the end stays: without it the two directions would weigh unlike.
-  for (std::size_t stroke = 0; stroke < 2 * cycles; ++stroke) {
-    const auto [first, samples] = strokes[stroke];
-    const auto rows = jacobian.middleRows(first, samples);
-    const std::size_t part = stroke / 2 * parts / cycles;
-    matrices[part] -= TransposedProduct(rows, rows);
-    vectors[part] += rows.transpose() * estimates.residual().segment(first, samples);
-    left_out += static_cast<double>(samples);
-  }
-  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(parts));
-  for (std::size_t part = 0; part < parts; ++part) {
-    Eigen::Index rank = 0;
-    steps.col(static_cast<Eigen::Index>(part)) =
-        SolveLeastSquares(matrices[part], vectors[part], &rank);
-    if (rank < count) return {};
-  }
-  steps.colwise() -= steps.rowwise().mean().eval();
-  const auto all = static_cast<double>(parts);
-  const double fraction = left_out / all / static_cast<double>(jacobian.rows());
-  const double factor = (1 - fraction) * (1 - fraction) / (fraction * (all - 1));
-  const Eigen::VectorXd errors = std::sqrt(factor) * steps.rowwise().norm();
-  return {errors.begin(), errors.end()};
 }
 
 /// The stiffness of the record after its reversals over that of the model: slopes of least squares,
@@ -198,28 +142,6 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Threshold
                    std::clamp(slip_force.upper95.value_or(most), least, most)});
   SetInterval(slip_force, {.lower = lower, .upper = upper});
   slip_force.includes_discrepancy = true;
-  return parameters;
-}
-
-ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
-                                    const FitResult& result) {
-  const auto& [problem, solution, noise, estimates] = fitted;
-  ParameterEstimates parameters = result.parameters;
-  const bool is_adequate = result.adequacy.verdict == AdequacyVerdict::kAdequate;
-  const std::vector<double> errors =
-      is_adequate ? std::vector<double>() : ErrorsBetweenCycles(problem, estimates, thresholds);
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const std::size_t p = problem.parameters.reported()[k];
-    const std::size_t place = problem.parameters.PlaceAmongFree(p);
-    ParameterEstimate& estimate = parameters[k];
-    if (is_adequate) {
-      estimate.repeat_error = estimate.standard_error;
-    } else if (place < errors.size()) {
-      const Parameter& parameter = problem.parameters[p];
-      estimate.repeat_error =
-          errors[place] * (parameter.term->positive ? estimate.value : std::abs(parameter.scale));
-    }
-  }
   return parameters;
 }
 

@@ -20,9 +20,4 @@ namespace mindahl::identification {
 ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Thresholds& thresholds,
                                     const FitResult& result);
 
-/// Returns the estimates with their repeat_error: the standard error where the model is adequate,
-/// else from leaving out one part of the record's cycles after the other.
-ParameterEstimates WithRepeatErrors(const FittedProblem& fitted, const Thresholds& thresholds,
-                                    const FitResult& result);
-
 }  // namespace mindahl::identification
