@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <utility>
 
 #include "core/draws.h"
-#include "core/probability.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
@@ -77,64 +76,42 @@ Record MindlinRecord(const Case& drawn) {
   return record;
 }
 
-struct Errors {
-  std::array<double, kValidatedParameters.size()> of_contact{};  // of σ, α and Tc
-  double standardized = 0.0;
-  bool undetermined = false;
-  bool converged = false;
-  std::string termination;
-  std::array<IntervalCount, kValidatedParameters.size()> intervals;
-};
-
-/// Holds a loop, the fit to it, and the expected result.
+/// A loop, how it is fitted, and what should come back.
 struct Trial {
-  const Record& record;
+  Record record;
   FitOptions options;
-  models::BranchLaw contact;  // by Masing's law
-  models::BranchLaw truth;    // of the law that is fitted
-  double amplitude;           // [m]
-
-  [[nodiscard]] bool IsDahl() const { return options.model->memory == models::Memory::kNone; }
+  models::BranchLaw truth;
 };
 
-/// The whole loop by Masing's law.
-Trial ByMasing(const Record& record, const Case& drawn) {
+/// The whole loop by Masing's law, or what follows its first extreme by Dahl's own.
+Trial TrialOf(Record record, const Case& drawn, bool by_dahl) {
   const models::BranchLaw law = contact::MapMindlinToDahl(drawn.contact);
-  return {record, {}, law, law, drawn.excitation.amplitude};
-}
-
-/// Its steady part by Dahl's own law.
-Trial ByDahl(const Record& steady, const Case& drawn) {
-  FitOptions options;
-  options.model = models::FindFrictionModel("dahl");
-  options.initial_state = models::InitialState::kSteady;
-  const double amplitude = drawn.excitation.amplitude;
-  const models::BranchLaw law = contact::MapMindlinToDahl(drawn.contact);
-  return {steady, options, law, models::DahlEquivalent(law, amplitude), amplitude};
-}
-
-/// Returns the record from the first extreme on.
-Record SteadyPart(Record record, const Case& drawn) {
+  if (!by_dahl) return {std::move(record), {}, law};
   const auto first = static_cast<std::ptrdiff_t>(drawn.excitation.samples_per_cycle / 4);
   for (auto* column : {&record.time, &record.displacement, &record.force}) {
     column->erase(column->begin(), column->begin() + first);
   }
-  return record;
+  FitOptions options;
+  options.model = models::FindFrictionModel("dahl");
+  options.initial_state = models::InitialState::kSteady;
+  return {std::move(record), options, models::DahlEquivalent(law, drawn.excitation.amplitude)};
 }
 
-Errors Compare(const Trial& trial, const FitResult& fit) {
+/// How far a fit is from the truth.
+struct Errors {
+  std::array<double, kValidatedParameters.size()> of_contact{};  // of σ, α and Tc
+  double standardized = 0.0;
+  bool undetermined = false;
+  std::size_t intervals = 0;
+  std::size_t covering = 0;
+};
+
+Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
   Errors errors;
-  errors.converged = fit.converged;
-  errors.termination = fit.solver.message;
   if (fit.parameters.empty()) return errors;
-  // A fit of Dahl's law is compared with the contact through the Masing law of the same loop.
-  const models::BranchLaw found =
-      trial.IsDahl() ? models::MasingEquivalent(fit.law, trial.amplitude) : fit.law;
-  errors.of_contact = {
-      std::abs(found.tangential_stiffness / trial.contact.tangential_stiffness - 1),
-      std::abs(found.shape_exponent - trial.contact.shape_exponent),
-      std::abs(found.slip_force / trial.contact.slip_force - 1)};
-  const models::BranchLaw& truth = trial.truth;
+  errors.of_contact = {std::abs(fit.law.tangential_stiffness / truth.tangential_stiffness - 1),
+                       std::abs(fit.law.shape_exponent - truth.shape_exponent),
+                       std::abs(fit.law.slip_force / truth.slip_force - 1)};
   const std::array values = {truth.tangential_stiffness, truth.shape_exponent, truth.slip_force};
   for (std::size_t k = 0; k < values.size(); ++k) {
     const ParameterEstimate& estimate = *fit.Find(kValidatedParameters[k]);
@@ -142,17 +119,13 @@ Errors Compare(const Trial& trial, const FitResult& fit) {
       errors.undetermined = true;
       continue;
     }
-    const bool covers = (!estimate.lower95 || *estimate.lower95 <= values[k]) &&
-                        (!estimate.upper95 || values[k] <= *estimate.upper95);
-    errors.intervals[k] = {.intervals = 1, .covering = covers ? 1U : 0U};
+    ++errors.intervals;
+    if (estimate.lower95.value_or(values[k]) <= values[k] &&
+        values[k] <= estimate.upper95.value_or(values[k])) {
+      ++errors.covering;
+    }
   }
   return errors;
-}
-
-ErrorSpread SpreadOf(std::vector<double> errors) {
-  if (errors.empty()) return {};
-  const double worst = std::ranges::max(errors);
-  return {boost::math::statistics::median(errors.begin(), errors.end()), worst};
 }
 
 /// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
@@ -168,37 +141,23 @@ double StandardizedDistance(const Trial& trial, const FitResult& fit) {
   return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
 }
 
-/// Collects one row of the table.
-struct RowBuilder {
-  ValidationRow row;
-  std::array<std::vector<double>, kValidatedParameters.size()> of_contact;
-
-  /// @returns whether the case met the tolerance
-  bool Add(const Errors& errors) {
-    ++row.cases;
-    row.undetermined += errors.undetermined ? 1 : 0;
-    row.worst_standardized = std::max(row.worst_standardized, errors.standardized);
-    for (std::size_t k = 0; k < errors.intervals.size(); ++k) {
-      of_contact[k].push_back(errors.of_contact[k]);
-      row.intervals[k].Add(errors.intervals[k]);
-    }
-    const double worst = row.noise == 0 ? std::ranges::max(errors.of_contact) : errors.standardized;
-    const bool met =
-        errors.converged && worst <= row.tolerance && (row.noise > 0 || !errors.undetermined);
-    row.failures += met ? 0 : 1;
-    return met;
+/// Adds a case to its row.
+/// @returns whether it met the tolerance
+bool Add(const Errors& errors, bool converged, ValidationRow& row) {
+  ++row.cases;
+  row.undetermined += errors.undetermined ? 1 : 0;
+  row.worst_standardized = std::max(row.worst_standardized, errors.standardized);
+  row.intervals += errors.intervals;
+  row.covering += errors.covering;
+  for (std::size_t k = 0; k < row.errors.size(); ++k) {
+    row.errors[k] = std::max(row.errors[k], errors.of_contact[k]);
   }
-
-  ValidationRow Finish() {
-    IntervalCount all;
-    for (std::size_t k = 0; k < of_contact.size(); ++k) {
-      row.errors[k] = SpreadOf(std::move(of_contact[k]));
-      all.Add(row.intervals[k]);
-    }
-    row.coverage = all.fraction();
-    return row;
-  }
-};
+  const bool has_noise = row.noise > 0;
+  const double worst = has_noise ? errors.standardized : std::ranges::max(errors.of_contact);
+  const bool met = converged && worst <= row.tolerance && (has_noise || !errors.undetermined);
+  row.failures += met ? 0 : 1;
+  return met;
+}
 
 void RequireValidation(const ValidationOptions& options) {
   if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
@@ -209,61 +168,20 @@ void RequireValidation(const ValidationOptions& options) {
   for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
 }
 
-std::string Describe(const Case& drawn, std::size_t index, double noise, const Trial& trial,
-                     const Errors& errors) {
+std::string Describe(const Case& drawn, std::size_t index, const ValidationRow& row,
+                     const FitResult& fit, const Errors& errors) {
   return fmt::format(
       "case {}{}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} "
       "cycles: "
       "{}errors sigma {:.2e}, alpha {:.2e}, slip_force {:.2e}; {:.1f} standard errors",
-      index, trial.IsDahl() ? " by Dahl's own law" : "", drawn.lambda, noise, drawn.normal_load,
+      index, row.by_dahl ? " by Dahl's own law" : "", row.lambda, row.noise, drawn.normal_load,
       drawn.contact.contact_radius, drawn.contact.tangential_compliance, drawn.friction_coefficient,
       drawn.excitation.cycles,
-      errors.converged ? "" : fmt::format("not converged ({}), ", errors.termination),
+      fit.converged ? "" : fmt::format("not converged ({}), ", fit.solver.message),
       errors.of_contact[0], errors.of_contact[1], errors.of_contact[2], errors.standardized);
 }
 
-/// Judges the coverage of every parameter and law, over all rows with noise.
-void JudgeCoverage(ValidationReport& report) {
-  constexpr auto kTests = 4.0 * static_cast<double>(kValidatedParameters.size());  // laws and sides
-  for (const bool by_dahl : {false, true}) {
-    for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
-      CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};
-      for (const ValidationRow& row : by_dahl ? report.dahl_rows : report.rows) {
-        if (!(row.noise > 0)) continue;
-        verdict.all.Add(row.intervals[k]);
-        if (row.lambda > 1) verdict.sliding.Add(row.intervals[k]);
-      }
-      if (verdict.all.intervals == 0) continue;
-      const double few = verdict.all.ChanceOfSoFew();
-      const double many = verdict.sliding.ChanceOfSoMany();
-      verdict.chance = std::min(few, many);
-      verdict.passed = verdict.chance >= kCoverageFalseAlarm / kTests;
-      report.coverage.push_back(verdict);
-      if (verdict.passed) continue;
-      const IntervalCount& count = few <= many ? verdict.all : verdict.sliding;
-      report.failed_coverages.push_back(fmt::format(
-          "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
-          "promised (p = {:.1e})",
-          verdict.parameter, by_dahl ? " by Dahl's own law" : "",
-          few <= many ? "" : " at lambda > 1", count.covering, count.intervals,
-          100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, verdict.chance));
-    }
-  }
-}
-
 }  // namespace
-
-double IntervalCount::ChanceOfSoFew() const {
-  if (intervals == 0) return 1.0;
-  return BinomialAtMost(static_cast<double>(covering), static_cast<double>(intervals),
-                        kLowestCoverage);
-}
-
-double IntervalCount::ChanceOfSoMany() const {
-  if (intervals == 0 || covering == 0) return 1.0;
-  return BinomialAbove(static_cast<double>(covering - 1), static_cast<double>(intervals),
-                       kHighestCoverage);
-}
 
 double NoiseFreeTolerance(double lambda) {
   // Below λ = 1/2 the loop's deviation from a straight line, which alone distinguishes α from Tc,
@@ -273,17 +191,18 @@ double NoiseFreeTolerance(double lambda) {
 
 ValidationReport ValidateMapping(const ValidationOptions& options) {
   RequireValidation(options);
-  std::array<std::vector<RowBuilder>, 2> rows;  // by Masing's law, and by Dahl's own
-  for (const double noise : options.noise_levels) {
-    for (const double lambda : options.lambdas) {
-      RowBuilder& builder = rows[0].emplace_back();
-      builder.row.noise = noise;
-      builder.row.lambda = lambda;
-      builder.row.tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated;
+  ValidationReport report;
+  for (const bool by_dahl : {false, true}) {
+    for (const double noise : options.noise_levels) {
+      for (const double lambda : options.lambdas) {
+        report.rows.push_back(
+            {.by_dahl = by_dahl,
+             .lambda = lambda,
+             .noise = noise,
+             .tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated});
+      }
     }
   }
-  rows[1] = rows[0];
-  ValidationReport report;
   Draws draws(options.seed);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = DrawCase(options, index, draws);
@@ -294,23 +213,20 @@ ValidationReport ValidateMapping(const ValidationOptions& options) {
       Record noisy = clean;
       const double noise = options.noise_levels[level];
       for (double& force : noisy.force) force += noise * std::abs(peak) * draws.Normal();
-      const Record steady = SteadyPart(noisy, drawn);
       const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
-      for (const Trial& trial : {ByMasing(noisy, drawn), ByDahl(steady, drawn)}) {
+      for (const bool by_dahl : {false, true}) {
+        const Trial trial = TrialOf(noisy, drawn, by_dahl);
         const FitResult fit = Fit({&trial.record, 1}, trial.options);
-        Errors errors = Compare(trial, fit);
-        if (noise > 0 && errors.converged) errors.standardized = StandardizedDistance(trial, fit);
+        Errors errors = Compare(fit, trial.truth);
+        if (noise > 0 && fit.converged) errors.standardized = StandardizedDistance(trial, fit);
         ++report.fits;
-        if (!rows[trial.IsDahl() ? 1 : 0][place].Add(errors)) {
-          ++report.failures;
-          report.failed_cases.push_back(Describe(drawn, index, noise, trial, errors));
-        }
+        ValidationRow& row = report.rows[place + (by_dahl ? report.rows.size() / 2 : 0)];
+        if (Add(errors, fit.converged, row)) continue;
+        ++report.failures;
+        report.failed_cases.push_back(Describe(drawn, index, row, fit, errors));
       }
     }
   }
-  for (RowBuilder& row : rows[0]) report.rows.push_back(row.Finish());
-  for (RowBuilder& row : rows[1]) report.dahl_rows.push_back(row.Finish());
-  JudgeCoverage(report);
   return report;
 }
 
