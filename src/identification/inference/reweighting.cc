@@ -136,8 +136,12 @@ class Weighting {
                           : ForceNoise(residual, from_displacement, loss, 0, residual.size(),
                                        static_cast<double>(data_.counted) / degrees_);
     }
-    // Weighted residuals have the variance of those where the loop is flat.
-    const double unit = std::max(noise.force, kRoundingRms);
+    // Weighted residuals have the variance of those where the loop is flattest.
+    double least = errors_.any() ? std::numeric_limits<double>::infinity() : 0.0;
+    for (std::size_t i = 0; errors_.any() && i < counts_.size(); ++i) {
+      if (counts_[i] != 0) least = std::min(least, from_displacement[i]);
+    }
+    const double unit = std::max(std::sqrt(noise.force * noise.force + least), kRoundingRms);
     std::vector<double> standardised;
     std::vector<double> share(errors_.any() ? residual.size() : 0);
     std::size_t k = 0;
@@ -169,6 +173,8 @@ class Weighting {
       if (counts_[i] != 0) weight = without_loss_[i];
     });
   }
+  /// Standard deviation of the weighted residuals, without a loss [units of the data].
+  [[nodiscard]] double noise() const { return noise_; }
   /// Scale of the weighted residuals, for a loss of them over it [units of the data].
   [[nodiscard]] double scale() const { return scale_; }
 
@@ -400,7 +406,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     const bool is_predicted = round > 0 && change < last_change && solution.converged;
     const double left = is_predicted ? change * change / last_change : change;
     std::swap(force, last_force);
-    const bool settled = left < kSettled * std::max(noise.force, kRoundingRms);
+    const bool settled = left < kSettled * weighting.noise();
     if (settled && (!first_huber || options.loss == Loss::kHuber)) {
       FillCost(problem, response, solution);
       return true;
@@ -408,7 +414,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     if (settled && first_huber) round = kHuberRounds - 1;
   }
   FillCost(problem, response, solution);
-  return change < kHarmless * std::max(noise.force, kRoundingRms);
+  return change < kHarmless * weighting.noise();
 }
 
 }  // namespace mindahl::identification
