@@ -177,12 +177,10 @@ TEST(Estimates, OfADirectionWithoutEffectAreNone) {
   EXPECT_NEAR(local.null[0][0] + 2 * local.null[0][1], 0.0, 1e-9 * std::abs(local.null[0][0]));
 }
 
-TEST(SolveLeastSquares, OfAMatrixOfZerosIsZero) {
-  Eigen::Index rank = 1;
-  const Eigen::MatrixXd solved =
-      SolveLeastSquares(Eigen::MatrixXd::Zero(3, 2), Eigen::MatrixXd::Ones(3, 4), &rank);
-  EXPECT_EQ(rank, 0);
-  EXPECT_EQ(solved, Eigen::MatrixXd::Zero(2, 4));
+TEST(LeftOver, OfAMatrixOfZerosOrWithoutColumnsIsAll) {
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Ones(3, 4);
+  EXPECT_EQ(LeftOver(Eigen::MatrixXd::Zero(3, 2), all), all);
+  EXPECT_EQ(LeftOver(Eigen::MatrixXd(3, 0), all), all);
 }
 
 TEST(Intervals, AreTheUnionOfTheirParts) {

@@ -140,7 +140,7 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Threshold
       std::minmax({slip_force.value, *half_gap - margin, *half_gap + margin,
                    std::clamp(slip_force.lower95.value_or(0.0), least, most),
                    std::clamp(slip_force.upper95.value_or(most), least, most)});
-  SetInterval(slip_force, {.lower = lower, .upper = upper});
+  SetInterval(slip_force, {.lower = std::max(lower, 0.0), .upper = upper});
   slip_force.includes_discrepancy = true;
   return parameters;
 }

@@ -165,7 +165,7 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
       const double from = solution.theta[p] + std::clamp(step, -kFarthestStep, kFarthestStep);
       const auto [lower, upper] =
           std::minmax({parameter.ToValue(from - half), parameter.ToValue(from + half)});
-      Include(estimates[k], {.lower = p == kShape ? std::max(lower, 0.0) : lower, .upper = upper});
+      Include(estimates[k], WithinBounds(parameter, {.lower = lower, .upper = upper}));
     };
     if (place >= test.step.size()) continue;
     include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));

@@ -128,8 +128,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     upper = parameter.ToValue(theta + quantile_ * error);
     if (*upper < *lower) std::swap(lower, upper);
   }
-  if (p == kShape && lower) lower = std::max(*lower, 0.0);
-  SetInterval(estimate, {.lower = lower, .upper = upper});
+  SetInterval(estimate, WithinBounds(parameter, {.lower = lower, .upper = upper}));
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
@@ -164,6 +163,18 @@ double Estimates::WhiteShare(std::size_t parameter) const {
 namespace {
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 }  // namespace
+
+Ends WithinBounds(const Parameter& parameter, Ends ends) {
+  for (const auto& [side, theta] : {std::pair(BoundSide::kLower, parameter.lower),
+                                    std::pair(BoundSide::kUpper, parameter.upper)}) {
+    if (IsSearchLimit(parameter, side)) continue;
+    const double bound = parameter.ToValue(theta);
+    const bool is_least = (side == BoundSide::kLower) == (parameter.scale > 0);
+    if (is_least && ends.lower) ends.lower = std::max(*ends.lower, bound);
+    if (!is_least && ends.upper) ends.upper = std::min(*ends.upper, bound);
+  }
+  return ends;
+}
 
 void SetInterval(ParameterEstimate& estimate, Ends ends) {
   const auto closed = [](double end) {

@@ -27,6 +27,9 @@ struct Ends {
 
 // The one place where the interval of an estimate is written, the union of its parts.
 
+/// Keeps the ends within bounds that are the user's or the theory's.
+Ends WithinBounds(const Parameter& parameter, Ends ends);
+
 /// Begins the interval anew. An end that is not finite is open.
 void SetInterval(ParameterEstimate& estimate, Ends ends);
 
