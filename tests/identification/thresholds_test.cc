@@ -103,7 +103,16 @@ bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
   result.residuals.rms = misfit * result.PeakForce();
   result.residuals.durbin_watson =
       2 - 2 * std::exp(-1 / (strokes * static_cast<double>(kSamplesAStroke)));
-  return RemembersTooLong(result, thresholds);
+  return AreUnlikeNoise(result, thresholds);
+}
+
+/// Many residuals that are a fifth of the force, and alternate by such a correlation.
+bool Alternates(const Thresholds& thresholds, double correlation) {
+  FitResult result = Made();
+  result.residuals.samples = 10'000;
+  result.residuals.rms = 0.2 * result.PeakForce();
+  result.residuals.durbin_watson = 2 + 2 * correlation;
+  return AreUnlikeNoise(result, thresholds);
 }
 
 /// Whether residuals of such a chance are doubted.
@@ -229,6 +238,10 @@ const std::vector<Row>& Cases() {
        }},
       {&Thresholds::noise_memory,
        [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},
+      {&Thresholds::alternates,
+       [](const Thresholds& t) {
+         return Alternates(t, kAbove * 0.25) && !Alternates(t, kBelow * 0.25);
+       }},
       {&Thresholds::poor_misfit,
        [](const Thresholds& t) {
          return IsSlow(t, 1.0, kAbove * 0.02) && !IsSlow(t, 1.0, kBelow * 0.02);

@@ -106,6 +106,9 @@ struct Thresholds {
   /// Within half a stroke the force passes through the whole law: noise of that length cannot be
   /// distinguished from a misfit.
   double noise_memory = 0.5;
+  /// [correlation] A poor misfit whose residuals alternate from sample to sample by more is not
+  /// taken for noise. Sensors' noise is white or wanders; stick–slip and chatter go up and down.
+  double alternates = 0.25;
   /// [ΔAICc] Masing's law and Dahl's own, and a record of several that is virgin or steady unlike
   /// the others, are not distinguished if they differ by less. Evidence of e⁵ = 150 to 1: initial
   /// states differ in a few samples only, where a single odd reading decides, and what either law

@@ -43,6 +43,12 @@ double NoiseVariance(const FitResult& result) {
   return comes_back ? (1 - repeats) * result.rms * result.rms : WhiteVariance(result);
 }
 
+/// True if residuals alternate from sample to sample, and not by chance.
+bool Alternate(const ResidualStatistics& residuals, const Thresholds& thresholds) {
+  const double by_chance = 4 / std::sqrt(static_cast<double>(residuals.samples));
+  return residuals.durbin_watson / 2 - 1 > std::max(thresholds.alternates, by_chance);
+}
+
 }  // namespace
 
 bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
@@ -74,11 +80,12 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   return within;
 }
 
-double MissedForce(const FitResult& result) {
+double MissedForce(const FitResult& result, const Thresholds& thresholds) {
   const double explained = result.adequacy.misfit;
   // The rms includes the readings that a robust loss weighs down.
   const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (is_noise || result.outliers > 0) return explained;
+  if (Alternate(result.residuals, thresholds)) return std::max(explained, result.rms);
   const double not_white = result.rms * result.rms - WhiteVariance(result);
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
@@ -103,13 +110,16 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
   return causes;
 }
 
-bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds) {
+bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   const double size = result.MisfitScale();
   const bool is_small =
       result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
+  if (is_small) return false;
+  if (Alternate(result.residuals, thresholds)) return true;
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
-  const double forgotten = -std::log1p(-result.residuals.durbin_watson / 2);
-  if (is_small || !std::isfinite(forgotten)) return false;
+  const double correlation = 1 - result.residuals.durbin_watson / 2;
+  const double forgotten = -std::log(correlation);
+  if (!std::isfinite(forgotten)) return false;
   const RecordFit& widest = result.WidestRecord();
   const auto samples = static_cast<double>(widest.residual.size());
   const auto strokes = static_cast<double>(widest.reversals.size() + 1);
@@ -145,14 +155,14 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
     }
   }
   const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
-                           RemembersTooLong(result, thresholds);
+                           AreUnlikeNoise(result, thresholds);
   adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   return adequacy;
 }
 
 Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   Adequacy adequacy = result.adequacy;
-  const double missed = MissedForce(result);
+  const double missed = MissedForce(result, thresholds);
   const std::optional<double> half_gap = result.MeasuredHalfGap();
   adequacy.misfit = missed;
   adequacy.misfit_over_half_gap.reset();
@@ -169,7 +179,7 @@ Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         MissedForce(result) > thresholds.failing_misfit * result.MisfitScale();
+         MissedForce(result, thresholds) > thresholds.failing_misfit * result.MisfitScale();
 }
 
 FitResult WithoutInadequate(FitResult result) {

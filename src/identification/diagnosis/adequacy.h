@@ -28,8 +28,8 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
 
 /// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
 /// part that the causes explain or that comes back in every stroke; of others all of them but their
-/// white noise.
-double MissedForce(const FitResult& result);
+/// white noise, which residuals that alternate have none of.
+double MissedForce(const FitResult& result, const Thresholds& thresholds);
 
 /// Returns the variance [N² or m²] of the white part of the residuals that count: 2/3 of the mean
 /// square of a residual's distance from the middle of its neighbours (Gasser, Sroka &
@@ -45,8 +45,8 @@ bool FollowsContact(std::span<const double> column, std::span<const double> fitt
                     const Thresholds& thresholds);
 
 /// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
-/// what all omitted terms explain, the search ended at a limit of its own, the residuals remember
-/// for too long, or they exceed the noise that the record has without a model: what does not repeat
+/// what all omitted terms explain, the search ended at a limit of its own, the residuals are unlike
+/// noise, or they exceed the noise that the record has without a model: what does not repeat
 /// from stroke to stroke (pure error), or of a single cycle what differs between neighbouring
 /// samples. Tests of columns take a misfit that no column explains for autocorrelated noise.
 /// @param causes  result of CausesOf()
@@ -54,10 +54,10 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
                        std::span<const DepartureFit> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);
 
-/// True if residuals are a poor misfit and remember for longer than noise_memory: by their
-/// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
-/// confounded with whatever changes slowly.
-bool RemembersTooLong(const FitResult& result, const Thresholds& thresholds);
+/// True if residuals are a poor misfit and no noise: they alternate, or remember for longer than
+/// noise_memory by their autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of
+/// that length would be confounded with whatever changes slowly.
+bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds);
 
 /// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use
 /// is judged by T*.
