@@ -39,6 +39,8 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   double squares = 0.0;
+  double weighted = 0.0;
+  double log_weights = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
@@ -58,11 +60,17 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
       const double residual = unit * residuals[k];
       fit.residual[sample] = residual;
       fitted[sample] = measured[sample] + residual;
-      if (record.counts[i] != 0) squares += residual * residual;
       ++sample;
+      if (record.counts[i] == 0) continue;
+      squares += residual * residual;
+      weighted += residual * residual * record.root_weight[i] * record.root_weight[i];
+      log_weights += std::log(record.root_weight[i]);
     }
   }
-  result.rms = std::sqrt(squares / static_cast<double>(data.counted));
+  const auto count = static_cast<double>(data.counted);
+  result.rms = std::sqrt(squares / count);
+  if (!solved.displacement_errors.any() || attempt.options.loss != Loss::kNone) return;
+  result.likelihood_rms = std::sqrt(weighted / count) * std::exp(-log_weights / count);
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {

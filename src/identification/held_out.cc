@@ -59,6 +59,7 @@ ScoredSquares SquaresOf(const FitResult& fit, const ScoredSamples& samples, std:
 }
 
 double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples) {
+  if (fit.likelihood_rms > 0) return fit.likelihood_rms;
   double logarithms = 0.0;
   double count = 0.0;
   for (std::size_t r = 0; r < samples.mask.size(); ++r) {

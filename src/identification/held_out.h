@@ -45,8 +45,9 @@ struct ScoredSquares {
 };
 ScoredSquares SquaresOf(const FitResult& fit, const ScoredSamples& samples, std::size_t record);
 
-/// The rms [unit of the response] by which fits are compared: of records whose noise differs the
-/// mean of the logarithms over the samples, so that each counts by its own noise.
+/// The rms [unit of the response] by which fits are compared: where the displacement is inexact
+/// FitResult::likelihood_rms, else of records whose noise differs the mean of the logarithms over
+/// the samples, so that each counts by its own noise.
 double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples);
 
 /// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.

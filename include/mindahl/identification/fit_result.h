@@ -132,9 +132,12 @@ struct FitResult {
   std::optional<double> normal_load;
   double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, without meaning, if the records have one load
   double rms = 0.0;            ///< rms of the residuals that count [N or m], unweighted
-  double force_noise = 0.0;    ///< [N], known or estimated, of all records; 0 in a fit of the
-                               ///< displacement
-  std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
+  /// rms of the weighted residuals times the geometric mean of what weighs them [N or m], where the
+  /// displacement is inexact: n·ln of it is the likelihood's part that laws differ in. Else 0.
+  double likelihood_rms = 0.0;
+  double force_noise = 0.0;  ///< [N], known or estimated, of all records; 0 in a fit of the
+                             ///< displacement
+  std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
