@@ -232,11 +232,9 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     TermSelection other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
-    if (other.fit.converged) {
-      asked = std::move(other);
-    } else {
-      WithdrawPreference(asked.fit);
-    }
+    if (other.fit.converged) asked = std::move(other);
+    // Where each law is better than the other one's fit, neither is.
+    WithdrawPreference(asked.fit);
   }
   if (!chooses_terms) return asked;
   FitOptions of_law = options;

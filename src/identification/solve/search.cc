@@ -137,6 +137,22 @@ void SearchOtherRigs(Rivals& rivals) {
   }
 }
 
+/// Searches once more with virgin contacts unloaded at their first samples, where the search has
+/// led away from these: a thinned record of much noise may have.
+void SearchFromFirstSamples(const Problem& problem, Rivals& rivals) {
+  constexpr double kAway = 0.1;
+  std::vector<double> theta = rivals.best.theta;
+  bool has_moved = false;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const std::size_t origin = problem.parameters.PositionOfOrigin(r);
+    if (problem.parameters[origin].fixed) continue;
+    const double first = problem.data->records[r].excitation().front();
+    has_moved = has_moved || std::abs(theta[origin] - first) > kAway;
+    theta[origin] = first;
+  }
+  if (has_moved) rivals.From(theta);
+}
+
 }  // namespace
 
 void Descend(Candidate& candidate, const FitOptions& options, Solver& solver) {
@@ -156,6 +172,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver
   const Parameters& parameters = candidate.problem.parameters;
   const Parameter& rig = parameters[kRig];
   if (!rig.absent && !rig.fixed && !rig.has_prior()) SearchOtherRigs(rivals);
+  SearchFromFirstSamples(candidate.problem, rivals);
   if (IsAmongKinks(parameters, best)) SearchAcrossKinks(candidate.problem, rivals);
 }
 

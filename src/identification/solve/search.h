@@ -38,7 +38,8 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Solves once more from next to the best solution where there may be lower minima, and keeps the
 /// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
-/// where the rig takes another part of the compliance. Where a start is given it is the only one.
+/// where the rig takes another part of the compliance, and a noisy virgin loop one that had been
+/// loaded before. Where a start is given it is the only one.
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
 /// Constants of the losses, each 95 % efficient for normal noise (Huber 1981; Holland & Welsch
