@@ -140,10 +140,10 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
     Append(result.findings, FindContradictedPrior(*attempt.without_priors, options));
   }
   Append(result.findings, FindOpenSlipForce(result));
-  Append(result.findings, FindWideIntervals(result, thresholds));
   if (is_judged && IsInadequate(result, thresholds)) {
     result = WithoutInadequate(std::move(result));
   }
+  Append(result.findings, FindWideIntervals(result, thresholds));
   Judge(result.parameters, result.findings);
   return result;
 }
