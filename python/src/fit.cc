@@ -8,9 +8,8 @@
 
 #include "bindings.h"
 #include "cli/app.h"
-#include "cli/request_options.h"
+#include "cli/command.h"
 #include "mindahl/core/error.h"
-#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 

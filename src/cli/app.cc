@@ -1,29 +1,19 @@
 #include "cli/app.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <string>
-#include <string_view>
 #include <system_error>
-#include <vector>
 
-#include "cli/output.h"
+#include "cli/command.h"
 #include "core/nearest_name.h"
-#include "core/text.h"
-#include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 

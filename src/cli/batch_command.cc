@@ -1,22 +1,11 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <set>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
-#include "mindahl/core/error.h"
+#include "cli/command.h"
 #include "mindahl/io/output_file.h"
-#include "mindahl/report/page.h"
 #include "mindahl/request/batch.h"
 
 namespace mindahl::cli {

@@ -1,18 +1,6 @@
-#include <memory>
-#include <optional>
-#include <string>
-
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
-#include "mindahl/request/contact_request.h"
-#include "report/table.h"
+#include "cli/command.h"
 
 namespace mindahl::cli {
-
-using report::Json;
-using report::NumberOrNull;
 
 namespace {
 

@@ -1,32 +1,19 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <memory>
-#include <optional>
-#include <string>
 #include <variant>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "core/text.h"
+#include "cli/command.h"
 #include "mindahl/convert/conversion.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
-#include "report/table.h"
 
 namespace mindahl::cli {
 
 using convert::LoopError;
 using convert::Parameter;
 using convert::TargetRow;
-using report::Json;
-using report::NumberOrNull;
 
 namespace {
 

@@ -1,18 +1,6 @@
-#include <fmt/format.h>
-
-#include <memory>
-#include <string>
-
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
-#include "mindahl/core/error.h"
+#include "cli/command.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/report/page.h"
-#include "mindahl/report/report.h"
-#include "mindahl/request/fit_request.h"
 
 namespace mindahl::cli {
 namespace {

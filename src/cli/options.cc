@@ -1,17 +1,11 @@
-#include "cli/options.h"
-
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
-#include <utility>
 
+#include "cli/command.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "io/cells.h"
-#include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 
 namespace mindahl::cli {

@@ -1,20 +1,11 @@
-#include "cli/output.h"
-
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
-#include <utility>
-#include <vector>
 
-#include "cli/options.h"
-#include "core/text.h"
+#include "cli/command.h"
 #include "io/source.h"
-#include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 

@@ -1,27 +1,15 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
+#include "cli/command.h"
 #include "core/nearest_name.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_reader.h"
 #include "report/statements.h"
-#include "report/table.h"
 
 namespace mindahl::cli {
 
@@ -32,8 +20,6 @@ using identification::Precision;
 using identification::Protocol;
 using identification::WantedPrecision;
 using models::InitialState;
-using report::Json;
-using report::NumberOrNull;
 
 namespace {
 

@@ -1,22 +1,13 @@
-#include "cli/request_options.h"
-
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
+#include "cli/command.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
-#include "core/text.h"
 #include "io/cells.h"
-#include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"

@@ -1,27 +1,12 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <memory>
 #include <numeric>
-#include <optional>
-#include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
-#include "core/text.h"
-#include "mindahl/core/error.h"
+#include "cli/command.h"
 #include "mindahl/io/csv_table.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"

@@ -1,49 +1,30 @@
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
+#include "cli/command.h"
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/core/error.h"
 #include "mindahl/core/interruption.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/units.h"
-#include "mindahl/request/fit_request.h"
 #include "report/html.h"
-#include "report/table.h"
 
 namespace mindahl::cli {
 
 using campaign::CycleFit;
 using campaign::Evolution;
-using report::Json;
 
 namespace {
 

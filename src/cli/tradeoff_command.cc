@@ -1,32 +1,16 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
-#include "cli/request_options.h"
-#include "core/text.h"
-#include "mindahl/core/error.h"
+#include "cli/command.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/work_precision.h"
-#include "report/table.h"
 
 namespace mindahl::cli {
 
 using methods::Method;
 using models::BranchLaw;
 using models::Waveform;
-using report::Json;
 using tradeoff::WorkPrecision;
 
 namespace {

@@ -1,22 +1,12 @@
-#include <fmt/format.h>
-
-#include <cstdint>
 #include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "cli/app.h"
-#include "cli/options.h"
-#include "cli/output.h"
+#include "cli/command.h"
 #include "mindahl/identification/mapping_validation.h"
-#include "report/table.h"
 
 namespace mindahl::cli {
 
 using identification::ValidationReport;
 using identification::ValidationRow;
-using report::Json;
 
 namespace {
 

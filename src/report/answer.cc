@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/terms.h"
-#include "report/fields.h"
+#include "report/json.h"
 #include "report/statements.h"
 
 namespace mindahl::report {

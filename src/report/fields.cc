@@ -1,5 +1,3 @@
-#include "report/fields.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,8 @@
 
 #include "mindahl/core/version.h"
 #include "mindahl/identification/terms.h"
+#include "report/json.h"
 #include "report/statements.h"
-#include "report/table.h"
 
 namespace mindahl::report {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mindahl/io/plot.h"
-#include "mindahl/report/page.h"
+#include "mindahl/report/report.h"
 #include "report/statements.h"
 
 // Parts of the pages, as HTML 5. Whatever is called a text, caption or sentence is escaped; with

@@ -1,5 +1,3 @@
-#include "mindahl/report/page.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "io/drawing.h"
+#include "mindahl/report/report.h"
 #include "report/html.h"
 #include "report/statements.h"
 

@@ -1,5 +1,3 @@
-#include "report/table.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 #include "core/text.h"
 #include "mindahl/io/csv_table.h"
 #include "report/html.h"
+#include "report/json.h"
 
 namespace mindahl::report {
 

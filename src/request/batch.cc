@@ -19,10 +19,9 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
-#include "report/fields.h"
 #include "report/html.h"
+#include "report/json.h"
 #include "report/statements.h"
-#include "report/table.h"
 
 namespace mindahl::request {
 

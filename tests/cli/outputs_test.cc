@@ -1,8 +1,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cli/command.h"
 #include "cli/command_line.h"
-#include "cli/output.h"
 #include "io/source.h"
 #include "support/text.h"
 

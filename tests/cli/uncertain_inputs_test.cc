@@ -1,7 +1,7 @@
 #include <tuple>
 
+#include "cli/command.h"
 #include "cli/command_line.h"
-#include "cli/request_options.h"
 
 // What is known of the contact, with its standard uncertainty: how it is read, and what becomes of
 // it in every command that takes it.

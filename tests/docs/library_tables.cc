@@ -10,7 +10,7 @@
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/request/batch.h"
-#include "report/fields.h"
+#include "report/json.h"
 #include "report/statements.h"
 
 // Prints the library's tables as JSON, from which library_tables.py makes those of the pages.

@@ -1,7 +1,8 @@
+#include "report/json.h"
+
 #include <nlohmann/json.hpp>
 
 #include "mindahl/report/report.h"
-#include "report/fields.h"
 #include "report/made_report.h"
 #include "support/prelude.h"
 

@@ -1,5 +1,4 @@
-#include "mindahl/report/page.h"
-
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/prelude.h"
 

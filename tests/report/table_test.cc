@@ -1,5 +1,4 @@
-#include "report/table.h"
-
+#include "report/json.h"
 #include "support/prelude.h"
 
 namespace mindahl::report::table_test {

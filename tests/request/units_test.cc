@@ -4,7 +4,7 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
-#include "report/fields.h"
+#include "report/json.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 #include "support/unit_scale.h"

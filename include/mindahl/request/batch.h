@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "mindahl/io/record_reader.h"
-#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 

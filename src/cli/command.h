@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
@@ -16,8 +18,27 @@
 
 #include "cli/app.h"
 #include "core/text.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/core/error.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/models/response.h"
+#include "mindahl/report/report.h"
+#include "mindahl/request/contact_request.h"
+#include "mindahl/request/fit_request.h"
+#include "report/json.h"
 
+// What the commands are made of: how an option is added, the options that several commands have,
+// and where answers go.
 namespace mindahl::cli {
+
+using report::Json;
+using report::NumberOrNull;
+using request::ContactOptions;
+using request::FitRequest;
+using LawOptions = request::LawRequest;
+using request::Strictness;
+
+// --- adding commands and options
 
 /// Adds a command to the program.
 /// @param examples  lines to copy at the end of its help, before what ends every help.
@@ -118,5 +139,92 @@ CLI::Option* AddPath(const OptionGroup& group, std::string& path, std::string& c
 
 /// Adds --threads.
 void AddThreads(const OptionGroup& group, std::size_t& threads, const std::string& unchanged);
+
+// --- options that make a request: for a contact, for a law, and for a fit
+
+/// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
+/// other option and, unless it is exact, one standard uncertainty, in percent of the number's
+/// magnitude with %. Either may have a unit, "50 N ± 0.5 N"; one at the end is of both, "50±0.5 N".
+/// @param unit  that of a number
+/// @throws InputError naming the option, the text, the rule and the remedy
+contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
+                                            std::string_view unit);
+
+/// How many normal loads an option may give.
+enum class NormalLoads { kOne, kOneAFile };
+
+/// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
+/// Each takes a standard uncertainty.
+/// @param options  must outlive the application
+void AddContactOptions(CLI::App& command, ContactOptions& options,
+                       NormalLoads loads = NormalLoads::kOne);
+
+/// Adds --friction. As above it takes a standard uncertainty.
+void AddFrictionOption(CLI::App& command, ContactOptions& options);
+
+/// Adds --sigma, --alpha, --slip-force and what describes a contact, --friction included.
+/// @param request  must outlive the application
+void AddLawOptions(CLI::App& command, LawOptions& request);
+
+/// Returns the displacement [m] of λ = 1, behind a rig: gross slip, or three elastic limits where
+/// slip is only approached.
+double SlipReach(const models::BranchLaw& law, const models::SeriesSpring& rig = {});
+
+void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
+
+void AddJoin(CLI::App& command, FitRequest& options);
+
+/// Adds the options that say which columns of a record are read, and in what unit.
+void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
+
+/// Adds the options of the model that is fitted to them.
+void AddModelOptions(CLI::App& command, FitRequest& request);
+
+/// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
+/// @param otherwise  what happens to a fit that is not: "exit status 3"
+void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise);
+
+// --- inputs and outputs
+
+/// Writes to a file, whole or not at all, or to standard output for "-".
+/// @throws InputError when the file cannot be written
+void WriteText(std::string_view text, const std::string& path, Console& console);
+
+/// Says sentences on standard error.
+/// @param what  "fit: note"
+void Say(std::string_view what, const std::vector<std::string>& sentences, Console& console);
+
+/// Writes an answer as JSON to where that is asked for, and as text to standard output, unless the
+/// JSON goes there.
+void WriteAnswer(const std::string& json_path, Console& console, std::string_view json,
+                 std::string_view text);
+
+/// Lets a command run, once it refused what could not be written after the work: a run with several
+/// outputs leaves none behind, takes none for another and none for what it reads. An option whose
+/// value is called PATH or DIR writes there, "-" to standard output; one called FILE is read.
+void OnRun(CLI::App& command, std::function<void()> run);
+
+/// Returns the files that a command was given to read, a configuration the last.
+std::vector<std::string> InputsOf(const CLI::App& command);
+
+/// Refuses a file that is given twice, by one name or by two: its samples would count twice.
+/// @throws InputError naming both
+void RequireDistinctFiles(std::span<const std::string> files);
+
+/// A table is the work of hours: it is written over only where that is asked for.
+/// @param remedy  what to add, for the message
+/// @throws InputError where a file is there
+void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy);
+
+/// A word as a shell takes it: in single quotes where it needs them.
+std::string ShellWord(std::string_view word);
+
+/// The command line as a shell takes it, the program by its own name.
+std::string CommandLine(int argc, const char* const* argv);
+
+/// Returns what is needed to make a result again: the command line, the options given there or in a
+/// configuration file, and digests of the files.
+report::Provenance ProvenanceOf(const CLI::App& command, const std::string& command_line,
+                                std::span<const std::string> files);
 
 }  // namespace mindahl::cli

@@ -9,8 +9,7 @@
 
 #include "mindahl/report/report.h"
 
-// The fields of the JSON, one row each, from which details of the text and of the page and the
-// table of docs/contract.md are made too.
+// The JSON of what the commands answer, and the texts and tables that are made of it.
 namespace mindahl::report {
 
 using Json = nlohmann::ordered_json;
@@ -43,6 +42,25 @@ inline std::string Dump(const Json& json) {
 /// Returns the document that a command writes with --json: its schema, "mindahl.plan/1", and the
 /// version of the program before its members.
 std::string Document(std::string_view schema, const Json& members);
+
+// --- tables. A row is an object of the JSON, whose members are its cells; rows are a list of such
+// or an object of them, whose keys are then the first column. Of a member that is an object the
+// members are cells; lists are none. So one maker of rows serves JSON, text, CSV and page.
+
+/// Returns a cell for people: a number, "yes" or "no", "-" of null.
+std::string CellText(const Json& value, int digits = 5);
+
+/// Returns the rows as aligned columns below their names; "" of none.
+std::string TableText(const Json& rows, int digits = 5);
+
+/// Returns the rows as CSV with every digit, nothing where a member is null.
+std::string TableCsv(const Json& rows);
+
+/// Returns the rows as a table of a page; "" of none.
+std::string TableHtml(std::string_view caption, const Json& rows);
+
+// --- the fields of a fit's JSON, one row each, from which details of the text and of the page and
+// the table of docs/contract.md are made too
 
 /// One row of the report.
 struct Field {
