@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cctype>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -15,7 +17,6 @@
 
 #include "core/probability.h"
 #include "io/source.h"
-#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
@@ -109,9 +110,60 @@ Json TableRows(std::span<const BatchEntry> entries) {
   return rows;
 }
 
+double RootMeanSquare(std::span<const double> values) {
+  double squares = 0.0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+/// Compares the scatter of repeats of a test with their stated errors.
+/// @param errors  by which they should scatter, > 0; none where they state none
+/// @param common  errors that they have in common, as of a model that misses the same in all: these
+///   neither scatter nor average out
+Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& errors,
+                const std::vector<double>& common, std::string_view unit) {
+  const auto count = static_cast<double>(values.size());
+  const double mean = boost::math::statistics::mean(values);
+  const double deviation = std::sqrt(boost::math::statistics::sample_variance(values));
+  std::optional<double> stated;
+  std::optional<double> in_common;
+  std::optional<double> p_value;
+  std::string says = "without stated errors";
+  if (!errors.empty()) {
+    double weights = 0.0;
+    double weighted = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      weights += 1 / (errors[k] * errors[k]);
+      weighted += values[k] / (errors[k] * errors[k]);
+    }
+    // P(χ²(n − 1) ≥ Σ((x − x̄)/e)²), x̄ weighted: chance of such a scatter from the stated errors.
+    double chi_squared = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double off = (values[k] - weighted / weights) / errors[k];
+      chi_squared += off * off;
+    }
+    stated = RootMeanSquare(errors);
+    in_common = RootMeanSquare(common);
+    p_value = PValueOfChiSquared(chi_squared, count - 1);
+    constexpr double kChance = 0.01;
+    says = fmt::format("{}, {}", *p_value < kChance ? "more than the errors" : "as the errors say",
+                       report::ChanceText(*p_value, 2));
+  }
+  const double own = std::max(deviation, stated.value_or(0.0)) / std::sqrt(count);
+  return {{"files", values.size()},
+          {"mean", mean},
+          {"mean_error", std::hypot(own, in_common.value_or(0.0))},
+          {"standard_deviation", deviation},
+          {"stated_error", NumberOrNull(stated)},
+          {"common_error", NumberOrNull(in_common)},
+          {"p_value", NumberOrNull(p_value)},
+          {"unit", unit},
+          {"says", says}};
+}
+
+/// Returns what repeats of a test say of a quantity; null of fewer than two.
 /// @param rows  the table's, of the same fits
-std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits, const Json& rows,
-                                           const Repeated& quantity) {
+Json RepeatsOf(std::span<const BatchEntry> fits, const Json& rows, const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;  // by which repeats scatter
   std::vector<double> common;  // of an interval that is wider than by its own error
@@ -144,7 +196,7 @@ std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits, con
     errors.push_back(error);
     common.push_back(std::sqrt(std::max(0.0, whole * whole - error * error)));
   }
-  return campaign::DescribeRepeats(values, errors, common);
+  return values.size() < 2 ? Json() : RepeatsRow(values, errors, common, quantity.unit);
 }
 
 /// Returns what repeats of a test say of each quantity.
@@ -152,17 +204,8 @@ Json RepeatRows(std::span<const BatchEntry> entries) {
   const Json table = TableRows(entries);
   Json rows = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    const auto found = RepeatsOf(entries, table, quantity);
-    if (!found) continue;
-    rows[quantity.name] = {{"files", found->count},
-                           {"mean", found->mean},
-                           {"mean_error", found->mean_error()},
-                           {"standard_deviation", found->standard_deviation},
-                           {"stated_error", NumberOrNull(found->stated_error)},
-                           {"common_error", NumberOrNull(found->common_error)},
-                           {"p_value", NumberOrNull(found->p_value)},
-                           {"unit", quantity.unit},
-                           {"says", found->InWords()}};
+    Json row = RepeatsOf(entries, table, quantity);
+    if (!row.is_null()) rows[quantity.name] = std::move(row);
   }
   return rows;
 }

@@ -105,7 +105,21 @@ TEST(Repeats, AreOfFilesThatAreDoneAndKnowTheQuantity) {
   EXPECT_NEAR(half_gap["mean"], 44.0, kRounding);
   EXPECT_NEAR(half_gap["standard_deviation"], std::sqrt((9.0 + 1 + 16) / 2), 10 * kRounding);
   EXPECT_TRUE(half_gap["stated_error"].is_null() && half_gap["p_value"].is_null());
+  EXPECT_EQ(half_gap["says"], "without stated errors");
   EXPECT_FALSE(repeats.contains("sigma"));
+}
+
+TEST(Repeats, OfTwoAreDescribedByHand) {
+  // Weights 1 and 1/4: x̄ = 10.4, χ² = 0.16 + 0.64 of one degree.
+  const auto unequal = RepeatsOf({{10, 1, kNormal95}, {12, 2, 2 * kNormal95}})["slip_force"];
+  EXPECT_NEAR(unequal["p_value"], std::erfc(std::sqrt(0.8 / 2)), 10 * kRounding);
+  EXPECT_EQ(RepeatsOf({{10, 1e-3, kNormal95}, {12, 1e-3, kNormal95}})["slip_force"]["says"],
+            "more than the errors, p < 1e-12");
+  // Values that agree by chance leave the error of the mean at that of their stated errors.
+  const auto alike = RepeatsOf({{10, 0.6, 0.6 * kNormal95}, {10, 0.8, 0.8 * kNormal95}});
+  EXPECT_NEAR(alike["slip_force"]["mean_error"], 0.5, 10 * kRounding);
+  EXPECT_EQ(alike["slip_force"]["says"], "as the errors say, p = 1");
+  EXPECT_TRUE(RepeatsOf({{10, 1, kNormal95}}).empty());
 }
 
 TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
