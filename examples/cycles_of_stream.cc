@@ -90,12 +90,12 @@ int main() {
     splitter.Add(piece, lines, complete);
     for (const campaign::Cycle& cycle : complete) {
       const campaign::CycleFit fit = fitter.Fit(cycle);
-      if (!fit.flags.empty() || !fit.slip_force.value) return 1;
+      if (!fit.flags.empty() || !fit["slip_force"]) return 1;
       const double truth = rig.slip_forces()[fit.number - 1];
-      std::printf("%5zu %14.6g %12.5f %6.3f ± %-5.2g %8.3f\n", fit.number, *fit.sigma.value,
-                  *fit.alpha.value, *fit.slip_force.value, *fit.slip_force.standard_error, truth);
-      agrees = agrees && std::abs(*fit.slip_force.value - truth) <=
-                             kMostStandardErrors * *fit.slip_force.standard_error;
+      std::printf("%5zu %14.6g %12.5f %6.3f ± %-5.2g %8.3f\n", fit.number, *fit["sigma"],
+                  *fit["alpha"], *fit["slip_force"], *fit["slip_force_error"], truth);
+      agrees = agrees && std::abs(*fit["slip_force"] - truth) <=
+                             kMostStandardErrors * *fit["slip_force_error"];
       ++fitted;
     }
   }

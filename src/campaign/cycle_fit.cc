@@ -65,34 +65,32 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
     fit.flags.emplace_back("no_loop");
     return;
   }
-  fit.amplitude = facts.amplitude;
-  fit.peak_force = facts.peak_force;
-  fit.sliding_amplitude = facts.sliding_amplitude;
-  fit.half_gap = facts.half_gap;
-  fit.energy = facts.energy_per_cycle;
-  fit.energy_ratio = facts.energy_ratio;
+  fit["amplitude"] = facts.amplitude;
+  fit["peak_force"] = facts.peak_force;
+  fit["sliding_amplitude"] = facts.sliding_amplitude;
+  fit["half_gap"] = facts.half_gap;
+  fit["energy"] = facts.energy_per_cycle;
+  fit["energy_ratio"] = facts.energy_ratio;
   // µ_W = W/(4·N·sliding amplitude)
   const double rectangle =
-      4 * fit.normal_load.value_or(0.0) * facts.sliding_amplitude.value_or(0.0);
-  if (rectangle > 0) fit.energy_friction_coefficient = facts.energy_per_cycle / rectangle;
+      4 * fit["normal_load"].value_or(0.0) * facts.sliding_amplitude.value_or(0.0);
+  if (rectangle > 0) fit["energy_friction_coefficient"] = facts.energy_per_cycle / rectangle;
 }
 
-FittedValue FittedValueOf(const FitResult& result, std::string_view name, const char* open_flag,
-                          CycleFit& fit) {
+/// Takes over a parameter with its standard error, and whether the cycle determines it.
+void FillParameter(const FitResult& result, const std::string& name, CycleFit& fit) {
   const ParameterEstimate* estimate = result.Find(name);
-  if (estimate == nullptr) return {};
-  if (open_flag != nullptr && !estimate->is_known()) fit.flags.emplace_back(open_flag);
-  if (!estimate->standard_error) return {estimate->value, {}};
-  const double error = result.ErrorOf(*estimate);
-  return {estimate->value, std::isfinite(error) ? std::optional(error) : std::nullopt};
+  if (estimate == nullptr) return;
+  if (name != "force_offset" && !estimate->is_known()) fit.flags.push_back(name + "_open");
+  fit[name] = estimate->value;
+  if (estimate->standard_error) fit[name + "_error"] = result.ErrorOf(*estimate);
 }
 
 /// Forces near the largest double overflow in squares and products: what is not finite then is not
 /// known, and a fit whose residuals overflow is none.
 void DropWhatOverflows(CycleFit& fit) {
-  const bool has_residuals = !fit.rms || std::isfinite(*fit.rms);
-  for (const CycleNumber& column : CycleNumbers()) {
-    std::optional<double>& number = column.of(fit);
+  const bool has_residuals = std::isfinite(fit["rms"].value_or(0.0));
+  for (std::optional<double>& number : fit.numbers) {
     if (number && !std::isfinite(*number)) number.reset();
   }
   if (!has_residuals && !fit.HasFlag("not_converged")) fit.flags.emplace_back("not_converged");
@@ -118,13 +116,14 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   fit.checksum = cycle.checksum;
   fit.samples = cycle.record.size();
   const loop::Record& record = cycle.record;
-  if (!record.time.empty()) fit.start_time = record.time.front();
+  if (!record.time.empty()) fit["start_time"] = record.time.front();
   const std::vector<double>& given = fitter_.options().normal_loads;
   if (!given.empty()) {
-    fit.normal_load = given.front();
+    fit["normal_load"] = given.front();
   } else if (!record.normal_load.empty()) {
-    fit.normal_load = std::accumulate(record.normal_load.begin(), record.normal_load.end(), 0.0) /
-                      static_cast<double>(record.normal_load.size());
+    fit["normal_load"] =
+        std::accumulate(record.normal_load.begin(), record.normal_load.end(), 0.0) /
+        static_cast<double>(record.normal_load.size());
   }
   const FitResult* result = nullptr;
   try {
@@ -139,17 +138,16 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   if (fitted.glitches.total > 0) fit.flags.emplace_back("glitches");
   FillFacts(FactsOf(record, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sign
-  fit.sigma = FittedValueOf(*result, "sigma", "sigma_open", fit);
-  fit.alpha = FittedValueOf(*result, "alpha", "alpha_open", fit);
-  fit.slip_force = FittedValueOf(*result, "slip_force", "slip_force_open", fit);
-  fit.force_offset = FittedValueOf(*result, "force_offset", nullptr, fit);
-  fit.rms = result->rms;
-  if (compliance_ && fit.sigma.value && !fit.HasFlag("sigma_open")) {
-    fit.contact_radius = *fit.sigma.value * *compliance_ / 8;
+  for (const char* name : {"sigma", "alpha", "slip_force", "force_offset"}) {
+    FillParameter(*result, name, fit);
+  }
+  fit["rms"] = result->rms;
+  if (compliance_ && fit["sigma"] && !fit.HasFlag("sigma_open")) {
+    fit["contact_radius"] = *fit["sigma"] * *compliance_ / 8;
   }
   const bool is_known = result->Find("slip_force")->is_known();
-  if (is_known && fit.slip_force.value && fit.normal_load && *fit.normal_load > 0) {
-    fit.friction_coefficient = *fit.slip_force.value / *fit.normal_load;
+  if (is_known && fit["slip_force"] && fit["normal_load"] && *fit["normal_load"] > 0) {
+    fit["friction_coefficient"] = *fit["slip_force"] / *fit["normal_load"];
   }
   if (result->converged) {
     fit.slips_grossly = report::SlipsGrossly(
@@ -161,40 +159,12 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
 
 namespace {
 
-using OptionalNumber = std::optional<double>;
-
-/// Returns a member of a fit, or a member of that.
-template <auto... kMembers>
-OptionalNumber& Of(CycleFit& fit) {
-  return (fit.*....*kMembers);
-}
-
-constexpr std::array kNumbers = {
-    CycleNumber{"start_time", "s", Of<&CycleFit::start_time>},
-    CycleNumber{"amplitude", "m", Of<&CycleFit::amplitude>},
-    CycleNumber{"peak_force", "N", Of<&CycleFit::peak_force>},
-    CycleNumber{"sliding_amplitude", "m", Of<&CycleFit::sliding_amplitude>},
-    CycleNumber{"half_gap", "N", Of<&CycleFit::half_gap>},
-    CycleNumber{"energy", "J", Of<&CycleFit::energy>},
-    CycleNumber{"energy_ratio", "", Of<&CycleFit::energy_ratio>},
-    CycleNumber{"energy_friction_coefficient", "", Of<&CycleFit::energy_friction_coefficient>},
-    CycleNumber{"normal_load", "N", Of<&CycleFit::normal_load>},
-    CycleNumber{"sigma", "N/m", Of<&CycleFit::sigma, &FittedValue::value>},
-    CycleNumber{"sigma_error", "N/m", Of<&CycleFit::sigma, &FittedValue::standard_error>},
-    CycleNumber{"alpha", "", Of<&CycleFit::alpha, &FittedValue::value>},
-    CycleNumber{"alpha_error", "", Of<&CycleFit::alpha, &FittedValue::standard_error>},
-    CycleNumber{"slip_force", "N", Of<&CycleFit::slip_force, &FittedValue::value>},
-    CycleNumber{"slip_force_error", "N", Of<&CycleFit::slip_force, &FittedValue::standard_error>},
-    CycleNumber{"force_offset", "N", Of<&CycleFit::force_offset, &FittedValue::value>},
-    CycleNumber{"force_offset_error", "N",
-                Of<&CycleFit::force_offset, &FittedValue::standard_error>},
-    CycleNumber{"rms", "N", Of<&CycleFit::rms>},
-    CycleNumber{"friction_coefficient", "", Of<&CycleFit::friction_coefficient>},
-    CycleNumber{"contact_radius", "m", Of<&CycleFit::contact_radius>},
-};
-
 // A torque about the contact has no contact radius, the last of them.
-static_assert(kNumbers.back().name == "contact_radius");
+static_assert(kCycleNumbers.back().name == "contact_radius");
+
+std::size_t CountOfNumbers(bool is_torsional) {
+  return kCycleNumbers.size() - (is_torsional ? 1 : 0);
+}
 
 constexpr std::string_view kPartial = "partial";
 constexpr std::string_view kGross = "gross";
@@ -207,14 +177,10 @@ Value CellValue(std::string_view cell) {
 
 }  // namespace
 
-std::span<const CycleNumber> CycleNumbers(bool is_torsional) {
-  return std::span(kNumbers).first(kNumbers.size() - (is_torsional ? 1 : 0));
-}
-
 std::string CycleTableHeader(bool is_torsional) {
   const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
   std::string header = "cycle,first_line,samples";
-  for (const CycleNumber& column : CycleNumbers(is_torsional)) {
+  for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
     header += fmt::format(",{}", column.name);
     if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
   }
@@ -222,14 +188,12 @@ std::string CycleTableHeader(bool is_torsional) {
 }
 
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool is_torsional) {
-  CycleFit values = fit;
   fmt::memory_buffer row;
   const auto end = std::back_inserter(row);
   fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
-  for (const CycleNumber& column : CycleNumbers(is_torsional)) {
+  for (const auto& number : std::span(fit.numbers).first(CountOfNumbers(is_torsional))) {
     row.push_back(',');
-    if (const OptionalNumber& number = column.of(values))
-      fmt::format_to(end, FMT_COMPILE("{}"), *number);
+    if (number) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
   const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
   fmt::format_to(end, ",{},{},{},{:016x}\n", regime, accumulated_energy, fmt::join(fit.flags, " "),
@@ -239,9 +203,9 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy, bool i
 
 CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   const std::vector<std::string_view> cells = PartsOf(line, ',');
-  const std::span<const CycleNumber> numbers = CycleNumbers(is_torsional);
+  const std::size_t numbers = CountOfNumbers(is_torsional);
   // cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
-  const std::size_t columns = 3 + numbers.size() + 4;
+  const std::size_t columns = 3 + numbers + 4;
   if (cells.size() != columns) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), columns));
   }
@@ -249,8 +213,8 @@ CycleFit ReadCycleTableRow(std::string_view line, bool is_torsional) {
   fit.number = CellValue<std::size_t>(cells[0]);
   fit.first_line = CellValue<std::size_t>(cells[1]);
   fit.samples = CellValue<std::size_t>(cells[2]);
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (!cells[3 + k].empty()) numbers[k].of(fit) = CellValue<double>(cells[3 + k]);
+  for (std::size_t k = 0; k < numbers; ++k) {
+    if (!cells[3 + k].empty()) fit.numbers.at(k) = CellValue<double>(cells[3 + k]);
   }
   const std::string_view regime = cells[columns - 4];
   if (!regime.empty()) fit.slips_grossly = regime == kGross;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <utility>
 
@@ -24,10 +25,6 @@ constexpr std::array kQuantities = {
     TrackedQuantity{"energy", "", "", "rms", /*is_drawn=*/false},
     TrackedQuantity{"energy_ratio", "", "", "rms"},
 };
-
-const CycleNumber& ColumnOf(std::string_view name) {
-  return *std::ranges::find(CycleNumbers(), name, &CycleNumber::name);
-}
 
 /// Returns one over the square of an error, within what sums of a million million neither overflow
 /// nor lose.
@@ -93,13 +90,13 @@ std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
 TrackedCourses::TrackedCourses() : courses_(kQuantities.size()) {}
 
-void TrackedCourses::Add(CycleFit fit) {
+void TrackedCourses::Add(const CycleFit& fit) {
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
     const TrackedQuantity& quantity = kQuantities[k];
-    const std::optional<double> value = ColumnOf(quantity.name).of(fit);
+    const std::optional<double>& value = fit[quantity.name];
     if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
     // A value without an error is exact, held or without noise: then all have one weight.
-    const std::optional<double> error = ColumnOf(quantity.error).of(fit);
+    const std::optional<double>& error = fit[quantity.error];
     courses_[k].Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
   }
 }
@@ -109,13 +106,31 @@ std::vector<Evolution> TrackedCourses::Describe(bool is_torsional) const {
   std::vector<Evolution> evolutions;
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
     if (const std::optional<CourseDescription> found = campaign::Describe(courses_[k])) {
-      const std::string_view unit = ColumnOf(kQuantities[k].name).unit;
+      const std::string_view unit = kCycleNumbers.at(PlaceOf(kQuantities[k].name)).unit;
       evolutions.push_back({&kQuantities[k],
                             std::string(report::UnitIn(units, unit.empty() ? "-" : unit)),
                             courses_[k], *found});
     }
   }
   return evolutions;
+}
+
+void DissipatedEnergy::Add(const CycleFit& fit) {
+  constexpr std::size_t kNeighbours = 9;
+  const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
+  const bool is_open = fit.HasFlag("not_closed");
+  if (is_open && !of_a_step_.empty()) {
+    std::vector<double> neighbours(of_a_step_.begin(), of_a_step_.end());
+    total_ += cycles_ * steps * boost::math::statistics::median(neighbours);
+    ++counts_.replaced;
+  } else if (is_open || !fit["energy"]) {
+    ++counts_.left_out;
+  } else {
+    total_ += cycles_ * *fit["energy"];
+    ++counts_.measured;
+    if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
+    of_a_step_.push_back(*fit["energy"] / steps);
+  }
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {

@@ -12,7 +12,6 @@
 #include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/interruption.h"
 #include "mindahl/io/output_file.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,42 +15,63 @@
 
 namespace mindahl::campaign {
 
-/// A fitted value and one standard error; empty where there is none.
-struct FittedValue {
-  std::optional<double> value;
-  std::optional<double> standard_error;
+/// A column of numbers of the table of cycles.
+struct CycleNumber {
+  std::string_view name;
+  std::string_view unit;  ///< in a record of forces; "" for a pure number
 };
+
+/// All of them, in the order of the table.
+inline constexpr auto kCycleNumbers = std::to_array<CycleNumber>({
+    {"start_time", "s"},
+    // Facts, of no model; empty where the record closes no cycle.
+    {"amplitude", "m"},
+    {"peak_force", "N"},
+    {"sliding_amplitude", "m"},
+    {"half_gap", "N"},
+    {"energy", "J"},  // a cycle
+    {"energy_ratio", ""},
+    {"energy_friction_coefficient", ""},
+    {"normal_load", "N"},  // mean, given or of the column
+    // The fit, with standard errors; empty where it failed.
+    {"sigma", "N/m"},
+    {"sigma_error", "N/m"},
+    {"alpha", ""},
+    {"alpha_error", ""},
+    {"slip_force", "N"},
+    {"slip_force_error", "N"},
+    {"force_offset", "N"},
+    {"force_offset_error", "N"},
+    {"rms", "N"},
+    {"friction_coefficient", ""},  // Tc/N, where the load is known and Tc identifiable
+    {"contact_radius", "m"},       // σG*/8, where the compliance is known; never of a torque
+});
+
+/// Returns the place of a column among them; their number for a name that no column has.
+inline std::size_t PlaceOf(std::string_view column) {
+  const auto row = std::ranges::find(kCycleNumbers, column, &CycleNumber::name);
+  return static_cast<std::size_t>(row - kCycleNumbers.begin());
+}
 
 /// Holds the results of one cycle, or of several fitted together, in the units of loop::LoopFacts
 /// and identification::FitResult; facts are the means of the cycles fitted together.
 struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
-  std::optional<double> start_time;  ///< [s]
   std::size_t samples = 0;
-  // Facts, of no model; empty where the record closes no cycle.
-  std::optional<double> amplitude;
-  std::optional<double> peak_force;
-  std::optional<double> sliding_amplitude;
-  std::optional<double> half_gap;
-  std::optional<double> energy;  ///< a cycle
-  std::optional<double> energy_ratio;
-  std::optional<double> energy_friction_coefficient;
-  std::optional<double> normal_load;  ///< mean, given or of the column
-  // The fit; empty where it failed.
-  FittedValue sigma;
-  FittedValue alpha;
-  FittedValue slip_force;
-  FittedValue force_offset;
-  std::optional<double> rms;
-  /// Tc/N, where the load is known and Tc identifiable.
-  std::optional<double> friction_coefficient;
-  /// σG*/8 [m], where the compliance is known.
-  std::optional<double> contact_radius;
-  std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
-  std::uint64_t checksum = 0;         ///< like Cycle::checksum, up to the cycle's last sample
+  /// Numbers of the table's columns, each empty where it is not known.
+  std::array<std::optional<double>, kCycleNumbers.size()> numbers{};
+  std::optional<bool> slips_grossly{};  ///< the fitted law at the cycle's amplitude
+  std::uint64_t checksum = 0;           ///< like Cycle::checksum, up to the cycle's last sample
   /// Holds the warnings about this cycle, each one of CycleFlags().
-  std::vector<std::string> flags;
+  std::vector<std::string> flags{};
+
+  /// Return the number of a column: fit["sigma"].
+  /// @throws std::out_of_range for a name that no column has
+  [[nodiscard]] auto& operator[](std::string_view column) { return numbers.at(PlaceOf(column)); }
+  [[nodiscard]] auto& operator[](std::string_view column) const {
+    return numbers.at(PlaceOf(column));
+  }
 
   [[nodiscard]] bool HasFlag(std::string_view flag) const {
     return std::ranges::find(flags, flag) != flags.end();
@@ -86,16 +108,6 @@ class CycleFitter {
   identification::Fitter fitter_;
   std::optional<double> compliance_;
 };
-
-/// Describes a column of numbers of the table, and how to get it from a fit.
-struct CycleNumber {
-  std::string_view name;
-  std::string_view unit;  ///< in a record of forces; "" for a pure number
-  std::optional<double>& (*of)(CycleFit&) = nullptr;
-};
-
-/// Returns all of them, in the order of the table; of a torque about the contact no contact radius.
-std::span<const CycleNumber> CycleNumbers(bool is_torsional = false);
 
 /// Returns the first line of a table of cycles: the columns with their units.
 /// @param is_torsional  of torques against angles
