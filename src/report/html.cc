@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <regex>
 
 #include "io/drawing.h"
 #include "mindahl/core/version.h"
@@ -13,8 +14,6 @@
 namespace mindahl::report {
 
 namespace {
-
-bool IsLetter(char character) { return std::isalnum(static_cast<unsigned char>(character)) != 0; }
 
 bool StartsWithDigit(std::string_view text) {
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
@@ -25,32 +24,12 @@ constexpr int kWidth = 560;  // [px] of a figure
 }  // namespace
 
 std::string Prose(std::string_view text) {
-  std::string html;
-  std::size_t said = 0;
-  const auto say_until = [&](std::size_t end) {
-    html += io::HtmlText(text.substr(said, end - said));
-    said = end;
-  };
+  static const std::regex option("(^|[^A-Za-z0-9])(--[A-Za-z0-9][A-Za-z0-9-]*)");
+  static const std::regex within_name("[_.](?=[^0-9])");
+  const std::string html =
+      std::regex_replace(io::HtmlText(text), option, "$1<span class=\"option\">$2</span>");
   const bool is_name = text.find(' ') == std::string_view::npos;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text.substr(at, 2) == "--") {
-      std::size_t end = at + 2;
-      while (end < text.size() && (IsLetter(text[end]) || text[end] == '-')) ++end;
-      if (end > at + 2 && IsLetter(text[at + 2]) && (at == 0 || !IsLetter(text[at - 1]))) {
-        say_until(at);
-        html += "<span class=\"option\">";
-        say_until(end);
-        html += "</span>";
-      }
-      at = end - 1;
-    } else if (is_name && (text[at] == '_' || text[at] == '.') && at + 1 < text.size() &&
-               !StartsWithDigit(text.substr(at + 1))) {
-      say_until(at + 1);
-      html += "<wbr>";
-    }
-  }
-  say_until(text.size());
-  return html;
+  return is_name ? std::regex_replace(html, within_name, "$&<wbr>") : html;
 }
 
 std::string PageHtml(std::string_view title, std::string_view body) {
@@ -147,7 +126,7 @@ std::string FigureHtml(const FigureText& said, std::string_view legend, int heig
 }
 
 std::string SideBySide(std::string_view parts) {
-  return fmt::format("<div class=\"figures\">\n{}</div>\n", parts);
+  return parts.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", parts);
 }
 
 std::string ProvenanceHtml(const Provenance& provenance) {

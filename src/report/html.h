@@ -54,7 +54,7 @@ std::string FigureHtml(const FigureText& said, const io::PlotPanel& panel);
 /// Returns a figure of the elements of an inline SVG, 560 px wide.
 std::string FigureHtml(const FigureText& said, std::string_view legend, int height,
                        std::string_view elements);
-/// Returns figures, or tables, side by side where there is room.
+/// Returns figures, or tables, side by side where there is room; "" without any.
 std::string SideBySide(std::string_view parts);
 
 /// Returns what it takes to make the result again.
