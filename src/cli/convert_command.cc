@@ -151,13 +151,11 @@ void RunConvert(const ConvertOptions& asked, Console& console) {
                   within ? fmt::format("force and energy within {} from {:.4g} to {:.4g} m",
                                        Percent(tolerance), within->lower, within->upper)
                          : fmt::format("not within {} at the amplitude", Percent(tolerance)));
+  Json from = {{"law", request.from}};
+  from.update(report::LawJson(law));
   const std::string json = report::Document(
       "mindahl.convert/1",
-      {{"from",
-        {{"law", request.from},
-         {"sigma", law.tangential_stiffness},
-         {"alpha", law.shape_exponent},
-         {"slip_force", law.slip_force}}},
+      {{"from", std::move(from)},
        {"to", target.name},
        {"amplitude", amplitude},
        {"tolerance", tolerance},

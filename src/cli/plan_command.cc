@@ -45,10 +45,9 @@ struct PlanOptions {
 
 /// Holds what reaches the wanted precision from one initial state.
 struct Reached {
-  std::optional<ExpectedFit> loop;  // at the least amplitude that suffices
+  std::string_view state;
+  std::optional<double> amplitude;  // the least that suffices [m]
   Protocol fewest;                  // sufficient, with the fewest cycles; amplitude 0: none is
-
-  [[nodiscard]] std::string_view state() const { return report::Name(fewest.initial_state); }
 };
 
 struct Plan {
@@ -184,10 +183,11 @@ Plan MakePlan(const PlanOptions& options) {
     }
     if (plan.wanted.empty()) continue;
     Reached& reached = plan.reached.emplace_back();
-    reached.loop = identification::LeastAmplitude(
+    reached.state = report::Name(state);
+    const std::optional<ExpectedFit> loop = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
         kShares.back() * plan.slip, fit_options, &reached.fewest);
-    reached.fewest.initial_state = state;
+    if (loop) reached.amplitude = loop->protocol.amplitude;
   }
   return plan;
 }
@@ -261,11 +261,10 @@ std::string ToText(const Plan& plan) {
   if (plan.wanted.empty()) return text;
   text += fmt::format("\nwanted: {}\n", plan.wanted_text);
   for (const Reached& reached : plan.reached) {
-    text += fmt::format("  {}: ", reached.state());
-    if (reached.loop) {
-      const double amplitude = reached.loop->protocol.amplitude;
-      text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n", amplitude,
-                          amplitude / plan.slip);
+    text += fmt::format("  {}: ", reached.state);
+    if (reached.amplitude) {
+      text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n",
+                          *reached.amplitude, *reached.amplitude / plan.slip);
     } else if (reached.fewest.amplitude > 0) {
       text +=
           fmt::format("no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
@@ -296,27 +295,25 @@ Json LoopsJson(const Plan& plan) {
 
 std::string ToJson(const Plan& plan) {
   const Expectation& expected = plan.expected;
+  Json contact = report::LawJson(expected.law);
+  contact.update({{"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
+                  {"force_noise", expected.force_noise},
+                  {"displacement_noise", expected.displacement_noise},
+                  {"gross_slip_displacement", plan.slip}});
   Json wanted = Json::object();
   for (const auto& [name, precision] : plan.wanted) {
     wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
   }
   Json reached = report::ListOf(plan.reached, [](const Reached& each) -> Json {
     const bool any = each.fewest.amplitude > 0;
-    return {{"initial_state", each.state()},
-            {"least_amplitude", each.loop ? Json(each.loop->protocol.amplitude) : nullptr},
+    return {{"initial_state", each.state},
+            {"least_amplitude", NumberOrNull(each.amplitude)},
             {"fewest_cycles", any ? Json(each.fewest.cycles) : nullptr},
             {"amplitude_of_fewest_cycles", any ? Json(each.fewest.amplitude) : nullptr}};
   });
   return report::Document(
       "mindahl.plan/1",
-      {{"expected",
-        {{"sigma", expected.law.tangential_stiffness},
-         {"alpha", expected.law.shape_exponent},
-         {"slip_force", expected.law.slip_force},
-         {"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
-         {"force_noise", expected.force_noise},
-         {"displacement_noise", expected.displacement_noise},
-         {"gross_slip_displacement", plan.slip}}},
+      {{"expected", std::move(contact)},
        {"protocol",
         {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
        {"loops", LoopsJson(plan)},
@@ -358,11 +355,9 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(options, plan), options.plot);
   WriteAnswer(options.json, console, ToJson(plan), ToText(plan));
-  const bool is_reached =
-      plan.wanted.empty() || std::ranges::any_of(plan.reached, [](const Reached& reached) {
-        return reached.loop.has_value();
-      });
-  if (!is_reached) console.exit_status = kNotEstablished;
+  const auto is_reached = [](const Reached& each) { return each.amplitude.has_value(); };
+  if (!plan.wanted.empty() && std::ranges::none_of(plan.reached, is_reached))
+    console.exit_status = kNotEstablished;
 }
 
 }  // namespace

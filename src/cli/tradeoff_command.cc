@@ -203,10 +203,7 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
     scenes.push_back(scene.document);
   }
   WriteAnswer(options.json, console,
-              report::Document("mindahl.tradeoff/1", {{"law",
-                                                       {{"sigma", law.tangential_stiffness},
-                                                        {"alpha", law.shape_exponent},
-                                                        {"slip_force", law.slip_force}}},
+              report::Document("mindahl.tradeoff/1", {{"law", report::LawJson(law)},
                                                       {"tolerance", options.tolerance},
                                                       {"excitations", std::move(scenes)}}),
               text);

@@ -188,14 +188,11 @@ Json MeasuredCycles(const Report& report) {
 // --- law, contact, terms
 
 Json Alternatives(const Report& report) {
-  Json list = Json::array();
-  if (const auto& choice = report.fit.law_choice) {
-    list.push_back({{"law", choice->alternative->name},
-                    {"sigma", NumberOrNull(choice->law.tangential_stiffness)},
-                    {"alpha", NumberOrNull(choice->law.shape_exponent)},
-                    {"slip_force", NumberOrNull(choice->law.slip_force)}});
-  }
-  return list;
+  const auto& choice = report.fit.law_choice;
+  if (!choice) return Json::array();
+  Json law = {{"law", choice->alternative->name}};
+  law.update(LawJson(choice->law));
+  return Json::array({std::move(law)});
 }
 
 Json Contact(const Report& report) {

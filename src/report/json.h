@@ -19,6 +19,13 @@ inline Json NumberOrNull(const std::optional<double>& number) {
   return number && std::isfinite(*number) ? Json(*number) : Json();
 }
 
+/// Returns the parameters of a law by the names that they have in every JSON.
+inline Json LawJson(const models::BranchLaw& law) {
+  return {{"sigma", NumberOrNull(law.tangential_stiffness)},
+          {"alpha", NumberOrNull(law.shape_exponent)},
+          {"slip_force", NumberOrNull(law.slip_force)}};
+}
+
 /// Returns what a place of a document has, "/model", null where there is no such place.
 inline Json At(const Json& document, std::string_view place) {
   const Json::json_pointer pointer{std::string(place)};
