@@ -52,8 +52,7 @@ CLI::App& AddCommand(CLI::App& program, const std::string& name, const std::stri
 void ShowFirst(CLI::App& command, std::vector<std::string> names);
 
 /// Lists the words in the help; a word that is none of them is refused with the nearest.
-CLI::Validator OneOf(std::vector<std::string> words);
-CLI::Validator OneOf(std::span<const std::string_view> words);
+CLI::Validator OneOf(const std::vector<std::string_view>& words);
 /// Refuses all but whole numbers: CLI11 itself reads -1 as 2⁶⁴ − 1.
 CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most);
 /// Transforms a quantity with its unit, "50 N", to the number in `unit`.

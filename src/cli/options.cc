@@ -58,17 +58,13 @@ void ShowFirst(CLI::App& command, std::vector<std::string> names) {
   command.get_formatter()->column_width(30);
 }
 
-CLI::Validator OneOf(std::vector<std::string> words) {
-  const std::string listed = fmt::format("{{{}}}", fmt::join(words, ","));
-  const auto check = [words = std::move(words)](const std::string& text) {
-    const bool is_one = std::ranges::find(words, text) != words.end();
-    return is_one ? std::string() : UnknownAmong(text, words);
-  };
-  return {check, listed};
-}
-
-CLI::Validator OneOf(std::span<const std::string_view> words) {
-  return OneOf(std::vector<std::string>(words.begin(), words.end()));
+CLI::Validator OneOf(const std::vector<std::string_view>& words) {
+  const auto check =
+      [names = std::vector<std::string>(words.begin(), words.end())](const std::string& text) {
+        const bool is_one = std::ranges::find(names, text) != names.end();
+        return is_one ? std::string() : UnknownAmong(text, names);
+      };
+  return {check, fmt::format("{{{}}}", fmt::join(words, ","))};
 }
 
 CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most) {

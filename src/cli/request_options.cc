@@ -1,6 +1,5 @@
 #include <fmt/ranges.h>
 
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -23,19 +22,6 @@ using identification::Term;
 namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
-
-/// Value and uncertainty, which is empty where there is no separator.
-std::pair<std::string_view, std::optional<std::string_view>> SplitUncertainty(
-    std::string_view text) {
-  constexpr std::array<std::string_view, 3> kSeparators = {"±", "+/-", "+-"};
-  for (const std::string_view separator : kSeparators) {
-    const std::size_t at = text.find(separator);
-    if (at != std::string_view::npos) {
-      return {text.substr(0, at), text.substr(at + separator.size())};
-    }
-  }
-  return {text, std::nullopt};
-}
 
 void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
               const std::string& description, const std::string& unit, const std::string& type) {
@@ -71,20 +57,22 @@ void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
 
 UncertainValue ParseUncertainValue(std::string_view text, std::string_view option,
                                    std::string_view unit) {
-  const auto [number, uncertainty] = SplitUncertainty(text);
-  std::string stated(number);
-  std::optional<double> standard_error = 0.0;
-  bool is_percentage = false;
-  if (uncertainty) {
-    std::string_view magnitude = io::Trimmed(*uncertainty);
-    is_percentage = magnitude.ends_with('%');
-    if (is_percentage) magnitude.remove_suffix(1);
-    // A unit at the end is that of the value too.
-    if (io::Trimmed(number.substr(BeginOfUnit(number))).empty()) {
-      stated += magnitude.substr(BeginOfUnit(magnitude));
-    }
-    standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
+  std::string stated(text);
+  std::string_view magnitude = "0";
+  for (const std::string_view separator : {"±", "+/-", "+-"}) {
+    const std::size_t at = text.find(separator);
+    if (at == std::string_view::npos) continue;
+    stated = text.substr(0, at);
+    magnitude = io::Trimmed(text.substr(at + separator.size()));
+    break;
   }
+  const bool is_percentage = magnitude.ends_with('%');
+  if (is_percentage) magnitude.remove_suffix(1);
+  // A unit at the end is that of the value too.
+  if (io::Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
+    stated += magnitude.substr(BeginOfUnit(magnitude));
+  }
+  std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);
   const std::optional<double> value = ParseQuantity(stated, unit);
   if (value && standard_error && is_percentage && std::isfinite(*value)) {
     *standard_error *= 0.01 * std::abs(*value);

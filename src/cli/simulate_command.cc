@@ -97,8 +97,7 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
   for (double& value : values) value += normal(engine);
 }
 
-/// Returns time, displacement and force as CSV.
-std::string Simulate(const SimulateOptions& options) {
+void RunSimulate(const SimulateOptions& options, Console& console) {
   Validate(options.law.contact);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
@@ -112,14 +111,16 @@ std::string Simulate(const SimulateOptions& options) {
   boost::random::mt19937_64 engine(options.excitation.seed);
   AddNoise(force, options.force_noise, engine);
   AddNoise(motion.displacement, options.displacement_noise, engine);
-  return io::CsvText(
-      {{"time [s]", motion.time}, {"displacement [m]", motion.displacement}, {"force [N]", force}});
+  Say("simulate: warning", DoubtsAbout(options.law.contact), console);
+  WriteText(io::CsvText({{"time [s]", motion.time},
+                         {"displacement [m]", motion.displacement},
+                         {"force [N]", force}}),
+            options.output.empty() ? "-" : options.output, console);
 }
 
-std::vector<std::string> SimulatedModels() {
-  std::vector<std::string> names;
-  for (const FrictionModel& model : models::FrictionModels()) names.emplace_back(model.name);
-  for (const models::LimitLaw& law : models::LimitLaws()) names.emplace_back(law.name);
+std::vector<std::string_view> SimulatedModels() {
+  std::vector<std::string_view> names = NamesOf(models::FrictionModels(), &FrictionModel::name);
+  for (const models::LimitLaw& law : models::LimitLaws()) names.push_back(law.name);
   return names;
 }
 
@@ -156,12 +157,6 @@ std::string MethodHelp() {
     if (!method.steps.empty()) help += fmt::format(" ({} {})", method.default_steps, method.steps);
   }
   return help;
-}
-
-void RunSimulate(const SimulateOptions& options, Console& console) {
-  const std::string csv = Simulate(options);
-  Say("simulate: warning", DoubtsAbout(options.law.contact), console);
-  WriteText(csv, options.output.empty() ? "-" : options.output, console);
 }
 
 }  // namespace

@@ -86,7 +86,8 @@ bool IsAnythingGiven(const LawRequest& request) {
   return request.sigma || request.slip_force || IsAnythingGiven(request.contact);
 }
 
-BranchLaw ResolveLaw(const LawRequest& request) {
+BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
+                     std::optional<double> prescribed_exponent) {
   Validate(request.contact);
   const bool by_parameters = request.sigma || request.slip_force;
   const bool by_contact = IsAnythingGiven(request.contact);
@@ -111,12 +112,6 @@ BranchLaw ResolveLaw(const LawRequest& request) {
   }
   if (request.alpha) law.shape_exponent = *request.alpha;
   Validate(law);
-  return law;
-}
-
-BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
-                     std::optional<double> prescribed_exponent) {
-  BranchLaw law = ResolveLaw(request);
   if (!prescribed_exponent) return law;
   if (request.alpha && *request.alpha != *prescribed_exponent) {
     throw InputError(fmt::format(

@@ -48,13 +48,11 @@ struct LawRequest {
 bool IsAnythingGiven(const LawRequest& request);
 
 /// Returns the law; α is 1/3 where it is not given.
-/// @throws InputError when parameters are missing or given twice, InvalidArgument out of range
-models::BranchLaw ResolveLaw(const LawRequest& request);
-
-/// Returns the law as a model uses it that prescribes α.
-/// @throws InputError when --alpha contradicts it
-models::BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
-                             std::optional<double> prescribed_exponent);
+/// @param model, prescribed_exponent  a model and the α that it prescribes, if it does
+/// @throws InputError when parameters are missing or given twice, or --alpha contradicts the model,
+///   InvalidArgument out of range
+models::BranchLaw ResolveLaw(const LawRequest& request, std::string_view model = {},
+                             std::optional<double> prescribed_exponent = std::nullopt);
 
 /// Returns the doubts about a contact that is hardly meant, one sentence each.
 std::vector<std::string> DoubtsAbout(const ContactOptions& options);
