@@ -126,15 +126,15 @@ double Stated(const Line& line, double cycle, Bins bins) {
   return std::clamp(line.At(cycle), least, greatest);
 }
 
-std::optional<Trend> TrendOf(Bins bins, const Line& line) {
+std::optional<Change> TrendOf(Bins bins, const Line& line) {
   const double degrees = std::max(1.0, EffectiveCount(bins, line) - 2);
   const double squares = std::max(line.squares, Rounding(bins));
   if (bins.size() <= 2 || !(squares > 0 && std::isfinite(squares))) return std::nullopt;
   const double p_value =
       PValueOfT(line.slope / std::sqrt(squares / degrees / line.spread), degrees);
-  const Trend trend{bins.front().first_cycle, bins.back().last_cycle,
-                    Stated(line, bins.front().cycle, bins), Stated(line, bins.back().cycle, bins),
-                    p_value};
+  const Change trend{bins.front().first_cycle, bins.back().last_cycle,
+                     Stated(line, bins.front().cycle, bins), Stated(line, bins.back().cycle, bins),
+                     p_value};
   const bool is_large = std::abs(trend.to - trend.from) >= kSmallestTrend * std::abs(line.level);
   return p_value < kChance && is_large ? std::optional(trend) : std::nullopt;
 }
@@ -195,7 +195,7 @@ std::optional<CourseDescription> Describe(const Course& course) {
     const auto [end, p_value] = ends[k];
     const Bins segment = bins.subspan(begin, end - begin);
     const Line line = LineThrough(segment);
-    if (const std::optional<Trend> trend = TrendOf(segment, line)) {
+    if (const std::optional<Change> trend = TrendOf(segment, line)) {
       description.trends.push_back(*trend);
     }
     if (k + 1 < ends.size()) {
@@ -204,7 +204,8 @@ std::optional<CourseDescription> Describe(const Course& course) {
       const double before = Stated(line, segment.back().cycle, segment);
       const double after = Stated(LineThrough(next), next.front().cycle, next);
       if (std::abs(after - before) >= kSmallestStep * std::abs(before)) {
-        description.steps.push_back({bins[end].first_cycle, before, after, p_value});
+        const std::size_t cycle = bins[end].first_cycle;
+        description.steps.push_back({cycle, cycle, before, after, p_value});
       }
     }
     begin = end + GapOf(bins);

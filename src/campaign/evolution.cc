@@ -73,9 +73,9 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
     course.upper.push_back(bin.greatest / unit.factor);
   }
   panel.series.push_back(std::move(course));
-  for (const Step& step : evolution.description.steps) {
-    panel.marks.push_back(
-        {.x = static_cast<double>(step.cycle), .label = fmt::format("step, {}", step.cycle)});
+  for (const Change& step : evolution.description.steps) {
+    panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
+                           .label = fmt::format("step, {}", step.first_cycle)});
   }
   if (const std::optional<std::size_t> settled = evolution.description.settled_at) {
     panel.marks.push_back(
@@ -119,17 +119,17 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
   constexpr std::size_t kNeighbours = 9;
   const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
   const bool is_open = fit.HasFlag("not_closed");
-  if (is_open && !of_a_step_.empty()) {
-    std::vector<double> neighbours(of_a_step_.begin(), of_a_step_.end());
-    total_ += cycles_ * steps * boost::math::statistics::median(neighbours);
-    ++counts_.replaced;
+  if (is_open && !of_a_step.empty()) {
+    std::vector<double> neighbours(of_a_step.begin(), of_a_step.end());
+    total += static_cast<double>(cycles) * steps * boost::math::statistics::median(neighbours);
+    ++replaced;
   } else if (is_open || !fit["energy"]) {
-    ++counts_.left_out;
+    ++left_out;
   } else {
-    total_ += cycles_ * *fit["energy"];
-    ++counts_.measured;
-    if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
-    of_a_step_.push_back(*fit["energy"] / steps);
+    total += static_cast<double>(cycles) * *fit["energy"];
+    ++measured;
+    if (of_a_step.size() == kNeighbours) of_a_step.pop_front();
+    of_a_step.push_back(*fit["energy"] / steps);
   }
 }
 
@@ -179,12 +179,12 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
                      report::ChanceText(p_value, 1))});
   };
   for (const Evolution& evolution : evolutions) {
-    for (const Trend& trend : evolution.description.trends) {
+    for (const Change& trend : evolution.description.trends) {
       add(evolution, fmt::format("cycles {} to {}", trend.first_cycle, trend.last_cycle),
           trend.from, trend.to, trend.p_value);
     }
-    for (const Step& step : evolution.description.steps) {
-      add(evolution, fmt::format("a step at cycle {}", step.cycle), step.before, step.after,
+    for (const Change& step : evolution.description.steps) {
+      add(evolution, fmt::format("a step at cycle {}", step.first_cycle), step.from, step.to,
           step.p_value);
     }
   }

@@ -28,10 +28,8 @@ using campaign::Evolution;
 namespace {
 
 struct TrackCommandOptions {
-  FitRequest fit;           // model of each cycle, and what is known of the contact
-  std::size_t average = 1;  // cycles in a row that are fitted together
-  std::size_t every = 1;    // one fit of so many that there could be
-  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  FitRequest fit;  // model of each cycle, and what is known of the contact
+  campaign::TrackOptions track{.threads = std::max(1U, std::thread::hardware_concurrency())};
   std::string output;
   std::string json_path;
   std::string report_path;
@@ -54,7 +52,7 @@ struct TrackedTest {
   std::size_t resumed = 0;  // fits that the table had already
   std::map<std::string, std::size_t, std::less<>> flags = {};
   campaign::TrackedCourses courses = {};
-  campaign::DissipatedEnergy energy;
+  campaign::DissipatedEnergy energy = {};
   std::vector<campaign::Cycle> log = {};   // loops of the cycles 1, 10, 100, …
   std::vector<Evolution> evolutions = {};  // of the courses, in the end
   std::vector<std::string> notes = {};     // what was assumed, one sentence each
@@ -81,13 +79,13 @@ Json QuantityRows(const TrackedTest& test) {
   Json quantities = Json::object();
   for (const Evolution& evolution : test.evolutions) {
     const campaign::CourseDescription& course = evolution.description;
-    Json steps = report::ListOf(course.steps, [](const campaign::Step& step) -> Json {
-      return {{"cycle", step.cycle},
-              {"before", step.before},
-              {"after", step.after},
+    Json steps = report::ListOf(course.steps, [](const campaign::Change& step) -> Json {
+      return {{"cycle", step.first_cycle},
+              {"before", step.from},
+              {"after", step.to},
               {"p_value", step.p_value}};
     });
-    Json trends = report::ListOf(course.trends, [](const campaign::Trend& trend) -> Json {
+    Json trends = report::ListOf(course.trends, [](const campaign::Change& trend) -> Json {
       return {{"first_cycle", trend.first_cycle},
               {"last_cycle", trend.last_cycle},
               {"from", trend.from},
@@ -110,7 +108,6 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
     flags[flag.name] = test.CountOf(flag.name);
   }
-  const campaign::EnergyCounts& counts = test.energy.counts();
   return report::Document(
       "mindahl.track/1", {{"input",
                            {{"files", test.files},
@@ -123,11 +120,11 @@ std::string ToJson(const TrackedTest& test, const Json& quantities) {
                           {"fits", test.fits},
                           {"flagged", test.flagged},
                           {"flags", std::move(flags)},
-                          {"accumulated_energy", test.energy.total()},
+                          {"accumulated_energy", test.energy.total},
                           {"energy_counts",
-                           {{"measured", counts.measured},
-                            {"replaced", counts.replaced},
-                            {"left_out", counts.left_out}}},
+                           {{"measured", test.energy.measured},
+                            {"replaced", test.energy.replaced},
+                            {"left_out", test.energy.left_out}}},
                           {"headline", campaign::Headline(test.evolutions)},
                           {"changes", campaign::ChangeStatements(test.evolutions)},
                           {"quantities", quantities},
@@ -149,7 +146,7 @@ std::vector<std::string> Facts(const TrackedTest& test) {
   std::vector<std::string> facts = {
       fmt::format("{} cycles in {} samples, {} fits in {}", test.cycles, test.samples, test.fits,
                   test.output),
-      report::Quantity(test.energy.total(), "J", 6) + " dissipated in all"};
+      report::Quantity(test.energy.total, "J", 6) + " dissipated in all"};
   if (test.resumed > 0) facts.push_back(fmt::format("{} fits existed already", test.resumed));
   if (test.unused_samples > 0) {
     facts.push_back(
@@ -200,7 +197,7 @@ std::string ToPage(const TrackedTest& test, const report::Provenance& provenance
                               report::ListHtml(Facts(test)) +
                                   report::TableHtml("first and last row of the table of cycles",
                                                     QuantityRows(test))) +
-          report::SectionHtml("Evolution", figures.empty() ? "" : report::SideBySide(figures)) +
+          report::SectionHtml("Evolution", report::SideBySide(figures)) +
           report::SectionHtml(
               "What to mind",
               (flags.empty() ? report::ParagraphHtml("No cycle has a flag.") : flags) +
@@ -297,7 +294,7 @@ class TrackRun {
       : options_(options),
         command_(command),
         test_{.output = options.output,
-              .energy = campaign::DissipatedEnergy(options.average * options.every)} {}
+              .energy = {.cycles = options.track.together * options.track.every}} {}
 
   /// @throws InputError naming the place in a file; rows that are finished are kept
   TrackedTest Track() {
@@ -322,7 +319,7 @@ class TrackRun {
           "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
           "another column with --displacement, or a smaller --reversal-gate",
           fmt::join(test_.files, ", "),
-          options_.average > 1 ? ", or fewer than --average says" : "", test_.gate.count,
+          options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
           test_.gate.gate));
     }
     test_.evolutions = test_.courses.Describe(test_.is_torsional);
@@ -347,12 +344,9 @@ class TrackRun {
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
     const contact::KnownContact& known = options_.fit.contact.known;
-    campaign::TrackOptions options{
-        .fit = MakeCycleFitOptions(options_.fit),
-        .compliance = test_.is_torsional ? std::nullopt : contact::TangentialCompliance(known),
-        .together = options_.average,
-        .every = options_.every,
-        .threads = options_.threads};
+    campaign::TrackOptions options = options_.track;
+    options.fit = MakeCycleFitOptions(options_.fit);
+    if (!test_.is_torsional) options.compliance = contact::TangentialCompliance(known);
     if (known.normal_load) options.fit.normal_loads = {known.normal_load->value};
     test_.gate = campaign::ChooseGate(head, options.fit);
     const std::string chosen_terms = ChooseTermsOfCycles(options_.fit, head, options.fit);
@@ -440,7 +434,7 @@ class TrackRun {
     std::string rows;
     for (const CycleFit& fit : fits) {
       test_.energy.Add(fit);
-      rows += campaign::CycleTableRow(fit, test_.energy.total(), test_.is_torsional);
+      rows += campaign::CycleTableRow(fit, test_.energy.total, test_.is_torsional);
     }
     output_->Append(rows);
     for (const CycleFit& fit : fits) test_.Add(fit);
@@ -510,16 +504,16 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddContactOptions(command, options->fit.contact);
   const OptionGroup cycles(command, "Cycles");
   cycles
-      .AddShown("--average", options->average,
+      .AddShown("--average", options->track.together,
                 "number of consecutive cycles that are fitted together")
       ->check(WholeNumber(1, 1'000'000));
-  cycles.AddShown("--every", options->every, "fit only one cycle of this many")
+  cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
       ->check(WholeNumber(1, 1'000'000'000));
   cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "refuse: a row without a number in a needed column ends the run; skip:\nit is "
                    "skipped and counted");
-  AddThreads(cycles, options->threads, "the table");
+  AddThreads(cycles, options->track.threads, "the table");
   const OptionGroup group(command, "Results");
   group.Add("--output", options->output, "table of cycles as CSV, one row a cycle", "PATH")
       ->required();

@@ -69,10 +69,10 @@ TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
   const CourseDescription description = *Describe(falling);
   EXPECT_EQ(description.first, falling.bins().front().value);
   EXPECT_EQ(description.last, falling.bins().back().value);
-  for (const Step& step : description.steps) {
-    EXPECT_LE(std::max(step.before, step.after), description.first);
+  for (const Change& step : description.steps) {
+    EXPECT_LE(std::max(step.from, step.to), description.first);
   }
-  for (const Trend& trend : description.trends) {
+  for (const Change& trend : description.trends) {
     EXPECT_LE(std::max(trend.from, trend.to), description.first);
   }
 }
@@ -94,10 +94,10 @@ TEST(Describe, FindsAStepWhereItIs) {
     const CourseDescription description = *Describe(
         CourseOf(cycles, 7, [&](std::size_t cycle) { return cycle < at ? kLevel : 1.1 * kLevel; }));
     ASSERT_THAT(description.steps, SizeIs(1)) << cycles;
-    const Step& step = description.steps[0];
-    EXPECT_NEAR(static_cast<double>(step.cycle), static_cast<double>(at),
+    const Change& step = description.steps[0];
+    EXPECT_NEAR(static_cast<double>(step.first_cycle), static_cast<double>(at),
                 2 + static_cast<double>(cycles) / Course::kMostBins);
-    EXPECT_NEAR(step.after / step.before, 1.1, 0.01);
+    EXPECT_NEAR(step.to / step.from, 1.1, 0.01);
     EXPECT_LT(step.p_value, 1e-6);
     EXPECT_THAT(description.trends, IsEmpty());
   }
@@ -144,8 +144,8 @@ TEST(Describe, DoesNotDependOnTheUnit) {
     const CourseDescription other = *Describe(CourseOf(
         150, 11, [&](std::size_t cycle) { return factor * truth(cycle); }, 0.0, factor * kNoise));
     ASSERT_EQ(other.steps.size(), one.steps.size());
-    EXPECT_EQ(other.steps[0].cycle, one.steps[0].cycle);
-    EXPECT_NEAR(other.steps[0].after / factor, one.steps[0].after, 1e-9 * kLevel);
+    EXPECT_EQ(other.steps[0].first_cycle, one.steps[0].first_cycle);
+    EXPECT_NEAR(other.steps[0].to / factor, one.steps[0].to, 1e-9 * kLevel);
   }
 }
 
@@ -154,9 +154,9 @@ TEST(Describe, OfValuesWithoutNoiseIsThatOfTheValues) {
   for (std::size_t cycle = 1; cycle <= 100; ++cycle) course.Add(cycle, cycle <= 60 ? 5.0 : 4.0);
   const CourseDescription description = *Describe(course);
   ASSERT_THAT(description.steps, SizeIs(1));
-  EXPECT_EQ(description.steps[0].cycle, 61U);
-  EXPECT_NEAR(description.steps[0].before, 5.0, 1e-12);
-  EXPECT_NEAR(description.steps[0].after, 4.0, 1e-12);
+  EXPECT_EQ(description.steps[0].first_cycle, 61U);
+  EXPECT_NEAR(description.steps[0].from, 5.0, 1e-12);
+  EXPECT_NEAR(description.steps[0].to, 4.0, 1e-12);
   EXPECT_THAT(description.trends, IsEmpty());
   Course still;
   for (std::size_t cycle = 1; cycle <= 100; ++cycle) still.Add(cycle, 5.0);

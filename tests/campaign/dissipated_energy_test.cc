@@ -1,5 +1,4 @@
 #include "mindahl/campaign/evolution.h"
-
 #include "support/prelude.h"
 
 // Tests the energy that a whole test dissipated.
@@ -18,26 +17,26 @@ CycleFit Loop(std::optional<double> energy, std::size_t samples = 201,
 }
 
 DissipatedEnergy After(std::size_t loops, std::size_t cycles = 1) {
-  DissipatedEnergy energy(cycles);
+  DissipatedEnergy energy{.cycles = cycles};
   for (std::size_t k = 0; k < loops; ++k) energy.Add(Loop(kEnergy));
   return energy;
 }
 
 TEST(DissipatedEnergy, IsTheSumOfMeasuredCyclesGlitchesAmongThem) {
-  EXPECT_DOUBLE_EQ(After(5, 12).total(), 60 * kEnergy);
+  EXPECT_DOUBLE_EQ(After(5, 12).total, 60 * kEnergy);
   DissipatedEnergy energy = After(3);
   energy.Add(Loop(0.95 * kEnergy, 201, {"glitches"}));
-  EXPECT_DOUBLE_EQ(energy.total(), 3.95 * kEnergy);
-  EXPECT_EQ(energy.counts().measured, 4U);
+  EXPECT_DOUBLE_EQ(energy.total, 3.95 * kEnergy);
+  EXPECT_EQ(energy.measured, 4U);
 }
 
 TEST(DissipatedEnergy, CountsThePiecesOfACycleForOne) {
   DissipatedEnergy energy = After(4);
   energy.Add(Loop(std::nullopt, 71, {"not_closed", "no_loop"}));
   energy.Add(Loop(11 * kEnergy, 131, {"not_closed"}));
-  EXPECT_DOUBLE_EQ(energy.total(), 5 * kEnergy);
-  EXPECT_EQ(energy.counts().replaced, 2U);
-  EXPECT_EQ(energy.counts().left_out, 0U);
+  EXPECT_DOUBLE_EQ(energy.total, 5 * kEnergy);
+  EXPECT_EQ(energy.replaced, 2U);
+  EXPECT_EQ(energy.left_out, 0U);
 }
 
 TEST(DissipatedEnergy, ReplacesAsManyCyclesAsARowStandsFor) {
@@ -45,24 +44,24 @@ TEST(DissipatedEnergy, ReplacesAsManyCyclesAsARowStandsFor) {
   DissipatedEnergy energy = After(3, kCyclesPerRow);
   // Half the steps of a closed one: half of its energy, five times.
   energy.Add(Loop(11 * kEnergy, 101, {"not_closed"}));
-  EXPECT_DOUBLE_EQ(energy.total(), kCyclesPerRow * 3.5 * kEnergy);
+  EXPECT_DOUBLE_EQ(energy.total, kCyclesPerRow * 3.5 * kEnergy);
 }
 
 TEST(DissipatedEnergy, ReplacesByTheMedianOfTheLastNine) {
-  DissipatedEnergy energy(1);
+  DissipatedEnergy energy;
   for (int k = 1; k <= 20; ++k) energy.Add(Loop(k * kEnergy));
-  const double before = energy.total();
+  const double before = energy.total;
   energy.Add(Loop(500 * kEnergy, 201, {"not_closed"}));
-  EXPECT_DOUBLE_EQ(energy.total() - before, 16 * kEnergy);
+  EXPECT_DOUBLE_EQ(energy.total - before, 16 * kEnergy);
 }
 
 TEST(DissipatedEnergy, LeavesOutUnknownCycles) {
-  DissipatedEnergy energy(1);
+  DissipatedEnergy energy;
   energy.Add(Loop(11 * kEnergy, 131, {"not_closed"}));
   energy.Add(Loop(std::nullopt, 201, {"no_loop"}));
   energy.Add(Loop(std::nullopt, 0, {"not_converged"}));
-  EXPECT_EQ(energy.total(), 0.0);
-  EXPECT_EQ(energy.counts().left_out, 3U);
+  EXPECT_EQ(energy.total, 0.0);
+  EXPECT_EQ(energy.left_out, 3U);
 }
 
 }  // namespace

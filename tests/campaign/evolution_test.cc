@@ -26,9 +26,9 @@ std::vector<Evolution> RunIn() {
               .trends = {{1, 480, 0.352, 0.6, 1e-20}}}),
           Of("slip_force", "N",
              {.first = 35.2, .last = 60, .steps = {}, .trends = {{1, 480, 35.2, 60, 1e-20}}}),
-          Of("sigma", "N/m", {.first = 5e7, .last = 8e7, .steps = {{61, 5e7, 8e7, 0.003}}}),
+          Of("sigma", "N/m", {.first = 5e7, .last = 8e7, .steps = {{61, 61, 5e7, 8e7, 0.003}}}),
           Of("contact_radius", "m",
-             {.first = 250e-6, .last = 400e-6, .steps = {{61, 250e-6, 400e-6, 0.003}}}),
+             {.first = 250e-6, .last = 400e-6, .steps = {{61, 61, 250e-6, 400e-6, 0.003}}}),
           Of("alpha", "-", {.first = 0.33, .last = 0.34})};
 }
 
@@ -48,7 +48,7 @@ TEST(Headline, SaysTheTestInOneLine) {
 
 TEST(Headline, NeverFallsByMoreThanAHundredPercent) {
   const std::vector<Evolution> turned = {
-      Of("sigma", "N/m", {.first = 2.0, .last = -3.0, .steps = {{9, 2.0, -3.0, 1e-9}}})};
+      Of("sigma", "N/m", {.first = 2.0, .last = -3.0, .steps = {{9, 9, 2.0, -3.0, 1e-9}}})};
   EXPECT_EQ(Headline(turned), "σ 2.00 → -3.00 N/m");
   EXPECT_THAT(ChangeStatements(turned),
               ElementsAre("sigma: a step at cycle 9, 2.00 → -3.00 N/m, p = 1e-09"));
@@ -65,7 +65,7 @@ TEST(ChangeStatements, NameEachStepAndTrend) {
 TEST(ChangeStatements, OfManyAreTheLargest) {
   CourseDescription course{.first = 1, .last = 2};
   for (std::size_t k = 1; k <= 15; ++k) {
-    course.steps.push_back({k, 1.0, 1.0 + 0.03 * static_cast<double>(k), 1e-3});
+    course.steps.push_back({k, k, 1.0, 1.0 + 0.03 * static_cast<double>(k), 1e-3});
   }
   const std::vector<std::string> lines =
       ChangeStatements(std::vector<Evolution>{Of("energy", "J", course)});

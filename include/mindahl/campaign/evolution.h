@@ -50,21 +50,16 @@ class Course {
   double last_ = 0.0;
 };
 
-/// A step: from one straight segment of a time history to the next, 2 % or more.
-struct Step {
-  std::size_t cycle = 0;  ///< the first after it
-  double before = 0.0;
-  double after = 0.0;
-  double p_value = 1.0;  ///< probability under no change, corrected for the choice of the place
-};
-
-/// A trend along a straight segment, 1 % or more.
-struct Trend {
-  std::size_t first_cycle = 0;
+/// A change of a quantity: a trend along a straight segment of its time history, 1 % or more, or a
+/// step from one to the next, 2 % or more.
+struct Change {
+  std::size_t first_cycle = 0;  ///< of a step the first after it, as the last
   std::size_t last_cycle = 0;
   double from = 0.0;
   double to = 0.0;
-  double p_value = 1.0;  ///< probability of such a slope under the hypothesis of none
+  /// Of a trend the probability of such a slope under the hypothesis of none; of a step that under
+  /// no change, corrected for the choice of the place.
+  double p_value = 1.0;
 };
 
 struct CourseDescription {
@@ -73,8 +68,8 @@ struct CourseDescription {
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
   /// ends; empty where it changed by no more than its scatter, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
-  std::vector<Step> steps = {};
-  std::vector<Trend> trends = {};
+  std::vector<Change> steps = {};
+  std::vector<Change> trends = {};
 
   [[nodiscard]] bool changed() const { return !steps.empty() || !trends.empty() || settled_at; }
 };
@@ -121,13 +116,6 @@ class TrackedCourses {
   std::vector<Course> courses_;
 };
 
-/// Counts the fits in a sum of energies by how the energy of each was obtained.
-struct EnergyCounts {
-  std::size_t measured = 0;  ///< fits with an energy of their own, glitches interpolated
-  std::size_t replaced = 0;  ///< fits given the energy per sample of the measured ones before
-  std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
-};
-
 /// Energy [J] dissipated over a test, from fits in their order.
 ///
 /// A cycle that does not end where it began is no loop, and what is between its ends is no energy
@@ -135,21 +123,15 @@ struct EnergyCounts {
 /// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
 /// between samples, so that the parts of a cycle count for it together; before any was measured
 /// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
-class DissipatedEnergy {
- public:
-  /// @param cycles  that a fit stands for, >= 1
-  explicit DissipatedEnergy(std::size_t cycles) : cycles_(static_cast<double>(cycles)) {}
+struct DissipatedEnergy {
+  std::size_t cycles = 1;  ///< that a fit stands for
+  double total = 0.0;
+  std::size_t measured = 0;        ///< fits with an energy of their own, glitches interpolated
+  std::size_t replaced = 0;        ///< fits given the energy per sample of the measured ones before
+  std::size_t left_out = 0;        ///< fits with no energy known, or none dissipated
+  std::deque<double> of_a_step{};  ///< [J], of the last that were measured
 
   void Add(const CycleFit& fit);
-
-  [[nodiscard]] double total() const { return total_; }
-  [[nodiscard]] const EnergyCounts& counts() const { return counts_; }
-
- private:
-  double cycles_;
-  double total_ = 0.0;
-  EnergyCounts counts_;
-  std::deque<double> of_a_step_;  // [J], of the last that were measured
 };
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
