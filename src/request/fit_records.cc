@@ -33,10 +33,6 @@ using loop::Record;
 
 namespace {
 
-const report::Units& UnitsOf(const RecordFile& input) {
-  return input.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
-}
-
 /// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
 double RequireHalfRange(const std::string& file, const RecordFile& input,
                         const io::ChosenColumn& column, const std::vector<double>& values,
@@ -69,7 +65,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
     const std::string& file = request.files[r];
-    const report::Units& units = UnitsOf(input);
+    const report::Units& units = report::UnitsOf(input.is_torsional);
     if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
                            units.displacement) > 0)) {
       ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
@@ -83,7 +79,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   const RecordFile& first = inputs.front();
   if (!is_loaded) {
     ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
-                  UnitsOf(first).force, "loaded");
+                  report::UnitsOf(first.is_torsional).force, "loaded");
   }
 }
 
@@ -100,7 +96,7 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
     widest = std::max(widest, greatest - least);
   }
   if (*gate < widest) return;
-  const report::Units& units = UnitsOf(inputs.front());
+  const report::Units& units = report::UnitsOf(inputs.front().is_torsional);
   const std::string_view unit = is_forced ? units.force : units.displacement;
   throw InputError(fmt::format(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
@@ -363,22 +359,17 @@ void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFi
 }
 
 bool Established(const FitResult& fit, Strictness strictness) {
-  if (!fit.converged) return false;
+  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
+  const bool is_strict = strictness == Strictness::kAdequate;
+  const auto is_established = [&](const ParameterEstimate& estimate) {
+    return estimate.status == ParameterStatus::kFixed ||
+           (is_strict ? estimate.identifiability == Identifiability::kIdentifiable
+                      : estimate.is_known());
+  };
   const AdequacyVerdict verdict = fit.adequacy.verdict;
-  switch (strictness) {
-    case Strictness::kNone:
-      return true;
-    case Strictness::kDoubtful:
-      return verdict != AdequacyVerdict::kInadequate &&
-             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
-    case Strictness::kAdequate:
-      return verdict == AdequacyVerdict::kAdequate &&
-             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-               return estimate.status == ParameterStatus::kFixed ||
-                      estimate.identifiability == Identifiability::kIdentifiable;
-             });
-  }
-  return false;
+  return (is_strict ? verdict == AdequacyVerdict::kAdequate
+                    : verdict != AdequacyVerdict::kInadequate) &&
+         std::ranges::all_of(fit.parameters, is_established);
 }
 
 std::vector<RecordFile> ReadRecords(const FitRequest& request) {
