@@ -97,16 +97,6 @@ std::string ErrorAtAmplitude(const LoopError& error, double amplitude) {
                                                  : "lost where the contact loses none");
 }
 
-/// Returns the request with what a fit says, and the defaults of what nothing says.
-ConvertOptions Completed(ConvertOptions request) {
-  if (!request.fit.empty()) {
-    TakeFit(ReadFit(request.fit), request);
-    Require(request.alpha, "--alpha", request);
-  }
-  if (request.from.empty()) request.from = "masing";
-  return request;
-}
-
 Json ParameterRows(const std::vector<Parameter>& parameters) {
   Json rows = Json::object();
   for (const Parameter& parameter : parameters) {
@@ -127,8 +117,12 @@ Json ElementRows(const convert::Conversion& conversion) {
   return rows;
 }
 
-void RunConvert(const ConvertOptions& asked, Console& console) {
-  ConvertOptions request = Completed(asked);
+void RunConvert(ConvertOptions request, Console& console) {
+  if (!request.fit.empty()) {
+    TakeFit(ReadFit(request.fit), request);
+    Require(request.alpha, "--alpha", request);
+  }
+  if (request.from.empty()) request.from = "masing";
   const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
                                  request.alpha.value_or(1.0 / 3),
                                  Require(request.slip_force, "--slip-force", request)};
