@@ -178,7 +178,7 @@ Value CellValue(std::string_view cell) {
 }  // namespace
 
 std::string CycleTableHeader(bool is_torsional) {
-  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  const report::Units& units = report::UnitsOf(is_torsional);
   std::string header = "cycle,first_line,samples";
   for (const CycleNumber& column : std::span(kCycleNumbers).first(CountOfNumbers(is_torsional))) {
     header += fmt::format(",{}", column.name);

@@ -59,20 +59,16 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   constexpr double kShade = 0.3;  // of what is measured
   constexpr double kManyCycles = 100;
   const std::span<const Course::Bin> bins = evolution.course.bins();
-  double largest = 0.0;
-  for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
-  const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
-  io::PlotPanel panel{.x_label = "cycle",
-                      .y_label = report::WithUnit(evolution.quantity->name, unit.name),
-                      .log_x = bins.back().cycle >= kManyCycles * bins.front().cycle};
+  io::PlotPanel panel{.log_x = bins.back().cycle >= kManyCycles * bins.front().cycle};
   io::PlotSeries course{.label = "", .style = io::PlotStyle::kBand, .shade = kShade};
   for (const Course::Bin& bin : bins) {
     course.x.push_back(bin.cycle);
-    course.y.push_back(bin.value / unit.factor);
-    course.lower.push_back(bin.least / unit.factor);
-    course.upper.push_back(bin.greatest / unit.factor);
+    course.y.push_back(bin.value);
+    course.lower.push_back(bin.least);
+    course.upper.push_back(bin.greatest);
   }
   panel.series.push_back(std::move(course));
+  report::ScaleAxes(panel, "cycle", "-", evolution.quantity->name, evolution.unit);
   for (const Change& step : evolution.description.steps) {
     panel.marks.push_back({.x = static_cast<double>(step.first_cycle),
                            .label = fmt::format("step, {}", step.first_cycle)});
@@ -102,7 +98,7 @@ void TrackedCourses::Add(const CycleFit& fit) {
 }
 
 std::vector<Evolution> TrackedCourses::Describe(bool is_torsional) const {
-  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  const report::Units& units = report::UnitsOf(is_torsional);
   std::vector<Evolution> evolutions;
   for (std::size_t k = 0; k < kQuantities.size(); ++k) {
     if (const std::optional<CourseDescription> found = campaign::Describe(courses_[k])) {
@@ -220,29 +216,19 @@ std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions
 }
 
 io::PlotPanel FrettingLog(std::span<const Cycle> cycles, bool is_torsional) {
-  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
-  double travel = 0.0;
-  double force = 0.0;
+  io::PlotPanel panel;
   for (const Cycle& cycle : cycles) {
-    for (const double x : cycle.record.displacement) travel = std::max(travel, std::abs(x));
-    for (const double t : cycle.record.force) force = std::max(force, std::abs(t));
-  }
-  const report::ScaledUnit x_unit = report::UnitFor(report::UnitIn(units, "m"), travel);
-  const report::ScaledUnit y_unit = report::UnitFor(report::UnitIn(units, "N"), force);
-  io::PlotPanel panel{
-      .x_label = report::WithUnit(is_torsional ? "angle" : "displacement", x_unit.name),
-      .y_label = report::WithUnit(is_torsional ? "torque" : "force", y_unit.name)};
-  for (const Cycle& cycle : cycles) {
-    io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number)};
-    for (std::size_t i = 0; i < cycle.record.size(); ++i) {
-      loop.x.push_back(cycle.record.displacement[i] / x_unit.factor);
-      loop.y.push_back(cycle.record.force[i] / y_unit.factor);
-    }
+    io::PlotSeries loop{.label = fmt::format("cycle {}", cycle.number),
+                        .x = cycle.record.displacement,
+                        .y = cycle.record.force};
     loop.shade = cycles.size() < 2 ? 0.0
                                    : static_cast<double>(panel.series.size()) /
                                          static_cast<double>(cycles.size() - 1);
     panel.series.push_back(std::move(loop));
   }
+  const report::Units& units = report::UnitsOf(is_torsional);
+  report::ScaleAxes(panel, is_torsional ? "angle" : "displacement", units.displacement,
+                    is_torsional ? "torque" : "force", units.force);
   return panel;
 }
 

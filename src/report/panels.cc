@@ -50,25 +50,8 @@ std::size_t FirstDrawn(const identification::RecordFit& fit) {
 
 io::Plot ToPlot(const Report& report) {
   RequireFitted(report, "a figure");
-  double extent = 0.0;
-  double force = 0.0;
-  for (const identification::RecordFit& fit : report.fit.records) {
-    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
-    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
-  }
-  const ScaledUnit unit_along = UnitFor(report.units.displacement, extent);
-  const ScaledUnit unit_of_force = UnitFor(report.units.force, force);
-  const ScaledUnit unit_of_residual = UnitFor(report.units.response, report.fit.residuals.max_abs);
-  const bool is_torsional = report.is_torsional();
-  const std::string along =
-      fmt::format("{} [{}]", is_torsional ? "angle" : "displacement", unit_along.name);
-  PlotPanel measured = {
-      .x_label = "",
-      .y_label = fmt::format("{} [{}]", is_torsional ? "torque" : "force", unit_of_force.name),
-      .height = 1.2};
-  PlotPanel residual = {.x_label = along,
-                        .y_label = fmt::format("fitted − measured [{}]", unit_of_residual.name),
-                        .height = 0.45};
+  PlotPanel measured = {.height = 1.2};
+  PlotPanel residual = {.height = 0.45};
   const std::size_t records = report.records.size();
   std::vector<PlotSeries> lines;
   for (std::size_t r = 0; r < records; ++r) {
@@ -78,13 +61,12 @@ io::Plot ToPlot(const Report& report) {
     const bool is_named = records <= kMostNamed || r == 0 || r + 1 == records;
     const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,
                          const std::vector<double>& x, const std::vector<double>& y,
-                         const ScaledUnit& unit, std::optional<double> shade,
-                         std::size_t first = 0) {
+                         std::optional<double> shade, std::size_t first = 0) {
       PlotSeries series{.label = std::move(name), .style = style, .shade = shade};
       for (std::size_t i = first; i < std::min(x.size(), y.size()); ++i) {
         if (!IsUnderLoad(report, record, i)) continue;
-        series.x.push_back(x[i] / unit_along.factor);
-        series.y.push_back(y[i] / unit.factor);
+        series.x.push_back(x[i]);
+        series.y.push_back(y[i]);
       }
       if (!series.x.empty()) to.push_back(std::move(series));
     };
@@ -94,7 +76,7 @@ io::Plot ToPlot(const Report& report) {
         !is_named       ? ""
         : label.empty() ? "measured"
                         : label,
-        PlotStyle::kPoints, record.displacement, record.force, unit_of_force, shade);
+        PlotStyle::kPoints, record.displacement, record.force, shade);
     const std::vector<double>& along_fit =
         fit.fitted_displacement.empty() ? record.displacement : fit.fitted_displacement;
     const std::size_t first = FirstDrawn(fit);
@@ -102,15 +84,20 @@ io::Plot ToPlot(const Report& report) {
         r > 0       ? ""
         : first > 0 ? "fitted, last cycle"
                     : "fitted",
-        PlotStyle::kLine, along_fit, fit.fitted_force, unit_of_force, std::nullopt, first);
-    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual,
-        unit_of_residual, shade);
+        PlotStyle::kLine, along_fit, fit.fitted_force, std::nullopt, first);
+    add(residual.series, "", PlotStyle::kPoints, record.displacement, fit.residual, shade);
     if (report.next && r < report.next->fitted_force.size()) {
       add(lines, r > 0 ? "" : "fitted with " + report.next->options, PlotStyle::kLine,
-          record.displacement, report.next->fitted_force[r], unit_of_force, std::nullopt, first);
+          record.displacement, report.next->fitted_force[r], std::nullopt, first);
     }
   }
   measured.series.insert(measured.series.end(), lines.begin(), lines.end());
+  const Units& units = report.units;
+  const bool is_torsional = report.is_torsional();
+  const char* const along = is_torsional ? "angle" : "displacement";
+  ScaleAxes(measured, along, units.displacement, is_torsional ? "torque" : "force", units.force);
+  ScaleAxes(residual, along, units.displacement, "fitted − measured", units.response);
+  measured.x_label.clear();  // the residual below has it
   return {.title = fmt::format("{}: {}", NameOf(report.files), VerdictWord(report)),
           .panels = {std::move(measured), std::move(residual)}};
 }

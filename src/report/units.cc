@@ -73,6 +73,26 @@ std::string WithUnit(std::string_view name, std::string_view unit) {
   return unit.empty() || unit == "-" ? std::string(name) : fmt::format("{} [{}]", name, unit);
 }
 
+void ScaleAxes(io::PlotPanel& panel, std::string_view x_name, std::string_view x_unit,
+               std::string_view y_name, std::string_view y_unit) {
+  double width = 0.0;
+  double height = 0.0;
+  for (const io::PlotSeries& series : panel.series) {
+    for (const double x : series.x) width = std::max(width, std::abs(x));
+    for (const double y : series.y) height = std::max(height, std::abs(y));
+  }
+  const ScaledUnit along = UnitFor(x_unit, width);
+  const ScaledUnit upward = UnitFor(y_unit, height);
+  for (io::PlotSeries& series : panel.series) {
+    for (double& x : series.x) x /= along.factor;
+    for (auto* values : {&series.y, &series.lower, &series.upper}) {
+      for (double& y : *values) y /= upward.factor;
+    }
+  }
+  panel.x_label = WithUnit(x_name, along.name);
+  panel.y_label = WithUnit(y_name, upward.name);
+}
+
 std::string Quantity(double value, std::string_view unit, int digits) {
   const ScaledUnit scaled = UnitFor(unit, value);
   const double number = value / scaled.factor;

@@ -53,12 +53,12 @@ class Course {
 /// A change of a quantity: a trend along a straight segment of its time history, 1 % or more, or a
 /// step from one to the next, 2 % or more.
 struct Change {
-  std::size_t first_cycle = 0;  ///< of a step the first after it, as the last
+  std::size_t first_cycle = 0;  ///< first cycle; a step has the one after it in both
   std::size_t last_cycle = 0;
   double from = 0.0;
   double to = 0.0;
-  /// Of a trend the probability of such a slope under the hypothesis of none; of a step that under
-  /// no change, corrected for the choice of the place.
+  /// Probability of such a slope under the hypothesis of none; or of such a step under no change,
+  /// corrected for the choice of the place.
   double p_value = 1.0;
 };
 
@@ -124,12 +124,12 @@ class TrackedCourses {
 /// between samples, so that the parts of a cycle count for it together; before any was measured
 /// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
 struct DissipatedEnergy {
-  std::size_t cycles = 1;  ///< that a fit stands for
+  std::size_t cycles = 1;  ///< cycles that a fit stands for
   double total = 0.0;
   std::size_t measured = 0;        ///< fits with an energy of their own, glitches interpolated
   std::size_t replaced = 0;        ///< fits given the energy per sample of the measured ones before
   std::size_t left_out = 0;        ///< fits with no energy known, or none dissipated
-  std::deque<double> of_a_step{};  ///< [J], of the last that were measured
+  std::deque<double> of_a_step{};  ///< energies [J] of the last that were measured
 
   void Add(const CycleFit& fit);
 };

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "mindahl/io/plot.h"
+
 namespace mindahl::report {
 
 /// Holds the units of a report: those of a force along the contact, or of a torque about it.
@@ -22,6 +24,11 @@ inline constexpr Units kUnitsOfTorque{.force = "N m",
                                       .response = "N m",
                                       .excitation = "rad"};
 
+/// Returns the units of a record.
+inline const Units& UnitsOf(bool is_torsional) {
+  return is_torsional ? kUnitsOfTorque : kUnitsOfForce;
+}
+
 /// Returns the unit in which a quantity is that has `unit` where the record has a force: of a
 /// torque N is N m, m is rad and kg is kg m², so "N/m²" is "N m/rad²". Energies are in J either
 /// way.
@@ -38,6 +45,10 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude);
 
 /// Returns "sigma [N/µm]"; the name alone of a unit that is empty or "-".
 std::string WithUnit(std::string_view name, std::string_view unit);
+
+/// Names the axes of a panel of numbers in these units, and puts them into those that suit them.
+void ScaleAxes(io::PlotPanel& panel, std::string_view x_name, std::string_view x_unit,
+               std::string_view y_name, std::string_view y_unit);
 
 /// Returns "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
 std::string Quantity(double value, std::string_view unit, int digits = 5);
