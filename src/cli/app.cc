@@ -130,10 +130,8 @@ std::optional<std::string> UnknownOption(const CLI::App& app) {
 }
 
 std::string OneLine(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-  }
+  text.erase(text.find_last_not_of('\n') + 1);
+  std::ranges::replace(text, '\n', ' ');
   return text;
 }
 

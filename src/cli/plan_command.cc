@@ -213,11 +213,6 @@ std::optional<double> ErrorOf(const ExpectedFit& fit, const ShownError& shown) {
   return error < 1 ? std::optional(error) : std::nullopt;
 }
 
-bool IsFitted(const Plan& plan, const ShownError& shown) {
-  const ParameterEstimate* estimate = plan.loops.front().Find(shown.parameter);
-  return estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
-}
-
 bool IsLawDecided(const ExpectedFit& fit) {
   return fit.law_evidence > identification::Thresholds().undecided;
 }
@@ -228,7 +223,10 @@ Json ErrorRows(const Plan& plan) {
                 {"X [m]", fit.protocol.amplitude},
                 {"X/slip", fit.protocol.amplitude / plan.slip}};
     for (const ShownError& each : kShownErrors) {
-      if (!IsFitted(plan, each)) continue;
+      const ParameterEstimate* estimate = fit.Find(each.parameter);
+      const bool is_fitted =
+          estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed;
+      if (!is_fitted) continue;
       const std::optional<double> error = ErrorOf(fit, each);
       row[each.name] = !error             ? "-"
                        : each.is_exponent ? fmt::format("{:.2g}", *error)

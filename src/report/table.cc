@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "mindahl/io/csv_table.h"
 #include "report/html.h"
 #include "report/json.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
@@ -129,6 +131,36 @@ std::string TableHtml(std::string_view caption, const Json& rows) {
     lines.push_back({head, std::move(texts)});
   }
   return TableHtml(caption, names, lines);
+}
+
+std::string ResidualsCsv(const Report& report) {
+  RequireFitted(report, "a table of residuals");
+  const Units& units = report.units;
+  const bool is_of_force = report.fit.response == loop::Channel::kForce;
+  const bool is_timed = std::ranges::none_of(
+      report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
+  std::vector<double> file;
+  std::vector<std::vector<double>> cells;  // one list a column
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const loop::Record& record = report.records[r].record;
+    const identification::RecordFit& fit = report.fit.records[r];
+    file.insert(file.end(), record.size(), static_cast<double>(r + 1));
+    const std::array columns = {&record.time, &record.displacement, &record.force,
+                                is_of_force ? &fit.fitted_force : &fit.fitted_displacement,
+                                &fit.residual};
+    cells.resize(columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      cells[k].insert(cells[k].end(), columns[k]->begin(), columns[k]->end());
+    }
+  }
+  std::vector<io::CsvColumn> columns = {
+      {WithUnit("displacement", units.displacement), cells[1]},
+      {WithUnit("force", units.force), cells[2]},
+      {WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", units.response), cells[3]},
+      {WithUnit("residual", units.response), cells[4]}};
+  if (is_timed) columns.insert(columns.begin(), {"time [s]", cells[0]});
+  if (report.records.size() > 1) columns.insert(columns.begin(), {"file", file});
+  return io::CsvText(columns);
 }
 
 }  // namespace mindahl::report
