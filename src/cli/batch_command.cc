@@ -11,7 +11,6 @@
 namespace mindahl::cli {
 
 using request::BatchEntry;
-using request::WritePage;
 
 namespace {
 
@@ -47,15 +46,13 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
     for (std::size_t k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}-{}", stem, k);
     pages.push_back(name + ".html");
   }
-  const auto page_of = [&](std::size_t k) -> WritePage {
-    if (options.report_directory.empty()) return {};
-    return [&, k](const report::Report& report) {
-      io::WriteFileAtomically(std::filesystem::path(options.report_directory) / pages[k],
-                              report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
-      return pages[k];
-    };
+  const auto write_page = [&](const report::Report& report, std::size_t k) {
+    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / pages[k],
+                            report::ToPage(report, ProvenanceOf(command, "", {&files[k], 1})));
+    return pages[k];
   };
-  return request::FitFiles(options.request, options.strict, options.threads, page_of);
+  return request::FitFiles(options.request, options.strict, options.threads,
+                           options.report_directory.empty() ? request::WritePage() : write_page);
 }
 
 void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {

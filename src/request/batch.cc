@@ -236,7 +236,7 @@ std::string Address(std::string_view name) {
 }  // namespace
 
 BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
-                     const ReadSource& read, const WritePage& write_page) {
+                     const ReadSource& read, const WritePage& write_page, std::size_t k) {
   BatchEntry entry;
   entry.file = name;
   FitRequest own = request;
@@ -251,7 +251,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
     entry.parameters = report.fit.parameters;
-    if (write_page) entry.page = write_page(report);
+    if (write_page) entry.page = write_page(report, k);
     if (!entry.done) {
       fault = report.fit.converged ? "not established: the model is not adequate or a free "
                                      "parameter not identifiable"
@@ -270,8 +270,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
 }
 
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
-                                 std::size_t threads,
-                                 const std::function<WritePage(std::size_t k)>& page_of) {
+                                 std::size_t threads, const WritePage& write_page) {
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
   const std::vector<std::string>& files = request.files;
   std::vector<BatchEntry> entries;
@@ -279,8 +278,7 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
   for (std::size_t next = 0; entries.size() < files.size();) {
     while (next < files.size() && at_work.size() < threads) {
       const auto fit = [&, k = next] {
-        return FitSource(request, files[k], strictness, &ReadRecords,
-                         page_of ? page_of(k) : WritePage());
+        return FitSource(request, files[k], strictness, &ReadRecords, write_page, k);
       };
       at_work.push_back(std::async(fit));  // here where no thread can be started
       ++next;

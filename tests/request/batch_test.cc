@@ -25,9 +25,10 @@ std::vector<io::RecordFile> CleanRecord() {
 TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
   const auto read = [](const FitRequest&) { return CleanRecord(); };
   EXPECT_TRUE(FitSource({}, "loop", Strictness::kNone, read).done);
-  const BatchEntry entry =
-      FitSource({}, "loop", Strictness::kNone, read,
-                [](const report::Report&) -> std::string { throw InputError("the disk is full"); });
+  const BatchEntry entry = FitSource({}, "loop", Strictness::kNone, read,
+                                     [](const report::Report&, std::size_t) -> std::string {
+                                       throw InputError("the disk is full");
+                                     });
   EXPECT_FALSE(entry.done);
   EXPECT_EQ(entry.fault, "the disk is full");
 }

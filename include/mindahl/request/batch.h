@@ -28,20 +28,18 @@ struct BatchEntry {
 /// Reads the records of one source.
 using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&)>;
 
-/// Writes the page of a report and returns its name; an empty function writes no pages.
-using WritePage = std::function<std::string(const report::Report&)>;
+/// Writes the page of the k-th source and returns its name; an empty function writes no pages.
+using WritePage = std::function<std::string(const report::Report&, std::size_t k)>;
 
 /// Fits one source on its own. A fault of the source is one of the entry.
 /// @param request  of all sources, of which `files` is not looked at
 BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
-                     const ReadSource& read, const WritePage& write_page = {});
+                     const ReadSource& read, const WritePage& write_page = {}, std::size_t k = 0);
 
 /// Fits each of the request's files on its own, in their order whatever the number of threads.
-/// @param page_of   of the k-th file; may be empty
 /// @throws InputError or InvalidArgument for options that break a rule whatever the files are
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
-                                 std::size_t threads,
-                                 const std::function<WritePage(std::size_t k)>& page_of = {});
+                                 std::size_t threads, const WritePage& write_page = {});
 
 /// True if every entry is done.
 bool AllDone(std::span<const BatchEntry> entries);
