@@ -319,31 +319,31 @@ io::PlotPanel EvolutionPanel(const Evolution& evolution) {
 
 std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
 
-TrackedCourses::TrackedCourses() : courses_(kQuantities.size()) {}
+std::vector<Evolution> BeginEvolutions(bool is_torsional) {
+  std::vector<Evolution> evolutions;
+  for (const TrackedQuantity& quantity : kQuantities) {
+    const std::string_view unit = kCycleNumbers.at(PlaceOf(quantity.name)).unit;
+    evolutions.push_back(
+        {&quantity, report::UnitIn(report::UnitsOf(is_torsional), unit.empty() ? "-" : unit)});
+  }
+  return evolutions;
+}
 
-void TrackedCourses::Add(const CycleFit& fit) {
-  for (std::size_t k = 0; k < kQuantities.size(); ++k) {
-    const TrackedQuantity& quantity = kQuantities[k];
+void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
+  if (fit.HasFlag("not_converged")) return;
+  for (Evolution& evolution : evolutions) {
+    const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
-    if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
+    if (!value || fit.HasFlag(quantity.open_flag)) continue;
     // A value without an error is exact, held or without noise: then all have one weight.
     const std::optional<double>& error = fit[quantity.error];
-    courses_[k].Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
+    evolution.course.Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
   }
 }
 
-std::vector<Evolution> TrackedCourses::Describe(bool is_torsional) const {
-  const report::Units& units = report::UnitsOf(is_torsional);
-  std::vector<Evolution> evolutions;
-  for (std::size_t k = 0; k < kQuantities.size(); ++k) {
-    if (const std::optional<CourseDescription> found = campaign::Describe(courses_[k])) {
-      const std::string_view unit = kCycleNumbers.at(PlaceOf(kQuantities[k].name)).unit;
-      evolutions.push_back({&kQuantities[k],
-                            std::string(report::UnitIn(units, unit.empty() ? "-" : unit)),
-                            courses_[k], *found});
-    }
-  }
-  return evolutions;
+void Describe(std::vector<Evolution>& evolutions) {
+  std::erase_if(evolutions, [](const Evolution& each) { return each.course.bins().empty(); });
+  for (Evolution& each : evolutions) each.description = *Describe(each.course);
 }
 
 void DissipatedEnergy::Add(const CycleFit& fit) {

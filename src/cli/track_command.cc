@@ -51,18 +51,17 @@ struct TrackedTest {
   std::size_t flagged = 0;
   std::size_t resumed = 0;  // fits that the table had already
   std::map<std::string, std::size_t, std::less<>> flags = {};
-  campaign::TrackedCourses courses = {};
   campaign::DissipatedEnergy energy = {};
-  std::vector<campaign::Cycle> log = {};   // loops of the cycles 1, 10, 100, …
-  std::vector<Evolution> evolutions = {};  // of the courses, in the end
-  std::vector<std::string> notes = {};     // what was assumed, one sentence each
+  std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
+  std::vector<Evolution> evolutions = {};
+  std::vector<std::string> notes = {};  // what was assumed, one sentence each
 
   /// Adds a fit whose row is in the table, in their order, but for its energy.
   void Add(const CycleFit& fit) {
     ++fits;
     flagged += fit.flags.empty() ? 0 : 1;
     for (const std::string& flag : fit.flags) ++flags[flag];
-    courses.Add(fit);
+    campaign::AddTo(evolutions, fit);
   }
   /// Returns the number of fits with a flag.
   [[nodiscard]] std::size_t CountOf(std::string_view flag) const {
@@ -322,7 +321,7 @@ class TrackRun {
           options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
           test_.gate.gate));
     }
-    test_.evolutions = test_.courses.Describe(test_.is_torsional);
+    campaign::Describe(test_.evolutions);
     return std::move(test_);
   }
 
@@ -333,6 +332,7 @@ class TrackRun {
       layout_ = layout;
       layout_->record = {};
       test_.is_torsional = layout.is_torsional;
+      test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     }
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
     if (options_.fit.join) io::RequireJoinable(*layout_, test_.files.front(), layout, name);

@@ -33,7 +33,7 @@ std::string VerdictHtml(std::string_view css_class, std::string_view word,
 struct TableLine {
   std::string head;
   std::vector<std::string> cells;
-  std::string_view css_class = {};  ///< of its head
+  std::string_view css_class = {};  ///< style of its head
   std::string address = {};         ///< to which its head leads; "" none
 };
 /// Returns a table; "" without lines.

@@ -119,13 +119,13 @@ CycleFit WithSlipForce(std::size_t number, double value, double error) {
 }
 
 // One over their squares is 0 or infinite.
-TEST(TrackedCourses, AcceptErrorsOfAnySize) {
-  TrackedCourses courses;
+TEST(Evolutions, AcceptErrorsOfAnySize) {
+  std::vector<Evolution> evolutions = BeginEvolutions(false);
   std::size_t number = 0;
   for (const double error : {1e-200, 1e-160, 1.0, 1e160, 1e300}) {
-    for (int k = 0; k < 20; ++k) courses.Add(WithSlipForce(++number, 60.0, error));
+    for (int k = 0; k < 20; ++k) AddTo(evolutions, WithSlipForce(++number, 60.0, error));
   }
-  const std::vector<Evolution> evolutions = courses.Describe(false);
+  Describe(evolutions);
   ASSERT_THAT(evolutions, SizeIs(1));
   for (const Course::Bin& bin : evolutions[0].course.bins()) {
     EXPECT_TRUE(std::isfinite(bin.weight) && bin.weight > 0);
@@ -134,7 +134,7 @@ TEST(TrackedCourses, AcceptErrorsOfAnySize) {
   EXPECT_FALSE(evolutions[0].description.changed());
 }
 
-TEST(TrackedCourses, HoldEachQuantityOfACycleUnlessItIsOpen) {
+TEST(Evolutions, HoldEachQuantityOfACycleUnlessItIsOpen) {
   CycleFit fit;
   fit.number = 7;
   fit["sigma"] = 1.5;
@@ -150,11 +150,12 @@ TEST(TrackedCourses, HoldEachQuantityOfACycleUnlessItIsOpen) {
   fit["contact_radius"] = 8.5;
   fit["rms"] = 2.0;
   const auto held = [&](const std::vector<std::string>& flags) {
-    TrackedCourses courses;
+    std::vector<Evolution> evolutions = BeginEvolutions(false);
     fit.flags = flags;
-    courses.Add(fit);
+    AddTo(evolutions, fit);
+    Describe(evolutions);
     std::vector<std::string> all;
-    for (const Evolution& evolution : courses.Describe(false)) {
+    for (const Evolution& evolution : evolutions) {
       const Course::Bin& bin = evolution.course.bins()[0];
       EXPECT_EQ(bin.first_cycle, 7U);
       all.push_back(fmt::format("{} {} {}", evolution.quantity->name, bin.value, bin.weight));

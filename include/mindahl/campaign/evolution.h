@@ -101,20 +101,15 @@ struct Evolution {
   CourseDescription description = {};
 };
 
-/// Collects the time histories of all of them, in memory that their number does not change.
-class TrackedCourses {
- public:
-  TrackedCourses();
+/// Returns the evolutions of all of them before the first cycle.
+std::vector<Evolution> BeginEvolutions(bool is_torsional);
 
-  /// A cycle that did not converge, or leaves a quantity open, is not in its time history.
-  void Add(const CycleFit& fit);
+/// Adds a cycle to the time histories, in memory that their number does not change; none of one
+/// that did not converge, nor of a quantity that it leaves open.
+void AddTo(std::span<Evolution> evolutions, const CycleFit& fit);
 
-  /// Returns those that have a value, described, in the order of TrackedQuantities().
-  [[nodiscard]] std::vector<Evolution> Describe(bool is_torsional) const;
-
- private:
-  std::vector<Course> courses_;
-};
+/// Describes those that have a value, and removes the others.
+void Describe(std::vector<Evolution>& evolutions);
 
 /// Energy [J] dissipated over a test, from fits in their order.
 ///
