@@ -14,7 +14,6 @@
 
 namespace mindahl::cli {
 
-using contact::KnownBody;
 using contact::UncertainValue;
 using identification::Interval;
 using identification::Term;
@@ -23,34 +22,13 @@ namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
 
+/// Adds an option for what is known exactly or with a standard uncertainty.
 void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
-              const std::string& description, const std::string& unit, const std::string& type) {
-  OptionGroup(command, kGroup)
-      .AddRead(
-          name,
-          [&target, name, unit](const std::string& text) {
-            target = ParseUncertainValue(text, name, unit);
-          },
-          description, type + "[+-U]");
-}
-
-/// "25,50±1%,100".
-void ReadNormalLoads(const std::string& text, ContactOptions& options) {
-  std::vector<UncertainValue> loads;
-  for (const std::string_view load : PartsOf(text, ',')) {
-    loads.push_back(ParseUncertainValue(load, "--normal-load", "N"));
-  }
-  SetNormalLoads(options, loads);
-}
-
-void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
-  AddKnown(command, fmt::format("--youngs-modulus-{}", number), body.youngs_modulus,
-           fmt::format("Young's modulus of body {} [Pa]", number), "Pa", "PA");
-  AddKnown(command, fmt::format("--poisson-{}", number), body.poisson_ratio,
-           fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "-", "NU");
-  AddKnown(command, fmt::format("--radius-{}", number), body.radius,
-           fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
-           "m", "M");
+              const std::string& help, const std::string& unit, const std::string& type) {
+  const auto read = [&target, name, unit](const std::string& text) {
+    target = ParseUncertainValue(text, name, unit);
+  };
+  OptionGroup(command, kGroup).AddRead(name, read, help, type + "[+-U]");
 }
 
 }  // namespace
@@ -94,22 +72,35 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
 
 void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
   if (loads == NormalLoads::kOneAFile) {
+    const auto read = [&options](const std::string& text) {
+      std::vector<UncertainValue> each;
+      for (const std::string_view load : PartsOf(text, ',')) {
+        each.push_back(ParseUncertainValue(load, "--normal-load", "N"));
+      }
+      SetNormalLoads(options, each);
+    };
     OptionGroup(command, kGroup)
-        .AddRead(
-            "--normal-load",
-            [&options](const std::string& text) { ReadNormalLoads(text, options); },
-            "normal load N [N], one for all files or one a file: 25,50,100; like\n"
-            "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
-            "50+/-0.5, 50±1%",
-            "N[+-U],...");
+        .AddRead("--normal-load", read,
+                 "normal load N [N], one for all files or one a file: 25,50,100; like\n"
+                 "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
+                 "50+/-0.5, 50±1%",
+                 "N[+-U],...");
   } else {
     AddKnown(command, "--normal-load", options.known.normal_load,
              "normal load N [N]; like all below exact, or with a standard\n"
              "uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%",
              "N", "N");
   }
-  AddBodyOptions(command, options.known.body_1, 1);
-  AddBodyOptions(command, options.known.body_2, 2);
+  for (const auto& [body, number] :
+       {std::pair(&options.known.body_1, 1), {&options.known.body_2, 2}}) {
+    AddKnown(command, fmt::format("--youngs-modulus-{}", number), body->youngs_modulus,
+             fmt::format("Young's modulus of body {} [Pa]", number), "Pa", "PA");
+    AddKnown(command, fmt::format("--poisson-{}", number), body->poisson_ratio,
+             fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "-", "NU");
+    AddKnown(command, fmt::format("--radius-{}", number), body->radius,
+             fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
+             "m", "M");
+  }
   AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "m",
            "M");
   AddKnown(command, "--compliance", options.known.tangential_compliance,
