@@ -1,26 +1,11 @@
 #pragma once
 
-#include <cstddef>
-
-// Compilers differ in two things that are used here: functions built for several instruction sets,
-// of which one is chosen at run time, and registers of several numbers. Only this file has
-// attributes of a compiler.
+// Functions built for several instruction sets, of which one is chosen at run time. Only this file
+// has attributes of a compiler.
 
 // A function that is always inlined takes the instruction set of its caller.
 #define MINDAHL_INLINE_LAMBDA __attribute__((always_inline))
 #define MINDAHL_INLINE inline MINDAHL_INLINE_LAMBDA
-
-namespace mindahl {
-
-/// A register of several numbers, with arithmetic and comparisons of each.
-template <std::size_t kLanes>
-struct Vector {
-  using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
-};
-template <std::size_t kLanes>
-using Lanes = typename Vector<kLanes>::Lanes;
-
-}  // namespace mindahl
 
 #if defined(__x86_64__)
 #define MINDAHL_TARGET_AVX2 __attribute__((target("avx2,fma")))

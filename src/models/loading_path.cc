@@ -89,13 +89,8 @@ class OpenBranches {
   [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
     if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
     const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_}, asymmetry_);
-    std::size_t ahead = 0;
-    constexpr std::size_t kBlock = 32;
-    for (; ahead + kBlock <= displacement.size(); ahead += kBlock) {
-      const auto [least, greatest] = ExtremesOf(displacement.subspan(ahead, kBlock));
-      if (!(direction_ > 0 ? greatest < closing : least > closing)) break;
-    }
     const double direction = direction_;
+    std::size_t ahead = 0;
     while (ahead < displacement.size() && direction * (displacement[ahead] - closing) < 0) ++ahead;
     return ahead;
   }
