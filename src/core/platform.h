@@ -8,7 +8,7 @@
 namespace mindahl {
 
 // Everything that the project asks of the operating system stands here: a port writes platform.cc
-// anew. Only that file includes headers of POSIX; instruction_sets.h has what compilers differ in.
+// anew. Only that file includes headers of POSIX; branch_kernel.cc has what compilers differ in.
 // Functions that return an error return errno's value, 0 where there is none.
 
 /// Writes a message past all buffers, and ends the process without running anything that is

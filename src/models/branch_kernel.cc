@@ -6,10 +6,21 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include "core/instruction_sets.h"
 #include "mindahl/models/backbone.h"
+
+// Compilers differ in how functions are built for several instruction sets. A function that is
+// always inlined takes the set of its caller;
+#define MINDAHL_INLINE_LAMBDA __attribute__((always_inline))
+#define MINDAHL_INLINE inline MINDAHL_INLINE_LAMBDA
+// of one that is built for each of these the program takes, when it starts, the widest that the
+// processor has.
+#if defined(__x86_64__) && defined(__gnu_linux__)
+#define MINDAHL_FOR_INSTRUCTION_SETS \
+  __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define MINDAHL_FOR_INSTRUCTION_SETS
+#endif
 
 namespace mindahl::models {
 namespace {
@@ -169,8 +180,8 @@ MINDAHL_INLINE void ForEach(std::size_t count, AtSample&& at) {
   }
 }
 
-MINDAHL_INLINE void EvaluateBlock(const ScaledBranch& branch, double shape_exponent, double limit,
-                                  std::size_t count, Block& block) {
+MINDAHL_FOR_INSTRUCTION_SETS void EvaluateBlock(const ScaledBranch& branch, double shape_exponent,
+                                                double limit, std::size_t count, Block& block) {
   const RunConstants run = ConstantsOf(branch, shape_exponent);
   const double start = branch.force;
   const double height = branch.height;
@@ -180,9 +191,10 @@ MINDAHL_INLINE void EvaluateBlock(const ScaledBranch& branch, double shape_expon
   });
 }
 
-MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch, const BranchGradient& start,
-                                       double shape_exponent, double limit, std::size_t count,
-                                       Block& block) {
+MINDAHL_FOR_INSTRUCTION_SETS void DifferentiateBlock(const ScaledBranch& branch,
+                                                     const BranchGradient& start,
+                                                     double shape_exponent, double limit,
+                                                     std::size_t count, Block& block) {
   const RunConstants run = ConstantsOf(branch, shape_exponent);
   const double force_start = branch.force;
   const double height = branch.height;
@@ -221,38 +233,6 @@ MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch& branch, const BranchG
   });
 }
 
-}  // namespace
-
-struct BranchKernel {
-  decltype(EvaluateBlock)* evaluate;
-  decltype(DifferentiateBlock)* differentiate;
-};
-
-namespace {
-
-// The blocks for one instruction set each. Attributes are no expressions.
-// NOLINTBEGIN(bugprone-macro-parentheses)
-
-#define MINDAHL_BLOCKS(name, attributes)                                                          \
-  attributes void Evaluate##name(const ScaledBranch& branch, double shape_exponent, double limit, \
-                                 std::size_t count, Block& block) {                               \
-    EvaluateBlock(branch, shape_exponent, limit, count, block);                                   \
-  }                                                                                               \
-  attributes void Differentiate##name(const ScaledBranch& branch, const BranchGradient& start,    \
-                                      double shape_exponent, double limit, std::size_t count,     \
-                                      Block& block) {                                             \
-    DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                       \
-  }                                                                                               \
-  constexpr BranchKernel k##name = {Evaluate##name, Differentiate##name};
-
-MINDAHL_BLOCKS(Baseline, )
-#if defined(__x86_64__)
-MINDAHL_BLOCKS(Avx2, MINDAHL_TARGET_AVX2)
-MINDAHL_BLOCKS(Avx512, MINDAHL_TARGET_AVX512)
-#endif
-#undef MINDAHL_BLOCKS
-// NOLINTEND(bugprone-macro-parentheses)
-
 /// Fills in the samples from `begin` on; the last is repeated where whole vectors ask for more.
 std::size_t Fill(std::span<const double> displacement, std::size_t begin, Block& block) {
   const std::size_t count = std::min(kBlock, displacement.size() - begin);
@@ -269,27 +249,12 @@ void Keep(const Column& column, std::size_t begin, std::size_t count, std::span<
 
 }  // namespace
 
-std::vector<const BranchKernel*> BranchKernels() {
-  std::vector<const BranchKernel*> kernels = {&kBaseline};
-#if defined(__x86_64__)
-  if (HasAvx2()) kernels.push_back(&kAvx2);
-  if (HasAvx512()) kernels.push_back(&kAvx512);
-#endif
-  return kernels;
-}
-
-const BranchKernel& WidestBranchKernel() {
-  static const BranchKernel& widest = *BranchKernels().back();
-  return widest;
-}
-
 void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, double limit,
-                        std::span<const double> displacement, std::span<double> t,
-                        const BranchKernel& kernel) {
+                        std::span<const double> displacement, std::span<double> t) {
   Block block;
   for (std::size_t begin = 0; begin < displacement.size(); begin += kBlock) {
     const std::size_t count = Fill(displacement, begin, block);
-    kernel.evaluate(branch, shape_exponent, limit, count, block);
+    EvaluateBlock(branch, shape_exponent, limit, count, block);
     Keep(block.t, begin, count, t);
   }
 }
@@ -297,11 +262,11 @@ void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, doubl
 void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,
-                             const NormalizedGradient& gradient, const BranchKernel& kernel) {
+                             const NormalizedGradient& gradient) {
   Block block;
   for (std::size_t begin = 0; begin < displacement.size(); begin += kBlock) {
     const std::size_t count = Fill(displacement, begin, block);
-    kernel.differentiate(branch, branch_gradient, shape_exponent, limit, count, block);
+    DifferentiateBlock(branch, branch_gradient, shape_exponent, limit, count, block);
     Keep(block.t, begin, count, t);
     Keep(block.log_rate, begin, count, gradient.log_rate);
     Keep(block.shape_exponent, begin, count, gradient.shape_exponent);

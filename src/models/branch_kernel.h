@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "models/normalized_response.h"
 #include "models/response_gradient.h"
@@ -16,23 +15,14 @@
 /// displacement that is off by ε, which for α < 1/2 bends φ' without bound: they steer a solver.
 namespace mindahl::models {
 
-/// The arithmetic of one instruction set.
-struct BranchKernel;
-
-/// Returns those that the processor has, the widest last.
-std::vector<const BranchKernel*> BranchKernels();
-const BranchKernel& WidestBranchKernel();
-
 /// Computes t of the samples of one run, `limit` being the largest |t|.
 void EvaluateGeneralRun(const ScaledBranch& branch, double shape_exponent, double limit,
-                        std::span<const double> displacement, std::span<double> t,
-                        const BranchKernel& kernel = WidestBranchKernel());
+                        std::span<const double> displacement, std::span<double> t);
 
 /// Computes t and its derivatives; a column of `gradient` that is empty is not wanted.
 void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& branch_gradient,
                              double shape_exponent, double limit,
                              std::span<const double> displacement, std::span<double> t,
-                             const NormalizedGradient& gradient,
-                             const BranchKernel& kernel = WidestBranchKernel());
+                             const NormalizedGradient& gradient);
 
 }  // namespace mindahl::models

@@ -1,5 +1,4 @@
-// The kernels of fits against the branch law in extended precision, for every instruction set that
-// the processor has.
+// The kernels of fits against the branch law in extended precision.
 
 #include "models/branch_kernel.h"
 
@@ -34,15 +33,13 @@ struct Columns {
   std::vector<double> unloaded;
 };
 
-Columns Evaluate(double shape_exponent, const std::vector<double>& displacement,
-                 const BranchKernel& kernel) {
+Columns Evaluate(double shape_exponent, const std::vector<double>& displacement) {
   Columns columns(displacement.size());
   DifferentiateGeneralRun(kBranch, GradientOfBranch(), shape_exponent, 1.0, displacement, columns.t,
                           {.log_rate = columns.rate,
                            .shape_exponent = columns.shape,
                            .unloaded_displacement = columns.unloaded,
-                           .log_spring_travel = {}},
-                          kernel);
+                           .log_spring_travel = {}});
   return columns;
 }
 
@@ -67,58 +64,52 @@ std::vector<double> Displacements(double shape_exponent) {
 }
 
 TEST(BranchKernel, FollowsTheBranchLawToFourEpsilon) {
-  for (const BranchKernel* kernel : BranchKernels()) {
-    Worst force;
-    Worst elastic;
-    Worst shape;
-    Worst slope;
-    for (const double alpha : Exponents()) {
-      const std::vector<double> displacement = Displacements(alpha);
-      const Columns columns = Evaluate(alpha, displacement, *kernel);
-      for (std::size_t i = 0; i < displacement.size(); ++i) {
-        const double y = displacement[i];
-        const auto exact = backbone::Differentiate<Reference>(y, alpha);
-        const auto where = [&] {
-          return "alpha " + std::to_string(alpha) + ", y " + std::to_string(y);
-        };
-        const auto phi = static_cast<double>(exact.force);
-        force.Add(y > 0 ? std::abs(columns.t[i] - phi) / phi : columns.t[i], where);
-        // Next to slip φ' bends without bound for α < 1/2.
-        if (std::abs((1 - alpha) * y - 1) < 0.01) continue;
-        elastic.Add(std::abs(columns.rate[i] - static_cast<double>(exact.elastic)), where);
-        shape.Add(std::abs(columns.shape[i] - static_cast<double>(exact.shape_derivative)), where);
-        slope.Add(std::abs(columns.unloaded[i] + static_cast<double>(exact.slope)), where);
-      }
+  Worst force;
+  Worst elastic;
+  Worst shape;
+  Worst slope;
+  for (const double alpha : Exponents()) {
+    const std::vector<double> displacement = Displacements(alpha);
+    const Columns columns = Evaluate(alpha, displacement);
+    for (std::size_t i = 0; i < displacement.size(); ++i) {
+      const double y = displacement[i];
+      const auto exact = backbone::Differentiate<Reference>(y, alpha);
+      const auto where = [&] {
+        return "alpha " + std::to_string(alpha) + ", y " + std::to_string(y);
+      };
+      const auto phi = static_cast<double>(exact.force);
+      force.Add(y > 0 ? std::abs(columns.t[i] - phi) / phi : columns.t[i], where);
+      // Next to slip φ' bends without bound for α < 1/2.
+      if (std::abs((1 - alpha) * y - 1) < 0.01) continue;
+      elastic.Add(std::abs(columns.rate[i] - static_cast<double>(exact.elastic)), where);
+      shape.Add(std::abs(columns.shape[i] - static_cast<double>(exact.shape_derivative)), where);
+      slope.Add(std::abs(columns.unloaded[i] + static_cast<double>(exact.slope)), where);
     }
-    EXPECT_LT(force.value, 4 * kEpsilon) << force.where;
-    EXPECT_LT(elastic.value, 8 * kEpsilon) << elastic.where;
-    EXPECT_LT(shape.value, 8 * kEpsilon) << shape.where;
-    EXPECT_LT(slope.value, 8 * kEpsilon) << slope.where;
   }
+  EXPECT_LT(force.value, 4 * kEpsilon) << force.where;
+  EXPECT_LT(elastic.value, 8 * kEpsilon) << elastic.where;
+  EXPECT_LT(shape.value, 8 * kEpsilon) << shape.where;
+  EXPECT_LT(slope.value, 8 * kEpsilon) << slope.where;
 }
 
 TEST(BranchKernel, ForceAloneEqualsForceComputedWithGradient) {
-  for (const BranchKernel* kernel : BranchKernels()) {
-    for (const double alpha : Exponents()) {
-      const std::vector<double> displacement = Displacements(alpha);
-      std::vector<double> t(displacement.size());
-      EvaluateGeneralRun(kBranch, alpha, 1.0, displacement, t, *kernel);
-      EXPECT_EQ(t, Evaluate(alpha, displacement, *kernel).t) << alpha;
-    }
+  for (const double alpha : Exponents()) {
+    const std::vector<double> displacement = Displacements(alpha);
+    std::vector<double> t(displacement.size());
+    EvaluateGeneralRun(kBranch, alpha, 1.0, displacement, t);
+    EXPECT_EQ(t, Evaluate(alpha, displacement).t) << alpha;
   }
 }
 
 TEST(BranchKernel, StaysFiniteAtTheEndsOfTheRange) {
   const std::vector<double> ends = {0.0, 5e-324, 1e-308, 1e-200, 1e100, 1e200};
-  for (const BranchKernel* kernel : BranchKernels()) {
-    for (const double alpha : {0.0, 0.5, 1.0, 2.0, 1e10}) {
-      const Columns columns = Evaluate(alpha, ends, *kernel);
-      for (std::size_t i = 0; i < ends.size(); ++i) {
-        EXPECT_TRUE(columns.t[i] >= 0 && columns.t[i] <= 1) << alpha << ", " << ends[i];
-        EXPECT_TRUE(std::isfinite(columns.rate[i])) << alpha << ", " << ends[i];
-        EXPECT_TRUE(std::isfinite(columns.shape[i])) << alpha << ", " << ends[i];
-        EXPECT_TRUE(std::isfinite(columns.unloaded[i])) << alpha << ", " << ends[i];
-      }
+  for (const double alpha : {0.0, 0.5, 1.0, 2.0, 1e10}) {
+    const Columns columns = Evaluate(alpha, ends);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      EXPECT_TRUE(columns.t[i] >= 0 && columns.t[i] <= 1) << alpha << ", " << ends[i];
+      EXPECT_TRUE(std::isfinite(columns.rate[i])) << alpha << ", " << ends[i];
+      EXPECT_TRUE(std::isfinite(columns.shape[i])) << alpha << ", " << ends[i];
+      EXPECT_TRUE(std::isfinite(columns.unloaded[i])) << alpha << ", " << ends[i];
     }
   }
 }
