@@ -2,7 +2,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
-#include "mindahl/models/response.h"
+#include "mindahl/models/contact_state.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 
@@ -94,44 +94,27 @@ TEST(JointFriction, SlipsAtTcOnePlusOrMinusTheAsymmetryUnderTheReferenceLoad) {
   EXPECT_EQ(at(1, 0), 0.0);
 }
 
-TEST(JointState, IsTheSameHoweverItsStepsAreSplit) {
+TEST(JointFriction, IsTheForceOfAStateThatIsMovedStepByStep) {
   const History history = Drive(kDrive.law.slip_force / kDrive.law.tangential_stiffness);
   std::vector<double> force(history.load.size());
   EvaluateJointFriction(kDrive, history.displacement, history.load, force);
-  JointState whole(kDrive);
-  JointState split(kDrive);
+  ContactState split(Model("dahl"), LawOfState(kDrive));
   double before = 0.0;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    const double largest = kError * kDrive.law.slip_force * 65 / 30;  // of the largest load
-    const double peeked = whole.Peek(history.displacement[i], history.load[i]);
-    EXPECT_EQ(whole.Move(history.displacement[i], history.load[i]), peeked);
-    EXPECT_NEAR(peeked, force[i], largest);
     for (int part = 1; part <= 5; ++part) {
-      // The load on the way leaves nothing behind.
-      split.Move(std::lerp(before, history.displacement[i], part / 5.0),
-                 part == 5 ? history.load[i] : -7);
+      split.Move(std::lerp(before, history.displacement[i], part / 5.0));
     }
     before = history.displacement[i];
-    EXPECT_NEAR(split.Peek(before, history.load[i]), force[i], largest);
+    const double load = history.load[i] / kDrive.reference_load;
+    EXPECT_NEAR(kDrive.law.slip_force * JointForce(split.Force(), load, kDrive.asymmetry), force[i],
+                kError * kDrive.law.slip_force * 65 / 30);  // of the largest load
+    // Half a step times the second derivative, and the rounding of two forces over the step.
+    constexpr double kStep = 1e-6;
+    const double slope = (JointForce(split.Force() + kStep, load, kDrive.asymmetry) -
+                          JointForce(split.Force() - kStep, load, kDrive.asymmetry)) /
+                         (2 * kStep);
+    EXPECT_NEAR(JointForceSlope(split.Force(), load, kDrive.asymmetry), slope, 1e-9);
   }
-}
-
-TEST(JointState, HasTheTangentOfItsForce) {
-  JointState joint(kDrive);
-  const double knee = kDrive.law.slip_force / kDrive.law.tangential_stiffness;
-  double at = 0.0;
-  for (const double move : {0.4, 0.3, -0.9, -0.2, 1.3}) {
-    at += move * knee;
-    for (const double load : {17.0, -17.0}) {
-      joint.Move(at, load);
-      const double step = std::copysign(1e-6 * knee, move);
-      const double slope = (joint.Peek(at + step, load) - joint.Peek(at, load)) / step;
-      // Half a step times the second derivative, and the rounding of two forces over the step.
-      EXPECT_NEAR(joint.TangentStiffness(load) / slope, 1.0, 1e-5) << move << ", " << load;
-    }
-  }
-  joint.Reset();
-  EXPECT_EQ(joint.State(), 0.0);
 }
 
 TEST(JointFriction, RefusesWhatIsNoJoint) {
@@ -143,9 +126,6 @@ TEST(JointFriction, RefusesWhatIsNoJoint) {
                InvalidArgument);
   const std::vector<double> infinite = {std::numeric_limits<double>::infinity()};
   EXPECT_THROW(EvaluateJointFriction(kDrive, one, infinite, force), InvalidArgument);
-  JointState joint(kDrive);
-  EXPECT_THROW(joint.Move(1e-6, infinite[0]), InvalidArgument);
-  EXPECT_EQ(joint.State(), 0.0);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/contact_state.h"
 
 namespace mindahl::models {
 
@@ -26,6 +25,11 @@ struct JointFriction {
 /// @throws InvalidArgument naming the parameter, its value and the rule
 void Validate(const JointFriction& joint);
 
+/// Returns the law of z: a ContactState of Dahl's own law with it, moved to δ, has z as its force.
+/// Unit slip force, knee h = Tc/σ.
+/// @throws InvalidArgument as Validate
+BranchLaw LawOfState(const JointFriction& joint);
+
 /// Returns T/Tc of the state z under N/N̄: |n|·z + A·n·z².
 inline double JointForce(double state, double load_ratio, double asymmetry) {
   return state * (std::abs(load_ratio) + asymmetry * load_ratio * state);
@@ -45,39 +49,5 @@ inline double JointForceSlope(double state, double load_ratio, double asymmetry)
 /// Absolute error as of EvaluateForce for Dahl's own law, times (1 + 2|A|)·|N|/N̄.
 void EvaluateJointFriction(const JointFriction& joint, std::span<const double> displacement,
                            std::span<const double> load, std::span<double> force);
-
-/// A joint that is moved step by step, for engines: one branch law a step, no memory but z. Equal
-/// to EvaluateJointFriction to rounding, however its steps are split.
-class JointState {
- public:
-  /// @throws InvalidArgument for an invalid law, or a displacement beyond ±1e307
-  explicit JointState(const JointFriction& joint, double unloaded_displacement = 0.0);
-
-  /// Moves on to δ and returns the force there under N.
-  /// @throws InvalidArgument, the state being left as it was, as ContactState::Move, and for a load
-  ///   that is not finite
-  double Move(double displacement, double load);
-
-  /// Returns or throws what Move(δ, N) would, without moving.
-  [[nodiscard]] double Peek(double displacement, double load) const;
-
-  /// Returns z [-].
-  [[nodiscard]] double State() const { return state_.Force(); }
-
-  /// Returns δ [m].
-  [[nodiscard]] double Displacement() const { return state_.Displacement(); }
-
-  /// Returns ∂T/∂δ [N/m] under N, onward in the direction of the last motion.
-  [[nodiscard]] double TangentStiffness(double load) const;
-
-  /// Returns to z = 0 at the displacement of the start.
-  void Reset() { state_.Reset(); }
-
- private:
-  [[nodiscard]] double ForceOf(double state, double load) const;
-
-  JointFriction joint_;
-  ContactState state_;  // of unit slip force: its force is z
-};
 
 }  // namespace mindahl::models
