@@ -294,20 +294,19 @@ void Summarise(LoopFacts& facts) {
 
 /// Measures forces with the displacement's sign.
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
-  const CycleRules rules;
   LoopFacts facts;
   const std::vector<std::size_t> turns = TurningPoints(record.displacement, reversals);
   const Points points = turns;
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, points.subspan(k, 3)));
     const double way = record.displacement[points[k + 2]] - record.displacement[points[k]];
-    cycle.returns = std::abs(way) <= rules.returns * 2 * cycle.amplitude;
+    cycle.returns = std::abs(way) <= CycleRules::returns * 2 * cycle.amplitude;
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
   const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
   for (CycleFacts& cycle : facts.cycles) {
-    cycle.steady = cycle.amplitude >= rules.steady * widest;
+    cycle.steady = cycle.amplitude >= CycleRules::steady * widest;
   }
   Summarise(facts);
   const std::vector<Points> steady = SteadyCycles(facts, points);
@@ -326,12 +325,12 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 }  // namespace
 
 bool Slides(const LoopFacts& facts) {
-  const SlidingRules rules;
-  const bool has_gap = facts.half_gap && *facts.half_gap > rules.gap * facts.peak_force;
+  const bool has_gap = facts.half_gap && *facts.half_gap > SlidingRules::gap * facts.peak_force;
   if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
   const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
-  return facts.energy_ratio >= rules.energy_ratio || std::abs(even - 1) < rules.uneven;
+  return facts.energy_ratio >= SlidingRules::energy_ratio ||
+         std::abs(even - 1) < SlidingRules::uneven;
 }
 
 bool RanAway(const LoopFacts& facts, double slip_force) {
@@ -344,7 +343,7 @@ bool RanAway(const LoopFacts& facts, double slip_force) {
 bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
-  return facts.energy_per_cycle >= SlidingRules().full * rectangle;
+  return facts.energy_per_cycle >= SlidingRules::full * rectangle;
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,

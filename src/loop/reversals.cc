@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ranges>
 
 #include "loop/rules.h"
 #include "loop/statistics.h"
@@ -75,10 +76,23 @@ std::size_t CountReversals(std::span<const Excursion> excursions, double gate) {
 
 namespace {
 
-using Excursions = std::span<const Excursion>;
+/// Classifies an excursion by itself.
+enum class Look : unsigned char {
+  kNoise,
+  kUnclear,  // noise that takes its time, or a record cut just after it turned
+  kOdd,      // neither: brief and smooth
+  kDrive,
+};
+
+/// An excursion and what it looks like.
+struct JudgedExcursion : Excursion {
+  bool is_brief = false;
+  Look look = Look::kDrive;
+};
+using Excursions = std::span<const JudgedExcursion>;
 
 /// Returns the median duration [samples] of the strokes at least half as wide as the widest.
-double MainDuration(Excursions excursions) {
+double MainDuration(std::span<const Excursion> excursions) {
   std::vector<std::size_t> durations;
   durations.reserve(excursions.size());
   for (const Excursion& excursion : excursions) {
@@ -88,86 +102,57 @@ double MainDuration(Excursions excursions) {
 }
 
 /// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
-double ReachOfNoise(std::span<const double> displacement, double full_range,
-                    const ReversalRules& rules) {
+double ReachOfNoise(std::span<const double> displacement, double full_range) {
   const double noise = EstimateDisplacementNoise(displacement);
-  if (noise > rules.rough * full_range) return 0.0;
+  if (noise > ReversalRules::rough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
-  return rules.beyond * 2 * noise *
+  return ReversalRules::beyond * 2 * noise *
          std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
 }
 
 /// True if one step makes much of the excursion; false for long ones, which no jump makes.
-bool Jumps(std::span<const double> displacement, const Excursion& excursion, double share) {
+bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
-  if (excursion.duration() > kLongest) return false;
-  return LargestStep(displacement, excursion) >= share * excursion.range;
+  return excursion.duration() <= kLongest &&
+         LargestStep(displacement, excursion) >= ReversalRules::jump * excursion.range;
 }
 
-/// Classifies an excursion by itself.
-enum class Look : unsigned char {
-  kNoise,
-  kUnclear,  // noise that takes its time, or a record cut just after it turned
-  kOdd,      // neither: brief and smooth
-  kDrive,
-};
-
-/// Looks at excursions one by one.
-class Judge {
- public:
-  Judge(std::span<const double> displacement, Excursions excursions, const ReversalRules& rules)
-      : displacement_(displacement),
-        rules_(rules),
-        main_duration_(MainDuration(excursions)),
-        main_range_(excursions.back().range / 2) {
-    // Without a brief one there is no noise to be estimated.
-    if (std::ranges::any_of(excursions, [&](const Excursion& one) { return IsBrief(one); })) {
-      reach_ = ReachOfNoise(displacement, excursions.back().range, rules);
-      any_brief_ = true;
+/// Looks at excursions one by one; empty where none is brief, so that there is no noise.
+std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
+                                   std::span<const Excursion> excursions) {
+  const double main_range = excursions.back().range / 2;
+  const double main_duration = MainDuration(excursions);
+  const auto lasts_at_most = [&](const Excursion& excursion, double share) {
+    return excursion.range < main_range &&
+           static_cast<double>(excursion.duration()) <= share * main_duration;
+  };
+  std::vector<JudgedExcursion> judged;
+  judged.reserve(excursions.size());
+  for (const Excursion& excursion : excursions) {
+    judged.push_back({excursion, lasts_at_most(excursion, ReversalRules::brief)});
+  }
+  if (std::ranges::none_of(judged, &JudgedExcursion::is_brief)) return {};
+  const double reach = ReachOfNoise(displacement, excursions.back().range);
+  for (JudgedExcursion& one : judged) {
+    if (one.range >= main_range) continue;
+    const bool is_brief_inside = one.is_brief && one.reversals != 1;
+    if (one.range <= reach) {
+      one.look = is_brief_inside ? Look::kNoise : Look::kUnclear;
+    } else if (lasts_at_most(one, ReversalRules::sudden) && Jumps(displacement, one)) {
+      one.look = one.reversals == 1 ? Look::kUnclear : Look::kNoise;
+    } else if (is_brief_inside) {
+      one.look = Look::kOdd;
     }
   }
-
-  [[nodiscard]] bool any_brief() const { return any_brief_; }
-  [[nodiscard]] bool IsBrief(const Excursion& excursion) const {
-    return LastsAtMost(excursion, rules_.brief);
-  }
-
-  [[nodiscard]] Look LookAt(const Excursion& excursion) const {
-    if (excursion.range >= main_range_) return Look::kDrive;
-    const bool at_an_end = excursion.reversals == 1;
-    if (excursion.range <= reach_) {
-      return IsBrief(excursion) && !at_an_end ? Look::kNoise : Look::kUnclear;
-    }
-    if (LastsAtMost(excursion, rules_.sudden) && Jumps(displacement_, excursion, rules_.jump)) {
-      return at_an_end ? Look::kUnclear : Look::kNoise;
-    }
-    return IsBrief(excursion) && !at_an_end ? Look::kOdd : Look::kDrive;
-  }
-
- private:
-  [[nodiscard]] bool LastsAtMost(const Excursion& excursion, double share) const {
-    return excursion.range < main_range_ &&
-           static_cast<double>(excursion.duration()) <= share * main_duration_;
-  }
-
-  std::span<const double> displacement_;
-  const ReversalRules& rules_;
-  double main_duration_;  // [samples]
-  double main_range_;     // [m]
-  double reach_ = 0.0;    // [m]
-  bool any_brief_ = false;
-};
-
-/// Marks as unclear what would be a turn just before an end of the record, were there not many
-/// disturbances that are as brief and wider: the record may as well end within one of those.
-void DoubtEnds(Excursions excursions, const Judge& judge, const ReversalRules& rules,
-               std::span<Look> looks) {
+  // What would be a turn just before an end of the record is unclear where there are many
+  // disturbances that are as brief and wider: the record may as well end within one of those.
   std::size_t wider = 0;
-  for (std::size_t i = excursions.size(); i-- > 0;) {
-    if (looks[i] == Look::kOdd) ++wider;
-    const bool ends = excursions[i].reversals == 1 && judge.IsBrief(excursions[i]);
-    if (ends && looks[i] == Look::kDrive && wider >= rules.many) looks[i] = Look::kUnclear;
+  for (JudgedExcursion& one : std::views::reverse(judged)) {
+    if (one.look == Look::kOdd) ++wider;
+    const bool ends = one.reversals == 1 && one.is_brief && one.look == Look::kDrive;
+    if (ends && wider >= ReversalRules::many) one.look = Look::kUnclear;
   }
+  return judged;
 }
 
 /// A range of gates [m] under which the count is the same.
@@ -182,55 +167,48 @@ struct Plateau {
   [[nodiscard]] double gate() const { return std::min(2 * lower, std::sqrt(lower * upper)); }
 };
 
-/// Calls visit(plateau) for each plateau between two ranges, from the lowest, up to the first
-/// stroke of the drive.
-template <typename Visit>
-void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit visit) {
-  Plateau plateau{.exceptions = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise))};
-  for (std::size_t i = 0; i + 1 < excursions.size() && looks[i] != Look::kDrive; ++i) {
-    plateau.lower = excursions[i].range;
-    plateau.upper = excursions[i + 1].range;
-    plateau.below = i + 1;
-    if (looks[i] == Look::kNoise) --plateau.exceptions;
-    if (looks[i] == Look::kOdd) ++plateau.exceptions;
-    if (plateau.upper > plateau.lower) visit(plateau);
+/// Returns the widest of the plateaus below the drive's strokes that are nearly as good as the
+/// best.
+Plateau WidestPlateau(Excursions excursions) {
+  const auto noise = static_cast<std::size_t>(
+      std::ranges::count(excursions, Look::kNoise, &JudgedExcursion::look));
+  if (noise == 0) return {};
+  std::vector<Plateau> plateaus;
+  std::size_t exceptions = noise;  // under no gate
+  std::size_t fewest = noise;
+  for (std::size_t i = 0; i + 1 < excursions.size() && excursions[i].look != Look::kDrive; ++i) {
+    if (excursions[i].look == Look::kNoise) --exceptions;
+    if (excursions[i].look == Look::kOdd) ++exceptions;
+    if (!(excursions[i + 1].range > excursions[i].range)) continue;
+    plateaus.push_back({excursions[i].range, excursions[i + 1].range, i + 1, exceptions});
+    fewest = std::min(fewest, exceptions);
   }
-}
-
-/// Returns the widest of the plateaus nearly as good as the best.
-Plateau WidestPlateau(Excursions excursions, std::span<const Look> looks,
-                      const ReversalRules& rules) {
-  const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));
-  Plateau widest;
-  if (noise == 0) return widest;
-  std::size_t fewest = noise;  // under no gate
-  ForEachPlateau(excursions, looks,
-                 [&](const Plateau& plateau) { fewest = std::min(fewest, plateau.exceptions); });
   const double allowed =
-      static_cast<double>(fewest) + rules.exceptions * static_cast<double>(noise);
-  ForEachPlateau(excursions, looks, [&](const Plateau& plateau) {
+      static_cast<double>(fewest) + ReversalRules::exceptions * static_cast<double>(noise);
+  Plateau widest;
+  for (const Plateau& plateau : plateaus) {
     const bool is_good = static_cast<double>(plateau.exceptions) <= allowed;
     if (is_good && plateau.width() > widest.width()) widest = plateau;
-  });
+  }
   return widest;
 }
 
 /// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
 /// though none of them looks like it: vibration, or noise that a filter has made smooth.
-Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
-                                const ReversalRules& rules) {
+Plateau AboveSmoothDisturbances(Excursions excursions) {
   Plateau widest;
   double least = 0.0;  // of the brief excursions, since the last gap
   std::size_t count = 0;
-  for (std::size_t i = 0; i + 1 < excursions.size() && judge.IsBrief(excursions[i]); ++i) {
+  for (std::size_t i = 0; i + 1 < excursions.size() && excursions[i].is_brief; ++i) {
     const double range = excursions[i].range;
-    if (i == 0 || range > rules.clear * excursions[i - 1].range) {
+    if (i == 0 || range > ReversalRules::clear * excursions[i - 1].range) {
       least = range;
       count = 0;
     }
     ++count;
     const double upper = excursions[i + 1].range;
-    if (count >= rules.many && range >= rules.spread * least && upper >= rules.far * range) {
+    if (count >= ReversalRules::many && range >= ReversalRules::spread * least &&
+        upper >= ReversalRules::far * range) {
       widest = {.lower = range, .upper = upper, .below = i + 1};
     }
   }
@@ -238,7 +216,8 @@ Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
 }
 
 /// @param other  another gate that competes
-ReversalGate Under(Excursions excursions, double gate, std::optional<double> other = {}) {
+ReversalGate Under(std::span<const Excursion> excursions, double gate,
+                   std::optional<double> other = {}) {
   const std::size_t count = CountReversals(excursions, gate);
   return {.gate = gate,
           .count = count,
@@ -248,21 +227,16 @@ ReversalGate Under(Excursions excursions, double gate, std::optional<double> oth
 }
 
 /// Chooses the gate by what the excursions look like, one by one.
-ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excursions,
-                           const ReversalRules& rules) {
-  const Judge judge(displacement, excursions, rules);
-  if (!judge.any_brief()) return Under(excursions, 0.0);
-  std::vector<Look> looks;
-  looks.reserve(excursions.size());
-  for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
-  DoubtEnds(excursions, judge, rules, looks);
-  const Plateau chosen = WidestPlateau(excursions, looks, rules);
-  const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
+ReversalGate ChooseByLooks(std::span<const double> displacement,
+                           std::span<const Excursion> excursions) {
+  const std::vector<JudgedExcursion> judged = Judge(displacement, excursions);
+  const Plateau chosen = WidestPlateau(judged);
+  const Plateau smooth = AboveSmoothDisturbances(judged);
   if (smooth.below > chosen.below) return Under(excursions, smooth.gate(), chosen.gate());
   if (chosen.below == 0) return Under(excursions, 0.0);
-  if (chosen.upper >= rules.clear * chosen.lower) return Under(excursions, chosen.gate());
+  if (chosen.upper >= ReversalRules::clear * chosen.lower) return Under(excursions, chosen.gate());
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
-  return static_cast<double>(chosen.below) < rules.outnumber * kept
+  return static_cast<double>(chosen.below) < ReversalRules::outnumber * kept
              ? Under(excursions, 0.0, chosen.gate())
              : Under(excursions, chosen.gate(), 0.0);
 }
@@ -270,12 +244,11 @@ ReversalGate ChooseByLooks(std::span<const double> displacement, Excursions excu
 }  // namespace
 
 ReversalGate ChooseReversalGate(std::span<const double> displacement) {
-  const ReversalRules rules;
   const std::vector<Excursion> excursions = FindExcursions(displacement);
   if (excursions.size() < 2) return Under(excursions, 0.0);
-  const ReversalGate chosen = ChooseByLooks(displacement, excursions, rules);
+  const ReversalGate chosen = ChooseByLooks(displacement, excursions);
   // An encoder that counts to and fro is at rest, however long that takes it.
-  const double flicker = rules.counts * EncoderStep(displacement);
+  const double flicker = ReversalRules::counts * EncoderStep(displacement);
   const bool flickers = excursions.front().range <= flicker;
   const bool is_stroke = flicker >= excursions.back().range / 2;
   return flickers && !is_stroke && flicker > chosen.gate ? Under(excursions, flicker) : chosen;

@@ -39,9 +39,8 @@ struct LoadRun {
 
 class LoadSteps {
  public:
-  LoadSteps(const RecordView& record, const LoadStepRules& rules)
-      : rules_(rules),
-        noise_(NoiseByDifferences(record.normal_load, 1)),
+  explicit LoadSteps(const RecordView& record)
+      : noise_(NoiseByDifferences(record.normal_load, 1)),
         load_(WithoutSpikes(record.normal_load)) {
     const ReversalGate gate = ChooseReversalGate(record.displacement);
     reversals_ = FindReversals(record.displacement, gate.gate);
@@ -64,7 +63,8 @@ class LoadSteps {
     const ConstantLoad piece = PieceOf(*longest);
     const auto samples = static_cast<double>(piece.last - piece.first);
     const bool is_whole = piece.first == 0 && piece.last == load_.size();
-    if (is_whole || samples < rules_.share * static_cast<double>(load_.size())) return std::nullopt;
+    if (is_whole || samples < LoadStepRules::share * static_cast<double>(load_.size()))
+      return std::nullopt;
     return piece;
   }
 
@@ -74,7 +74,7 @@ class LoadSteps {
     return {.first = first, .last = run.last, .normal_load = run.load};
   }
   [[nodiscard]] double Tolerance(double load) const {
-    return std::max(rules_.constant * load, rules_.noise * noise_);
+    return std::max(LoadStepRules::constant * load, LoadStepRules::noise * noise_);
   }
   [[nodiscard]] std::vector<std::size_t>::const_iterator NextTurn(std::size_t sample) const {
     return std::ranges::lower_bound(reversals_, sample);
@@ -107,7 +107,7 @@ class LoadSteps {
     }
     const auto [low, high] =
         std::ranges::minmax(std::span(load_).subspan(run.first, run.last - run.first));
-    run.spread = std::max(high - low - 2 * rules_.noise * noise_, 0.0);
+    run.spread = std::max(high - low - 2 * LoadStepRules::noise * noise_, 0.0);
   }
 
   [[nodiscard]] std::vector<LoadRun> ConstantRuns() const {
@@ -117,7 +117,7 @@ class LoadSteps {
       i = run.last;
       Settle(run);
       const auto turns = static_cast<std::size_t>(NextTurn(run.last) - NextTurn(run.first));
-      if (run.load > 0 && turns >= rules_.turns) runs.push_back(run);
+      if (run.load > 0 && turns >= LoadStepRules::turns) runs.push_back(run);
     }
     return runs;
   }
@@ -128,13 +128,12 @@ class LoadSteps {
       samples += runs[r].last - runs[r].first;
       const double step = std::abs(runs[r].load - runs[r - 1].load);
       const double smaller = std::min(runs[r].load, runs[r - 1].load);
-      if (!(step > std::max(rules_.step * smaller, 4 * Tolerance(smaller)))) return false;
-      if (std::max(runs[r].spread, runs[r - 1].spread) > rules_.flat * step) return false;
+      if (!(step > std::max(LoadStepRules::step * smaller, 4 * Tolerance(smaller)))) return false;
+      if (std::max(runs[r].spread, runs[r - 1].spread) > LoadStepRules::flat * step) return false;
     }
-    return static_cast<double>(samples) >= rules_.share * static_cast<double>(load_.size());
+    return static_cast<double>(samples) >= LoadStepRules::share * static_cast<double>(load_.size());
   }
 
-  LoadStepRules rules_;
   double noise_;
   std::vector<double> load_;
   std::vector<std::size_t> reversals_;
@@ -144,12 +143,12 @@ class LoadSteps {
 
 std::optional<ConstantLoad> FindSettledLoad(const RecordView& record) {
   if (record.normal_load.empty()) return std::nullopt;
-  return LoadSteps(record, {}).FindSettled();
+  return LoadSteps(record).FindSettled();
 }
 
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record) {
   if (record.normal_load.empty()) return {};
-  return LoadSteps(record, {}).Find();
+  return LoadSteps(record).Find();
 }
 
 }  // namespace mindahl::loop

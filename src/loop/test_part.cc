@@ -30,8 +30,7 @@ struct RepeatedStrokes {
 /// Describes excursions of nearly one range; nothing where they are too few, jump, or leave most of
 /// their time to something else.
 std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
-                                         std::span<const Excursion> excursions,
-                                         const TestPartRules& rules) {
+                                         std::span<const Excursion> excursions) {
   RepeatedStrokes strokes{.first = displacement.size(),
                           .range = excursions.back().range,
                           .lowest = displacement[excursions.back().first],
@@ -39,7 +38,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
   std::size_t count = 0;
   double lasting = 0.0;  // [samples]
   for (const Excursion& excursion : excursions) {
-    if (LargestStep(displacement, excursion) >= rules.jump * excursion.range) continue;
+    if (LargestStep(displacement, excursion) >= TestPartRules::jump * excursion.range) continue;
     count += excursion.reversals;
     lasting += static_cast<double>(excursion.duration() * excursion.reversals);
     strokes.first = std::min(strokes.first, excursion.first);
@@ -49,25 +48,24 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
     strokes.lowest = std::min(strokes.lowest, low);
     strokes.highest = std::max(strokes.highest, high);
   }
-  if (count < rules.fewest) return std::nullopt;
+  if (count < TestPartRules::fewest) return std::nullopt;
   const auto span = static_cast<double>(strokes.last - strokes.first);
-  if (lasting < rules.filled * span) return std::nullopt;
+  if (lasting < TestPartRules::filled * span) return std::nullopt;
   return strokes;
 }
 
 /// Finds the widest strokes that others repeat.
-std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement,
-                                                   const TestPartRules& rules) {
+std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement) {
   const std::vector<Excursion> excursions = FindExcursions(displacement);
   std::size_t last = excursions.size();
-  for (std::size_t tried = 0; last > 0 && tried < rules.classes; ++tried) {
+  for (std::size_t tried = 0; last > 0 && tried < TestPartRules::classes; ++tried) {
     const double widest = excursions[last - 1].range;
     if (!(widest > 0)) return std::nullopt;
     const auto first =
-        std::ranges::lower_bound(excursions, rules.alike * widest, {}, &Excursion::range);
+        std::ranges::lower_bound(excursions, TestPartRules::alike * widest, {}, &Excursion::range);
     const auto begin = static_cast<std::size_t>(first - excursions.begin());
     const std::span<const Excursion> alike = std::span(excursions).subspan(begin, last - begin);
-    if (auto strokes = StrokesOf(displacement, alike, rules)) return strokes;
+    if (auto strokes = StrokesOf(displacement, alike)) return strokes;
     --last;
   }
   return std::nullopt;
@@ -106,9 +104,9 @@ Part Outside(std::span<const double> displacement, const Points& points,
   for (auto next = std::next(point); next != points.end(); ++point, ++next) {
     if (std::abs(displacement[*next] - displacement[*point]) > strokes.range / 2) ++as_wide;
   }
-  const TestPartRules rules;
-  const auto small_part = static_cast<std::size_t>(rules.small_part * static_cast<double>(count));
-  outside.is_travel = as_wide < std::max(rules.fewest, small_part);
+  const auto small_part =
+      static_cast<std::size_t>(TestPartRules::small_part * static_cast<double>(count));
+  outside.is_travel = as_wide < std::max(TestPartRules::fewest, small_part);
   return outside;
 }
 
@@ -140,7 +138,7 @@ class TestSearch {
     LeaveOutLoadRamps();
     LeaveOutTravel();
     LeaveOutRests();
-    test_.left_out.insert(test_.left_out.end(), at_end_.rbegin(), at_end_.rend());
+    std::ranges::sort(test_.left_out, {}, &LeftOut::first);
     return std::move(test_);
   }
 
@@ -158,7 +156,7 @@ class TestSearch {
 
   void CutAfter(LeftOutReason reason, std::size_t last) {
     if (last >= test_.last) return;
-    at_end_.push_back({.reason = reason, .first = last, .last = test_.last});
+    test_.left_out.push_back({.reason = reason, .first = last, .last = test_.last});
     test_.last = last;
   }
 
@@ -172,9 +170,9 @@ class TestSearch {
   void LeaveOutTravel() {
     const std::span<const double> displacement = Displacement();
     const std::size_t from = test_.first;
-    const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement, rules_);
+    const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement);
     if (!strokes) return;
-    const double travel = rules_.travel * strokes->range;
+    const double travel = TestPartRules::travel * strokes->range;
     std::vector<std::size_t> points = FindReversals(displacement, travel);
     points.insert(points.begin(), 0);
     points.push_back(displacement.size() - 1);
@@ -196,9 +194,9 @@ class TestSearch {
     const double usual = UsualStroke(displacement, gate);
     if (!(usual > 0)) return;
     const auto [least, greatest] = std::ranges::minmax(displacement);
-    const double reach = std::max(rules_.rest * (greatest / 2 - least / 2), gate);
+    const double reach = std::max(TestPartRules::rest * (greatest / 2 - least / 2), gate);
     const auto is_rest = [&](std::size_t samples) {
-      return samples > 1 && static_cast<double>(samples) > rules_.longest_dwell * usual;
+      return samples > 1 && static_cast<double>(samples) > TestPartRules::longest_dwell * usual;
     };
     // One sample stays, from which the motion begins and at which it ends.
     const std::size_t before = Resting(displacement, reach);
@@ -208,9 +206,7 @@ class TestSearch {
   }
 
   const RecordView& record_;
-  TestPartRules rules_;
   TestPart test_;
-  std::vector<LeftOut> at_end_;  // from the end inwards
 };
 
 }  // namespace
