@@ -14,7 +14,6 @@ namespace mindahl::loop {
 namespace {
 
 using Column = std::span<const double>;
-using Points = std::span<const std::size_t>;
 
 /// Means of y over ranges of x that follow on each other, `edges` from the lowest: of a line from
 /// sample to sample ∫ y dx by trapezia, to and fro, over each range. Empty where the line does not
@@ -55,11 +54,6 @@ std::optional<std::array<double, kEdges - 1>> MeansBetween(
   return integrals;
 }
 
-std::optional<double> MeanOver(Column x, Column y, double lower, double upper) {
-  const auto mean = MeansBetween<2>(x, y, {lower, upper});
-  return mean ? std::optional(mean->front()) : std::nullopt;
-}
-
 /// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest.
 template <std::size_t kParts>
 std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double centre,
@@ -71,22 +65,24 @@ std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double c
   return MeansBetween(stroke.displacement, stroke.force, edges);
 }
 
-/// The two strokes of a cycle, with the middle of what both pass.
+/// The two strokes of a cycle in order of time, with the middle of what both pass.
 struct Cycle {
-  Stroke rising;
-  Stroke falling;
+  Stroke first;
+  Stroke second;
   double centre = 0.0;  // [m]
   double reach = 0.0;   // [m] to either side
+
+  [[nodiscard]] const Stroke& rising() const { return first.rises() ? first : second; }
+  [[nodiscard]] const Stroke& falling() const { return first.rises() ? second : first; }
 };
 
-Cycle CycleOf(const RecordView& record, Points points) {
-  const Stroke one = StrokeOf(record, points[0], points[1]);
-  const Stroke other = StrokeOf(record, points[1], points[2]);
-  Cycle cycle{one.rises() ? one : other, one.rises() ? other : one};
-  const double lower =
-      std::max(cycle.rising.displacement.front(), cycle.falling.displacement.back());
-  const double upper =
-      std::min(cycle.rising.displacement.back(), cycle.falling.displacement.front());
+/// @param points  its three turning points
+Cycle CycleOf(const RecordView& record, std::span<const std::size_t> points) {
+  Cycle cycle{StrokeOf(record, points[0], points[1]), StrokeOf(record, points[1], points[2])};
+  const Column up = cycle.rising().displacement;
+  const Column down = cycle.falling().displacement;
+  const double lower = std::max(up.front(), down.back());
+  const double upper = std::min(up.back(), down.front());
   cycle.centre = lower + (upper - lower) / 2;
   cycle.reach = (upper - lower) / 2;
   return cycle;
@@ -95,8 +91,8 @@ Cycle CycleOf(const RecordView& record, Points points) {
 void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   constexpr std::size_t kParts = 5;
   constexpr double kMiddle = 1.0 / 3;  // of the stroke
-  auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kMiddle * cycle.reach);
-  auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kMiddle * cycle.reach);
+  auto up = PartsOf<kParts>(cycle.rising(), cycle.centre, kMiddle * cycle.reach);
+  auto down = PartsOf<kParts>(cycle.falling(), cycle.centre, kMiddle * cycle.reach);
   if (!up || !down) return;
   std::array<double, kParts> gaps{};
   std::ranges::transform(*up, *down, gaps.begin(), std::minus<>());
@@ -106,54 +102,46 @@ void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
 
 void MeasureWidth(const Cycle& cycle, CycleFacts& facts) {
   constexpr double kAbout = 0.1;  // of T*
-  const double lower = facts.centre_force - kAbout * facts.peak_force;
-  const double upper = facts.centre_force + kAbout * facts.peak_force;
-  const auto sliding_back = MeanOver(cycle.falling.force, cycle.falling.displacement, lower, upper);
-  const auto sliding_on = MeanOver(cycle.rising.force, cycle.rising.displacement, lower, upper);
-  if (sliding_back && sliding_on) facts.sliding_amplitude = (*sliding_back - *sliding_on) / 2;
+  const std::array edges = {*facts.centre_force - kAbout * facts.peak_force,
+                            *facts.centre_force + kAbout * facts.peak_force};
+  const auto sliding_back =
+      MeansBetween(cycle.falling().force, cycle.falling().displacement, edges);
+  const auto sliding_on = MeansBetween(cycle.rising().force, cycle.rising().displacement, edges);
+  if (sliding_back && sliding_on) {
+    facts.sliding_amplitude = (sliding_back->front() - sliding_on->front()) / 2;
+  }
 }
 
-double PeakForce(const RecordView& record, Points points, const Cycle& cycle) {
-  const Column force = record.force;
-  const auto [up_least, up_greatest] = MovingMeanRange(cycle.rising.force);
-  const auto [down_least, down_greatest] = MovingMeanRange(cycle.falling.force);
-  const double ends = (force[points[0]] + force[points[2]]) / 2;
-  const double turn = force[points[1]];
-  const double greatest = std::max({up_greatest, down_greatest, ends, turn});
-  const double least = std::min({up_least, down_least, ends, turn});
+double EnergyRatio(double energy, double amplitude, double peak_force) {
+  const double rectangle = 4 * amplitude * peak_force;
+  return rectangle > 0 ? energy / rectangle : 0.0;
+}
+
+double PeakForce(const Cycle& cycle) {
+  const Column one = cycle.first.force;
+  const Column other = cycle.second.force;
+  const auto [one_least, one_greatest] = MovingMeanRange(one);
+  const auto [other_least, other_greatest] = MovingMeanRange(other);
+  const double ends = (one.front() + other.back()) / 2;
+  const double turn = one.back();
+  const double greatest = std::max({one_greatest, other_greatest, ends, turn});
+  const double least = std::min({one_least, other_least, ends, turn});
   return (greatest - least) / 2;
 }
 
-CycleFacts MeasureCycle(const RecordView& record, Points points) {
-  const Cycle cycle = CycleOf(record, points);
+CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> points,
+                        const Cycle& cycle) {
+  const double way = cycle.second.displacement.back() - cycle.first.displacement.front();
   CycleFacts facts;
   facts.start = points[0];
-  facts.amplitude = CycleAmplitude(record.displacement, points);
-  facts.peak_force = PeakForce(record, points, cycle);
+  facts.amplitude = (cycle.first.travel() + cycle.second.travel()) / 4;
+  facts.peak_force = PeakForce(cycle);
   facts.energy = CycleEnergy(record, points[0], points[2]);
-  const double rectangle = 4 * facts.amplitude * facts.peak_force;
-  facts.energy_ratio = rectangle > 0 ? facts.energy / rectangle : 0.0;
+  facts.energy_ratio = EnergyRatio(facts.energy, facts.amplitude, facts.peak_force);
+  facts.returns = std::abs(way) <= CycleRules::returns * 2 * facts.amplitude;
   MeasureGap(cycle, facts);
   if (facts.half_gap && facts.peak_force > 0) MeasureWidth(cycle, facts);
   return facts;
-}
-
-/// Returns the turning points of the cycles of the widest amplitude, three each.
-std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
-  std::vector<Points> steady;
-  for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
-    if (facts.cycles[k].steady) steady.push_back(points.subspan(2 * k, 3));
-  }
-  return steady;
-}
-
-std::vector<Stroke> StrokesOf(const RecordView& record, std::span<const Points> cycles) {
-  std::vector<Stroke> strokes;
-  for (const Points& cycle : cycles) {
-    strokes.push_back(StrokeOf(record, cycle[0], cycle[1]));
-    strokes.push_back(StrokeOf(record, cycle[1], cycle[2]));
-  }
-  return strokes;
 }
 
 /// Forces [N] from the centre of the loop, in half gaps, that strokes are looked at.
@@ -218,19 +206,22 @@ double FlatOf(std::span<const Passage> passages) {
   return scatters ? 0.0 : flat;
 }
 
-std::optional<double> FindBacklash(std::span<const Stroke> strokes, double centre, double half_gap,
+std::optional<double> FindBacklash(std::span<const Cycle> cycles, double centre, double half_gap,
                                    double amplitude) {
   // Narrower ones are within what a few samples, or the digits of the force, make of a steep
   // branch.
   constexpr double kLeastGap = 0.03;
-  std::array<std::vector<Passage>, 2> passages;
-  for (const Stroke& stroke : strokes) {
-    const auto passage = PassageOf(stroke, centre, half_gap);
-    if (!passage) return std::nullopt;
-    passages[stroke.rises() ? 0 : 1].push_back(*passage);
+  std::vector<Passage> up;
+  std::vector<Passage> down;
+  for (const Cycle& cycle : cycles) {
+    const auto rising = PassageOf(cycle.rising(), centre, half_gap);
+    const auto falling = PassageOf(cycle.falling(), centre, half_gap);
+    if (!rising || !falling) return std::nullopt;
+    up.push_back(*rising);
+    down.push_back(*falling);
   }
-  const double rising = FlatOf(passages[0]);
-  const double falling = FlatOf(passages[1]);
+  const double rising = FlatOf(up);
+  const double falling = FlatOf(down);
   const double width = rising / 2 + falling / 2;
   if (rising == 0 || falling == 0 || width < kLeastGap * amplitude) return std::nullopt;
   return width;
@@ -243,16 +234,14 @@ double StandardDeviation(Column values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-std::optional<double> Asymmetry(const RecordView& record, std::span<const Points> cycles,
-                                double peak_force) {
+std::optional<double> Asymmetry(std::span<const Cycle> cycles, double peak_force) {
   constexpr std::size_t kParts = 10;
   constexpr double kReach = 0.95;  // of what both strokes pass: their corners differ in a sample
   std::array<double, kParts> sums{};
   std::size_t count = 0;
-  for (const Points& points : cycles) {
-    const Cycle cycle = CycleOf(record, points);
-    const auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kReach * cycle.reach);
-    const auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kReach * cycle.reach);
+  for (const Cycle& cycle : cycles) {
+    const auto up = PartsOf<kParts>(cycle.rising(), cycle.centre, kReach * cycle.reach);
+    const auto down = PartsOf<kParts>(cycle.falling(), cycle.centre, kReach * cycle.reach);
     if (!up || !down) continue;
     for (std::size_t j = 0; j < kParts; ++j) sums[j] += (*up)[j] + (*down)[kParts - 1 - j];
     ++count;
@@ -262,62 +251,51 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Returns a fact of the steady cycles that have it.
+/// Returns a fact of the cycles that have it.
 template <typename Fact>
-std::vector<double> SteadyValues(const LoopFacts& facts, Fact fact) {
+std::vector<double> ValuesOf(std::span<const CycleFacts> cycles, Fact CycleFacts::*fact) {
   std::vector<double> values;
-  for (const CycleFacts& cycle : facts.cycles) {
-    const std::optional<double> value = fact(cycle);
-    if (cycle.steady && value) values.push_back(*value);
+  for (const CycleFacts& cycle : cycles) {
+    if (const std::optional<double> value = cycle.*fact) values.push_back(*value);
   }
   return values;
 }
 
-/// Computes the means of the cycles' own facts.
-void Summarise(LoopFacts& facts) {
-  const auto mean_of = [&](double CycleFacts::*member) {
-    return Mean(
-        SteadyValues(facts, [&](const CycleFacts& cycle) { return std::optional(cycle.*member); }));
-  };
-  facts.amplitude = mean_of(&CycleFacts::amplitude);
-  facts.peak_force = mean_of(&CycleFacts::peak_force);
-  facts.energy_per_cycle = mean_of(&CycleFacts::energy);
-  const double rectangle = 4 * facts.amplitude * facts.peak_force;
-  facts.energy_ratio = rectangle > 0 ? facts.energy_per_cycle / rectangle : 0.0;
-  const auto sliding =
-      SteadyValues(facts, [](const CycleFacts& cycle) { return cycle.sliding_amplitude; });
-  if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
-  const auto gaps = SteadyValues(facts, [](const CycleFacts& cycle) { return cycle.half_gap; });
-  if (!gaps.empty()) facts.half_gap = Mean(gaps);
-  if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
-}
-
 /// Measures forces with the displacement's sign.
-LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
+LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> reversals) {
   LoopFacts facts;
-  const std::vector<std::size_t> turns = TurningPoints(record.displacement, reversals);
-  const Points points = turns;
+  std::vector<Cycle> cycles;
+  const std::vector<std::size_t> points = TurningPoints(record.displacement, reversals);
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
-    CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, points.subspan(k, 3)));
-    const double way = record.displacement[points[k + 2]] - record.displacement[points[k]];
-    cycle.returns = std::abs(way) <= CycleRules::returns * 2 * cycle.amplitude;
+    const auto of_cycle = std::span(points).subspan(k, 3);
+    cycles.push_back(CycleOf(record, of_cycle));
+    facts.cycles.push_back(MeasureCycle(record, of_cycle, cycles.back()));
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
   const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
-  for (CycleFacts& cycle : facts.cycles) {
-    cycle.steady = cycle.amplitude >= CycleRules::steady * widest;
+  std::vector<Cycle> steady;
+  std::vector<CycleFacts> steady_facts;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::steady * widest;
+    if (!facts.cycles[k].steady) continue;
+    steady.push_back(cycles[k]);
+    steady_facts.push_back(facts.cycles[k]);
   }
-  Summarise(facts);
-  const std::vector<Points> steady = SteadyCycles(facts, points);
   facts.steady_cycles = steady.size();
-  const std::vector<Stroke> strokes = StrokesOf(record, steady);
-  facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
+  facts.amplitude = Mean(ValuesOf(steady_facts, &CycleFacts::amplitude));
+  facts.peak_force = Mean(ValuesOf(steady_facts, &CycleFacts::peak_force));
+  facts.energy_per_cycle = Mean(ValuesOf(steady_facts, &CycleFacts::energy));
+  facts.energy_ratio = EnergyRatio(facts.energy_per_cycle, facts.amplitude, facts.peak_force);
+  facts.asymmetry = Asymmetry(steady, facts.peak_force);
+  const auto sliding = ValuesOf(steady_facts, &CycleFacts::sliding_amplitude);
+  if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
+  const auto gaps = ValuesOf(steady_facts, &CycleFacts::half_gap);
+  if (!gaps.empty()) facts.half_gap = Mean(gaps);
+  if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
   if (facts.half_gap && *facts.half_gap > 0) {
-    const double centre = Mean(SteadyValues(facts, [](const CycleFacts& cycle) {
-      return cycle.half_gap ? std::optional(cycle.centre_force) : std::nullopt;
-    }));
-    facts.backlash = FindBacklash(strokes, centre, *facts.half_gap, facts.amplitude);
+    const double centre = Mean(ValuesOf(steady_facts, &CycleFacts::centre_force));
+    facts.backlash = FindBacklash(steady, centre, *facts.half_gap, facts.amplitude);
   }
   return facts;
 }

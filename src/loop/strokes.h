@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -21,6 +22,9 @@ struct Stroke {
   [[nodiscard]] double range() const {
     const Extremes extremes = ExtremesOf(displacement);
     return extremes.greatest - extremes.least;
+  }
+  [[nodiscard]] double travel() const {
+    return std::abs(displacement.back() - displacement.front());
   }
   [[nodiscard]] double lower_end_force() const { return rises() ? force.front() : force.back(); }
   [[nodiscard]] double upper_end_force() const { return rises() ? force.back() : force.front(); }
@@ -46,8 +50,7 @@ struct Excursion {
 inline double LargestStep(std::span<const double> displacement, const Excursion& excursion) {
   double largest = 0.0;
   for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
-    const double step = displacement[i] - displacement[i - 1];
-    largest = std::max(largest, step < 0 ? -step : step);
+    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
   }
   return largest;
 }
@@ -91,15 +94,5 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 /// energy, so that noise would decide. 0 when neither has a sign (constant force or displacement).
 /// @param record  valid, not empty
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
-
-/// Returns a quarter of the travel [m] over three turning points.
-inline double CycleAmplitude(std::span<const double> displacement,
-                             std::span<const std::size_t> points) {
-  const auto way = [&](std::size_t k) {
-    const double difference = displacement[points[k + 1]] - displacement[points[k]];
-    return difference < 0 ? -difference : difference;
-  };
-  return (way(0) + way(1)) / 4;
-}
 
 }  // namespace mindahl::loop

@@ -142,7 +142,7 @@ bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
   const loop::LoopFacts& facts = fit.WidestRecord().facts;
   if (!loop::Slides(facts) || !facts.half_gap || facts.cycles.empty()) return true;
   double centre = 0.0;
-  for (const loop::CycleFacts& cycle : facts.cycles) centre += cycle.centre_force;
+  for (const loop::CycleFacts& cycle : facts.cycles) centre += cycle.centre_force.value_or(0.0);
   centre /= static_cast<double>(facts.cycles.size());
   const double plateau = std::abs(*facts.half_gap) + sense * centre;
   return std::abs(slip_force - plateau) <

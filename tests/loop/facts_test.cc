@@ -165,7 +165,7 @@ TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
   EXPECT_NEAR(facts.peak_force, 2.0, kRounding);
   EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
   EXPECT_NEAR(*facts.half_gap_standard_deviation, 0.0, kRounding);
-  EXPECT_NEAR(facts.cycles[0].centre_force, 7.0, kRounding);
+  EXPECT_NEAR(*facts.cycles[0].centre_force, 7.0, kRounding);
   // The stick takes Tc/σ to mid-force, twice that to the plateau.
   const double sliding = 1.0 - 0.1;
   EXPECT_NEAR(*facts.sliding_amplitude, sliding, kRounding);
@@ -181,7 +181,7 @@ TEST(MeasureFacts, HaveTheSignOfTheDisplacement) {
   const LoopFacts facts = FactsOf(opposite, -1);
   EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
   EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * 0.9, kRounding);
-  EXPECT_NEAR(facts.cycles[0].centre_force, 7.0, kRounding);
+  EXPECT_NEAR(*facts.cycles[0].centre_force, 7.0, kRounding);
 }
 
 TEST(MeasureFacts, OfAnEllipseAreThoseOfItsMiddleThird) {

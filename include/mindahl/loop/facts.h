@@ -24,7 +24,7 @@ struct CycleFacts {
   /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
   /// stiffness.
   std::optional<double> half_gap;
-  double centre_force = 0.0;  ///< [N]: midway between the strokes, in the same place
+  std::optional<double> centre_force;  ///< [N]: midway between the strokes, in the same place
   /// [m]: half the displacement between the strokes where the force is within T*/10 of
   /// `centre_force`: how far the contact slides, X less what the stick takes.
   std::optional<double> sliding_amplitude;
