@@ -242,24 +242,22 @@ struct Run {
 std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
   const Readings x = record.displacement;
   const auto is_zero = [&](std::size_t i) { return x[i] == 0 && record.force[i] == 0; };
-  bool has_any = false;
-  for (std::size_t i = 0; i < record.size(); ++i) has_any |= is_zero(i);
-  if (!has_any) return {};  // as nearly always
   std::vector<Run> runs;
-  std::vector<double> other_x;
-  std::vector<double> other_force;
   for (std::size_t i = 0; i < record.size(); ++i) {
-    if (!is_zero(i)) {
-      other_x.push_back(x[i]);
-      other_force.push_back(record.force[i]);
-      continue;
-    }
+    if (!is_zero(i)) continue;
     if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
     runs.back().end = i + 1;
   }
-  if (other_x.empty()) return {};
-  const double step_of_x = UsualStep(other_x);
-  const double step_of_force = UsualStep(other_force);
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return {};
+  const auto usual_step = [&](Readings values) {
+    std::vector<double> others;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!is_zero(i)) others.push_back(values[i]);
+    }
+    return UsualStep(others);
+  };
+  const double step_of_x = usual_step(x);
+  const double step_of_force = usual_step(record.force);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
@@ -312,30 +310,15 @@ std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i, const GlitchRul
   return 0;
 }
 
-/// Returns the next sample from one on, two or later, that leaves its neighbour by so many times
-/// the step before, as hardly one of a clean record does; the last but one where none does.
-std::size_t NextLeap(Readings values, std::size_t from, double factor) {
-  const std::size_t end = values.size() - 2;
-  double before = std::abs(values[from - 1] - values[from - 2]);
-  for (std::size_t i = from; i < end; ++i) {
-    const double step = std::abs(values[i] - values[i - 1]);
-    if (step > factor * before) return i;
-    before = step;
-  }
-  return end;
-}
-
 /// Makes one pass: a spike may hide another, until it is interpolated.
 bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
-  if (channel.size() < 5) return false;
   bool found = false;
-  Readings values = channel.values();
-  for (std::size_t i = NextLeap(values, 2, rules.spike); i + 2 < values.size();
-       i = NextLeap(values, i + 1, rules.spike)) {
+  for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
+    // As hardly one of a clean record does.
+    if (!(channel.Step(i) > rules.spike * channel.Step(i - 1))) continue;
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;
     channel.LeaveOut(i, i + samples);
-    values = channel.values();
     found = true;
   }
   return found;
@@ -373,15 +356,10 @@ bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
          0;
 }
 
-/// The next run of at least so many equal values, two or more, from a sample on; empty at the end.
-/// One of n values has a pair of neighbours at a multiple of n − 1: other pairs are not looked at.
+/// Returns the next run of at least so many equal values from a sample on; empty at the end.
 Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
-  for (std::size_t i = from; i + 1 < values.size(); i += shortest - 1) {
-    if (values[i] != values[i + 1]) continue;
-    std::size_t begin = i;
-    while (begin > from && values[begin - 1] == values[i]) --begin;
-    std::size_t end = i + 2;
-    while (end < values.size() && values[end] == values[i]) ++end;
+  for (std::size_t begin = from, end = from; begin < values.size(); begin = end) {
+    while (end < values.size() && values[end] == values[begin]) ++end;
     if (end - begin >= shortest) return {begin, end};
   }
   return {values.size(), values.size()};

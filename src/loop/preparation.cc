@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
+#include "core/draws.h"
 #include "core/extremes.h"
 #include "loop/interpolated.h"
 #include "loop/strokes.h"
@@ -71,10 +73,11 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
   choice.other_count = choice.count;
 }
 
-/// Leaves out what does not lie in [first, last) of the samples.
-void KeepOnly(std::size_t first, std::size_t last, PreparedRecord& prepared) {
+/// Leaves out the samples of which a predicate is false.
+template <typename Predicate>
+void KeepWhere(PreparedRecord& prepared, const Predicate& counts) {
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    if (i < first || i >= last) prepared.counts[i] = 0;
+    if (!counts(i)) prepared.counts[i] = 0;
   }
 }
 
@@ -103,12 +106,14 @@ void LeaveOutBeyondRanges(PreparedRecord& prepared, std::size_t number,
             complete < begun ? fmt::format(" that are begun, {} complete", complete) : "");
     // One beyond the last is none: no number of cycles is so large.
     const std::size_t last = std::min(options.cycles->last, prepared.size());
-    KeepOnly(StartOfCycle(prepared, options.cycles->first), StartOfCycle(prepared, last + 1),
-             prepared);
+    const std::size_t begin = StartOfCycle(prepared, options.cycles->first);
+    const std::size_t end = StartOfCycle(prepared, last + 1);
+    KeepWhere(prepared, [&](std::size_t i) { return i >= begin && i < end; });
   }
   if (options.samples) {
     require(*options.samples, "samples", prepared.size());
-    KeepOnly(options.samples->first - 1, options.samples->last, prepared);
+    const auto& [first, last] = *options.samples;
+    KeepWhere(prepared, [&](std::size_t i) { return i + 1 >= first && i < last; });
   }
 }
 
@@ -129,17 +134,13 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
                       "{:.6g} N",
                       lower, upper, least, greatest));
     }
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (!lies_inside(record.normal_load[i])) prepared.counts[i] = 0;
-    }
+    KeepWhere(prepared, [&](std::size_t i) { return lies_inside(record.normal_load[i]); });
   }
   LeaveOutBeyondRanges(prepared, number, options);
   if (!options.held_out.empty() && !options.held_out[number].empty()) {
     const std::vector<bool>& held_out = options.held_out[number];
     RequireSameSize("held-out mask", held_out.size(), "samples", record.size());
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (held_out[i]) prepared.counts[i] = 0;
-    }
+    KeepWhere(prepared, [&](std::size_t i) { return !held_out[i]; });
   }
   prepared.left_out = static_cast<std::size_t>(std::ranges::count(prepared.counts, 0));
   if (prepared.left_out == record.size()) {
@@ -148,6 +149,31 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
         "are held out",
         number + 1, prepared.left_out));
   }
+}
+
+/// A standard deviation from as many draws is good to 1/√(2·200) = 5 %; of long records fewer,
+/// whose many strokes average.
+constexpr std::size_t kMostDraws = 200;
+constexpr std::size_t kLeastDraws = 20;
+constexpr std::size_t kMostNumbers = 200'000;
+constexpr std::uint64_t kSeed = 1;
+
+std::vector<double> DrawReading(const PreparedRecord& record, Draws& draws) {
+  const double step = record.encoder_step;
+  // The rounding itself is q/√12; what an estimate says beyond q is noise that the encoder follows.
+  const double noise = record.displacement_noise > step ? record.displacement_noise : 0.0;
+  const double phase = draws.Uniform(0, 1);
+  const std::span<const double> truth = record.displacement();
+  std::vector<double> drawn(truth.begin(), truth.end());
+  const std::span<const double> read = record.record.displacement;
+  double error = 0.0;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    // A reading that says what the one before said is one error.
+    if (i == 0 || read[i] != read[i - 1]) error = noise * draws.Normal();
+    drawn[i] += error;
+    if (step > 0) drawn[i] = step * (std::round(drawn[i] / step + phase) - phase);
+  }
+  return drawn;
 }
 
 }  // namespace
@@ -213,6 +239,25 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
     LeaveOut(prepared, r, options);
   }
   return result;
+}
+
+std::shared_ptr<const DrawnReadings> DrawReadings(const PreparedRecords& records) {
+  const auto is_exact = [](const PreparedRecord& record) {
+    return !(record.displacement_noise > 0);
+  };
+  if (std::ranges::all_of(records.records, is_exact)) return nullptr;
+  auto readings = std::make_shared<DrawnReadings>(
+      std::clamp(kMostNumbers / records.samples(), kLeastDraws, kMostDraws));
+  Draws draws(kSeed);
+  for (std::vector<DrawnReading>& draw : *readings) {
+    for (const PreparedRecord& record : records.records) {
+      DrawnReading& drawn = draw.emplace_back();
+      if (is_exact(record)) continue;
+      drawn.displacement = Smoothed(DrawReading(record, draws), record.smoothing);
+      drawn.reversals = MoveReversals(drawn.displacement, record.reversals);
+    }
+  }
+  return readings;
 }
 
 }  // namespace mindahl::loop
