@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/extremes.h"
-#include "mindahl/loop/cycles.h"
+#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::loop {

@@ -9,7 +9,6 @@
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/loop/cycles.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/facts.h"
 #include "mindahl/loop/record.h"
