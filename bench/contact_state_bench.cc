@@ -112,7 +112,6 @@ void PeekAndMove(benchmark::State& state, const FrictionModel& model, const std:
   };
   for (const auto& [excitation, x] : {std::pair{"sine", Sine()}, std::pair{"white", White()}}) {
     for (const FrictionModel& model : models::FrictionModels()) {
-      if (model.scaled_by_peak) continue;
       for (const auto& [suffix, rig] :
            {std::pair{"", SeriesSpring{}}, std::pair{"_in_series", SeriesSpring{4.8e7}}}) {
         for (const auto& [name, run] :

@@ -1,6 +1,7 @@
 // Cost of every method from displacement to force, per sample of 50 cycles with gross slip, at a
-// representative resolution; of the limit laws; and beside them the floor: reading a displacement
-// and writing a force (memory), and a square root and a division (the least of Mindlin's law).
+// representative resolution; of the simplified laws; and beside them the floor: reading a
+// displacement and writing a force (memory), and a square root and a division (the least of
+// Mindlin's law).
 //   cmake --preset release && cmake --build --preset release && build/release/bench/methods_bench
 #include <benchmark/benchmark.h>
 
@@ -13,6 +14,7 @@
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
+#include "mindahl/models/simplified_law.h"
 
 namespace {
 
@@ -71,11 +73,11 @@ void RegisterMethod(const Method& method, const FrictionModel& model, std::size_
 [[maybe_unused]] const int kRegistered = [] {
   benchmark::RegisterBenchmark("floor/memory", FloorMemory);
   benchmark::RegisterBenchmark("floor/square_root_and_division", FloorSquareRoot);
-  for (const LimitLaw& limit : LimitLaws()) {
+  for (const SimplifiedLaw& limit : SimplifiedLaws()) {
     benchmark::RegisterBenchmark(
-        ("limit/" + std::string(limit.name)).c_str(), [&limit](benchmark::State& state) {
+        ("simplified/" + std::string(limit.name)).c_str(), [&limit](benchmark::State& state) {
           Measure(state, [&](const std::vector<double>& x, std::vector<double>& force) {
-            limit.evaluate_force(kLaw, x, force);
+            limit.evaluate_force(kLaw, x, {}, force);
           });
         });
   }

@@ -116,7 +116,7 @@ void Path(benchmark::State& state) {
           [&model, rig](benchmark::State& state) { Gradient(state, model, rig); });
     };
     add("/" + std::string(model.name), {});
-    if (!model.scaled_by_peak) add("_in_series/" + std::string(model.name), kRig);
+    add("_in_series/" + std::string(model.name), kRig);
   }
   return 0;
 }();

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <optional>
@@ -14,6 +15,7 @@
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
+#include "mindahl/models/simplified_law.h"
 #include "mindahl/request/contact_request.h"
 
 namespace mindahl::python {
@@ -49,12 +51,13 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
                              std::optional<double> alpha, const std::string& model_name,
                              std::optional<double> rig_stiffness, double asymmetry,
                              const std::optional<Array>& load, double reference_load, double gate) {
-  const FrictionModel& model = RequireModel(model_name);
+  const models::SimplifiedLaw* const simple = models::FindSimplifiedLaw(model_name);
+  const FrictionModel& model = RequireModel(simple != nullptr ? "dahl" : model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
   const std::span<const double> samples = SpanOf(displacement);
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
-  const bool is_joint = model.memory == models::Memory::kNone && !model.scaled_by_peak;
+  const bool is_joint = model.memory == models::Memory::kNone && simple == nullptr;
   if (load && !is_joint) {
     throw InputError("--load is of --model dahl alone: leave it out, or use that model");
   }
@@ -67,6 +70,15 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
     models::EvaluateJointFriction(
         {.law = law, .reference_load = reference_load, .asymmetry = asymmetry}, samples, loads,
         written);
+    return force;
+  }
+  if (simple != nullptr) {
+    if (rig_stiffness || asymmetry != 0) {
+      throw InputError(fmt::format(
+          "--model {} takes no rig and no asymmetry: leave these out, or use another model",
+          model_name));
+    }
+    simple->evaluate_force(law, samples, {}, written);
     return force;
   }
   const py::gil_scoped_release others_may_run;

@@ -287,7 +287,7 @@ std::string DescribeModels() {
   std::string text =
       "law of the friction; auto: mindlin-dahl or dahl, whichever the record supports";
   for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (!model.scaled_by_peak) text += fmt::format("\n{}: {}", model.name, model.title);
+    text += fmt::format("\n{}: {}", model.name, model.title);
   }
   return text;
 }

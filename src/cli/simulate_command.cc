@@ -11,6 +11,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/simplified_law.h"
 #include "mindahl/tradeoff/approximation.h"
 
 namespace mindahl::cli {
@@ -79,12 +80,12 @@ Approximation ResolveMethod(const SimulateOptions& options) {
         fmt::format("{} has no effect with --method {}: choose another method, as --method {}",
                     option, method.name, other));
   }
-  const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
-  if (is_limit && method.name != "exact") {
-    throw InputError(fmt::format("--method {} cannot compute --model {}, which has no branches",
+  const bool is_simplified = models::FindSimplifiedLaw(options.model) != nullptr;
+  if (is_simplified && method.name != "exact") {
+    throw InputError(fmt::format("--method {} cannot compute --model {}, a simplification",
                                  method.name, options.model));
   }
-  Approximation approximation{options.model, is_limit ? "" : options.method, {}};
+  Approximation approximation{options.model, options.method, {}};
   approximation.resolution.steps = options.steps.value_or(method.default_steps);
   if (options.tolerance) approximation.resolution.tolerance = *options.tolerance;
   return approximation;
@@ -120,7 +121,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
 
 std::vector<std::string_view> SimulatedModels() {
   std::vector<std::string_view> names = NamesOf(models::FrictionModels(), &FrictionModel::name);
-  for (const models::LimitLaw& law : models::LimitLaws()) names.push_back(law.name);
+  for (const models::SimplifiedLaw& law : models::SimplifiedLaws()) names.push_back(law.name);
   return names;
 }
 

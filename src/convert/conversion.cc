@@ -233,7 +233,7 @@ bool TargetRow::Uses(std::string_view key) const {
 
 Conversion Convert(const ModelLaw& contact, const TargetRow& target,
                    const ConversionOptions& options) {
-  if (contact.model == nullptr || contact.model->scaled_by_peak) {
+  if (contact.model == nullptr) {
     throw InvalidArgument("the contact must follow Masing's law or Dahl's own");
   }
   models::Validate(contact.law);

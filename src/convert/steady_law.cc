@@ -113,7 +113,7 @@ struct SteadyLoop {
 SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
   const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
   const double share = peak / of.law.slip_force;
-  const models::BranchScale scale = of.model->scale(-share, share, /*virgin=*/false);
+  const models::BranchScale scale = of.model->scale(-share, /*virgin=*/false);
   // t(x) = t₀ + span·v·φ(k·x): the branch law of the stiffness σ·v^α with the limit span·v·Tc.
   const BranchLaw branch = {
       .tangential_stiffness =

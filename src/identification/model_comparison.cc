@@ -20,7 +20,6 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
   const bool rig_is_known = options.fixed.contains("rig_stiffness");
   std::vector<ModelScore> scores;
   for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (model.scaled_by_peak) continue;
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
       continue;

@@ -52,8 +52,7 @@ double CostOfExact(const FrictionModel& model, const BranchLaw& law, const Resol
   const PathSize path = SizeOf(model, drive);
   const double start = model.memory == models::Memory::kNone ? kRatePower * path.branches : 0.0;
   if (law.shape_exponent == 0) return path.cost() + start;  // hidden by finding the branch
-  // The steady peak of a branch is one evaluation more.
-  const double evaluations = path.samples + (model.scaled_by_peak ? 2 : 1) * path.branches;
+  const double evaluations = path.samples + path.branches;
   return path.cost() + start + (law.shape_exponent == 1.0 / 3 ? kRoot : kPower) * evaluations;
 }
 
@@ -119,9 +118,6 @@ constexpr std::array kMethods{
 }  // namespace
 
 models::LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive) {
-  if (!drive.envelope.empty() && model.scaled_by_peak) {
-    return models::MakeEnvelopePath(drive.displacement, drive.envelope, 0.0);
-  }
   return models::MakeLoadingPath(drive.displacement, loop::FindReversals(drive.displacement, 0.0),
                                  model.memory, {.state = models::InitialState::kVirgin});
 }

@@ -149,7 +149,7 @@ Evaluator MakeDopri5(const FrictionModel& model, const BranchLaw& law, const Res
              const Drive& drive, std::span<double> force) {
     const LoadingPath path = MakeDrivePath(model, drive);
     BranchFollower follower(model, law, path, steps);
-    const double limit = models::ForceLimit(model);
+    const double limit = path.limit();
     for (const models::BranchRun& run : path.runs) {
       for (std::size_t i = run.begin; i < run.end; ++i) {
         const double t =

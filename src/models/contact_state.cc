@@ -16,17 +16,10 @@ ContactState::ContactState(const FrictionModel& model, const BranchLaw& law,
     : model_(&model),
       law_(law),
       unloaded_displacement_(options.unloaded_displacement),
-      sprung_(!IsRigid(options.rig)),
-      limit_(ForceLimit(model)) {
+      sprung_(!IsRigid(options.rig)) {
   Validate(law);
-  if (model.scaled_by_peak) {
-    throw InvalidArgument(fmt::format(
-        "model {} is scaled by the peak of the steady loop: must be given the amplitude of the "
-        "whole excitation, which a contact that is moved step by step does not know",
-        model.name));
-  }
   RequireWithinReach("unloaded displacement [m]", unloaded_displacement_);
-  if (sprung_) spring_travel_ = SpringTravel(model, law, options.rig);
+  if (sprung_) spring_travel_ = SpringTravel(law, options.rig);
   Reset();
 }
 

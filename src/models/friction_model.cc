@@ -15,21 +15,13 @@ constexpr double kMindlinExponent = 1.0 / 3.0;
 constexpr double kJenkinsExponent = 0.0;
 
 /// Masing: the virgin curve, then the same curve twice as large from every reversal.
-BranchScale MasingScale(double /*signed_force*/, double /*peak*/, bool virgin) {
+BranchScale MasingScale(double /*signed_force*/, bool virgin) {
   return {.remaining = 1.0, .span = virgin ? 1.0 : 2.0};
 }
 
 /// Peyret et al. eq. 10: dT/dx = σ(1 − sT/Tc)^α, so v₀ = 1 − s·t₀.
-BranchScale DahlScale(double signed_force, double /*peak*/, bool /*virgin*/) {
+BranchScale DahlScale(double signed_force, bool /*virgin*/) {
   return {.remaining = std::max(1 - signed_force, 0.0), .span = 1.0, .remaining_per_force = -1.0};
-}
-
-/// Peyret et al. eq. 27 from the very start: v₀ = 1 − (t* + s·t₀)/2.
-BranchScale SimplifiedDahlScale(double signed_force, double peak, bool /*virgin*/) {
-  return {.remaining = std::max(1 - (peak + signed_force) / 2, 0.0),
-          .span = 2.0,
-          .remaining_per_force = -0.5,
-          .remaining_per_peak = -0.5};
 }
 
 /// A Masing loop touches the virgin curve at its extremes.
@@ -135,13 +127,6 @@ constexpr std::array kModels = {
                   .memory = Memory::kNone,
                   .scale = DahlScale,
                   .steady_peak = DahlPeak},
-    FrictionModel{.name = "simplified-dahl",
-                  .title = "Simplified-Dahl: the steady branch without a virgin phase",
-                  .memory = Memory::kNone,
-                  .bounded = false,
-                  .scaled_by_peak = true,
-                  .scale = SimplifiedDahlScale,
-                  .steady_peak = MasingPeak},
 };
 
 }  // namespace

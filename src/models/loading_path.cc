@@ -199,25 +199,4 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const std::
   }
 }
 
-LoadingPath MakeEnvelopePath(std::span<const double> displacement,
-                             std::span<const double> amplitude, double unloaded_displacement) {
-  RequireDisplacements(displacement);
-  RequireSameSize("displacement", displacement.size(), "amplitude", amplitude.size());
-  RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
-  LoadingPath path;
-  double origin = unloaded_displacement;
-  std::int8_t direction = 1;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    RequireNonNegative(fmt::format("amplitude [m] of sample {}", i), amplitude[i]);
-    const double step = displacement[i] - origin;
-    if (step != 0) direction = SignOf(step);
-    const auto id = static_cast<std::int32_t>(i);
-    path.branches.push_back({origin, amplitude[i], id - 1,
-                             i == 0 ? BranchStart::kUnloaded : BranchStart::kReversal, direction});
-    path.runs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1), id});
-    origin = displacement[i];
-  }
-  return path;
-}
-
 }  // namespace mindahl::models

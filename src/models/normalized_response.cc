@@ -1,7 +1,5 @@
 #include "models/normalized_response.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -52,7 +50,7 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
   const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const double limit = ForceLimit(model, path.asymmetry);
+  const double limit = path.limit();
   WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
     ScaleBranches(scaling, path, shape, branches_);
     RequireReach(branch_law, branches_, displacement);
@@ -82,7 +80,7 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
   const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const double limit = ForceLimit(model, path.asymmetry);
+  const double limit = path.limit();
   const SprungShape shape{law.shape_exponent, law.spring_travel};
   ScaleBranches(scaling, path, shape, branches_);
   RequireReach(branch_law, branches_, displacement);
@@ -195,12 +193,6 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
                                            std::span<double> d,
                                            const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
-  if (model.scaled_by_peak) {
-    throw InvalidArgument(fmt::format(
-        "model {} is scaled by the peak of the steady loop at the amplitude of an imposed "
-        "displacement: must be another model where the force is imposed",
-        model.name));
-  }
   const bool with_gradient = !gradient.log_slip_force.empty() || !gradient.shape_exponent.empty() ||
                              !gradient.unloaded_force.empty();
   const double zero = UnloadedAt(path);
@@ -209,7 +201,7 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
   for (const models::Branch& from : path.branches) {
     const double t = (from.origin - zero) / law.slip_force;
     const bool is_virgin = IsVirgin(from.start);
-    const BranchScale scale = model.scale(from.direction * t, 0.0, is_virgin);
+    const BranchScale scale = model.scale(from.direction * t, is_virgin);
     Branch branch{.origin = from.origin,
                   .height = scale.span * scale.remaining * law.slip_force,
                   .span = scale.span,

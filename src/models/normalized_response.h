@@ -53,10 +53,9 @@ struct OriginSensitivity {
 /// EvaluateForce (response.h has the equations) over Tc, and its gradient in closed form, for
 /// solvers: buffers are kept, so that nothing is allocated once they are large enough. Tc itself
 /// and all other linear terms are the caller's. Where the law has a corner (α = 0 at slip) the
-/// derivatives are those of the slipping side; that by δ₀ keeps the amplitude that a peak-scaled
-/// model refers to. On the virgin curve the error is below 6 ε of the force, and below 32 ε of 1,
-/// by δ₀ of κ, to what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound
-/// next to slip.
+/// derivatives are those of the slipping side. On the virgin curve the error is below 6 ε of the
+/// force, and below 32 ε of 1, by δ₀ of κ, to what a change of δ by 4 ε would make: for α < 1/2 the
+/// slope varies without bound next to slip.
 class NormalizedResponse {
  public:
   /// @param path  as from MakeLoadingPath on the same displacements, for the model's memory
@@ -103,14 +102,13 @@ struct DisplacementGradient {
 /// is allocated once it is large enough. Cost: three powers a sample with the gradient.
 class NormalizedDisplacement {
  public:
-  /// @param model  any of FrictionModels() that is not scaled by the peak
   /// @param path   as from MakeLoadingPath on the same forces, for the model's memory: the branches
   ///               follow from the forces as they do from displacements
   /// @param force  [N], its offset included
   /// @param d      written, of the same size
   /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
   ///   nothing of use from the first of these samples on, where it is not finite
-  /// @throws InvalidArgument for sizes that differ and a model that is scaled by the peak
+  /// @throws InvalidArgument for sizes that differ
   bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
                 std::span<const double> force, std::span<double> d) {
     return Differentiate(model, law, path, force, d, {});

@@ -49,8 +49,7 @@ class Differentiation {
   /// Returns how a branch changes with the force over Tc at its origin, in the place of ln rate.
   [[nodiscard]] BranchGradient DifferentiateByOriginForce(const Branch& branch,
                                                           double origin_force) const {
-    const BranchScale scale =
-        scaling_.ScaleOf(branch, origin_force, scaling_.PeakThatScales(branch));
+    const BranchScale scale = scaling_.ScaleOf(branch, origin_force);
     BranchGradient result;
     result.force[kRate] = 1.0;
     result.origin_per_unloaded = 1.0;
@@ -115,16 +114,13 @@ class Differentiation {
   [[nodiscard]] BranchGradient DifferentiateStart(const LoadingPath& path, const Branch& branch,
                                                   double origin_force,
                                                   const Gradient& origin_gradient) const {
-    const SteadyPeak peak = scaling_.PeakThatScales(branch);
-    const BranchScale scale = scaling_.ScaleOf(branch, origin_force, peak);
+    const BranchScale scale = scaling_.ScaleOf(branch, origin_force);
     BranchGradient result;
     result.force = origin_gradient;
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) return result;
-    const Gradient peak_gradient{peak.per_log_stiffness, peak.per_shape};
     for (std::size_t j = 0; j < result.height.size(); ++j) {
-      const double remaining = scale.remaining_per_force * branch.direction * origin_gradient[j] +
-                               scale.remaining_per_peak * peak_gradient[j];
+      const double remaining = scale.remaining_per_force * branch.direction * origin_gradient[j];
       result.height[j] = scale.span * remaining;
       result.log_rate[j] += (shape_.shape_exponent - 1) * remaining / scale.remaining;
     }

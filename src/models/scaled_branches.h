@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -106,20 +104,14 @@ class BranchScaling {
             -contact.force * (yielding / (1 + yielding))};
   }
 
-  /// Most models do not look at the peak; sparing it keeps a branch as cheap as a sample.
-  [[nodiscard]] SteadyPeak PeakThatScales(const Branch& branch) const {
-    return model_.scaled_by_peak ? Peak(branch) : SteadyPeak{};
-  }
-
-  [[nodiscard]] BranchScale ScaleOf(const Branch& branch, double origin_force,
-                                    const SteadyPeak& peak) const {
-    return model_.scale(branch.direction * origin_force, peak.force, IsVirgin(branch.start));
+  [[nodiscard]] BranchScale ScaleOf(const Branch& branch, double origin_force) const {
+    return model_.scale(branch.direction * origin_force, IsVirgin(branch.start));
   }
 
   /// @param limit  VirginLimit() of the branch: by as much it is larger, at the same stiffness
   [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force,
                                    double limit = 1.0) const {
-    const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
+    const BranchScale scale = ScaleOf(branch, origin_force);
     const double rate = RateOf(scale) / limit;
     return {branch.origin, origin_force, scale.span * scale.remaining * limit, rate,
             backbone::Reach(rate)};
@@ -222,11 +214,6 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
   }
 }
 
-/// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
-inline double ForceLimit(const FrictionModel& model, double asymmetry = 0.0) {
-  return model.bounded ? 1 + std::abs(asymmetry) : 2.0;
-}
-
 /// Computes the forces [N] along a path.
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
 template <typename Shape>
@@ -236,10 +223,11 @@ void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double sprin
   ScaledBranches branches;
   ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
   RequireReach(law, branches, displacement);
+  const double limit = path.limit();
   for (const BranchRun& run : path.runs) {
     const std::size_t count = run.end - run.begin;
     const ScaledBranch& branch = branches[static_cast<std::size_t>(run.branch)];
-    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, ForceLimit(model, path.asymmetry),
+    EvaluateRun(branch, ShapeOn(shape, branch), law.slip_force, limit,
                 displacement.subspan(run.begin, count), force.subspan(run.begin, count));
   }
 }
@@ -288,15 +276,8 @@ inline bool IsRigid(const SeriesSpring& rig) {
 
 /// Returns c = Tc/k_r [m], the spring's travel at slip.
 /// @throws InvalidArgument where the rig cannot be accounted for
-inline double SpringTravel(const FrictionModel& model, const BranchLaw& law,
-                           const SeriesSpring& rig) {
+inline double SpringTravel(const BranchLaw& law, const SeriesSpring& rig) {
   Validate(rig);
-  if (model.scaled_by_peak) {
-    throw InvalidArgument(fmt::format(
-        "model {} is scaled by the peak at the contact's own amplitude: must have a rigid rig, not "
-        "a series stiffness [N/m] = {:.6g}",
-        model.name, rig.stiffness));
-  }
   // Compared before it is divided by, for no quotient to overflow.
   constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance<double>;
   constexpr double kLongest = 1e300;  // [m]

@@ -32,7 +32,7 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
   const long double unit =
       static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
   const double peak = Peak(model, law, amplitude);
-  const BranchScale scale = model.scale(-peak, peak, /*virgin=*/false);
+  const BranchScale scale = model.scale(-peak, /*virgin=*/false);
   // A branch runs from −t* to t* = −t* + h·φ(2ky), so W = 2[∫ branch − 2y·t*] is a Masing loop's
   // energy in other units, (h/4k)·[8∫₀^{2ky} φ − 4·(2ky)·φ(2ky)]: one form, free of cancellation.
   const long double height = static_cast<long double>(scale.span) * scale.remaining;
@@ -60,7 +60,7 @@ double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law
   Validate(law);
   if (law.shape_exponent >= 1) return std::numeric_limits<double>::infinity();
   // A branch from −Tc reaches Tc where its own y, k·2X, is 1/(1 − α).
-  const BranchScale scale = model.scale(-1.0, 1.0, /*virgin=*/false);
+  const BranchScale scale = model.scale(-1.0, /*virgin=*/false);
   const double masing = 2 / scale.span * std::pow(scale.remaining, law.shape_exponent - 1);
   return GrossSlipDisplacement(law) / masing;
 }

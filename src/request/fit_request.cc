@@ -109,9 +109,7 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
 
 std::vector<std::string_view> ModelNames() {
   std::vector<std::string_view> names = {kAutomatic};
-  for (const models::FrictionModel& model : models::FrictionModels()) {
-    if (!model.scaled_by_peak) names.push_back(model.name);
-  }
+  for (const models::FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
   return names;
 }
 

@@ -9,6 +9,7 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/simplified_law.h"
 
 namespace mindahl::tradeoff {
 
@@ -54,10 +55,10 @@ std::string Describe(const Approximation& approximation) {
 }
 
 methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
-  if (const models::LimitLaw* limit = models::FindLimitLaw(approximation.model)) {
+  if (const models::SimplifiedLaw* simple = models::FindSimplifiedLaw(approximation.model)) {
     Validate(law);
-    return [limit, law](const methods::Drive& drive, std::span<double> force) {
-      limit->evaluate_force(law, drive.displacement, force);
+    return [simple, law](const methods::Drive& drive, std::span<double> force) {
+      simple->evaluate_force(law, drive.displacement, drive.envelope, force);
     };
   }
   const FrictionModel& model = RequireModel(approximation.model);
@@ -67,8 +68,15 @@ methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& 
 
 double CostOf(const Approximation& approximation, const BranchLaw& law,
               const methods::Drive& drive) {
-  if (models::FindLimitLaw(approximation.model) != nullptr) return methods::kCostOfSample;
-  const FrictionModel& model = RequireModel(approximation.model);
+  const bool is_steady_branch = approximation.model == "simplified-dahl";
+  if (is_steady_branch && !drive.envelope.empty()) {
+    return methods::kCostOfSample + methods::kCostOfStep;
+  }
+  if (!is_steady_branch && models::FindSimplifiedLaw(approximation.model) != nullptr) {
+    return methods::kCostOfSample;
+  }
+  // Simplified-Dahl is Dahl's own law with other parameters.
+  const FrictionModel& model = RequireModel(is_steady_branch ? "dahl" : approximation.model);
   return methods::CostOf(RequireMethod(approximation.method), model, LawOf(model, law),
                          approximation.resolution, drive);
 }
@@ -85,8 +93,8 @@ std::string ExactModel(const BranchLaw& law) {
 
 std::vector<Approximation> AllApproximations(const BranchLaw& law) {
   std::vector<Approximation> all;
-  for (const models::LimitLaw& limit : models::LimitLaws()) {
-    all.push_back({std::string(limit.name), ""});
+  for (const std::string_view model : {"spring", "coulomb"}) {
+    all.push_back({std::string(model), ""});
   }
   for (const std::string_view model : {"jenkins", "simplified-dahl", "dahl", "mindlin"}) {
     all.push_back({std::string(model), "exact"});

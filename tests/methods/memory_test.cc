@@ -47,39 +47,5 @@ TEST(ReturnPoint, NothingDriftsInTenThousandCycles) {
   }
 }
 
-TEST(Envelope, IsFollowedByEveryMethodThatServesTheModel) {
-  const Excitation growing = MakeExcitation({.waveform = Waveform::kGrowingSine,
-                                             .amplitude = 0.9 * 1.5,
-                                             .cycles = 4,
-                                             .samples_per_cycle = 40,
-                                             .growth = 3});
-  const Drive drive{.displacement = growing.displacement, .envelope = growing.envelope};
-  std::vector<double> exact(growing.displacement.size());
-  EvaluateForce(*FindFrictionModel("simplified-dahl"), kLaw,
-                MakeEnvelopePath(growing.displacement, growing.envelope, 0.0), growing.displacement,
-                exact);
-  EXPECT_EQ(RespondBy("exact", "simplified-dahl", kLaw, drive), exact);
-  constexpr double kNear = 1e-4;  // of Tc: hundred steps of the default tolerance, or intervals
-  for (const std::string_view method : {"dopri5", "table"}) {
-    EXPECT_LT(LargestDifference(
-                  RespondBy(method, "simplified-dahl", kLaw, drive,
-                            {.steps = FindMethod(method)->default_steps == 1 ? 1UL : 4096UL}),
-                  exact),
-              kNear)
-        << method;
-  }
-}
-
-TEST(Envelope, IsOnlyLookedAtByModelsThatReferToTheirSteadyLoop) {
-  const std::vector<double> drive = {0.3, 0.6, 0.1, -0.5};
-  const std::vector<double> envelope = {0.3, 0.6, 0.6, 0.6};
-  for (const FrictionModel& model : FrictionModels()) {
-    const bool same =
-        RespondBy("exact", model.name, kLaw, {.displacement = drive, .envelope = envelope}) ==
-        RespondBy("exact", model.name, kLaw, {.displacement = drive});
-    EXPECT_EQ(same, !model.scaled_by_peak) << model.name;
-  }
-}
-
 }  // namespace
 }  // namespace mindahl::methods::memory_test

@@ -49,7 +49,6 @@ struct Case {
 std::vector<Case> Cases() {
   std::vector<Case> cases;
   for (const FrictionModel& model : FrictionModels()) {
-    if (model.scaled_by_peak) continue;
     for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 0.5, 1.0, 2.0, 100.0}) {
       if (model.shape_exponent.value_or(alpha) == alpha) cases.push_back({&model, alpha});
     }
@@ -128,7 +127,6 @@ TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
   // docs/theory.md §8 by way of the histories of tests/properties.
   constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
   for (const FrictionModel& model : FrictionModels()) {
-    if (model.scaled_by_peak) continue;
     for (const double alpha : {0.0, 1e-300, 1e-16, 1e-8, 1.0 / 3.0, 0.5, 1 - 1e-8, 1 - 1e-15, 1.0,
                                1 + 1e-15, 1 + 1e-8, 2.0, 10.0, 100.0}) {
       for (const auto& [stiffness, slip_force] :
@@ -313,15 +311,6 @@ TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
       EXPECT_EQ(contact.Move(0.25), ContactState(copy).Move(0.25));
     }
   }
-}
-
-TEST(ContactState, RefusesAModelThatHasToKnowTheAmplitude) {
-  EXPECT_EQ(MessageOf([] {
-              ContactState(Model("simplified-dahl"), {1.0, 0.5, 1.0});
-            }),
-            "model simplified-dahl is scaled by the peak of the steady loop: must be given the "
-            "amplitude of the whole excitation, which a contact that is moved step by step does "
-            "not know");
 }
 
 TEST(ContactState, RefusesALawASpringOrAnOriginThatIsNone) {

@@ -6,8 +6,7 @@ namespace mindahl::models::friction_model_test {
 namespace {
 
 TEST(FrictionModels, AreFoundByTheNamesOfTheCommandLine) {
-  for (const std::string_view name :
-       {"mindlin-dahl", "mindlin", "jenkins", "dahl", "simplified-dahl"}) {
+  for (const std::string_view name : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
     const FrictionModel* model = FindFrictionModel(name);
     ASSERT_NE(model, nullptr) << name;
     EXPECT_EQ(model->name, name);
@@ -21,9 +20,6 @@ TEST(FrictionModels, PrescribeTheShapeExponentWhereTheNameDoes) {
   EXPECT_EQ(FindFrictionModel("jenkins")->shape_exponent, 0.0);
   EXPECT_FALSE(FindFrictionModel("mindlin-dahl")->shape_exponent.has_value());
   EXPECT_FALSE(FindFrictionModel("dahl")->shape_exponent.has_value());
-  for (const FrictionModel& model : FrictionModels()) {
-    EXPECT_EQ(model.scaled_by_peak, model.name == "simplified-dahl");
-  }
 }
 
 }  // namespace

@@ -165,8 +165,6 @@ TEST(LoadingPath, RejectsInvalidHistory) {
   const History good = {0, 1};
   EXPECT_THROW(MakeLoadingPath(good, {}, Memory::kNone, {.unloaded_displacement = kNan}),
                InvalidArgument);
-  EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1}, 0.0), InvalidArgument);
-  EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1, -1}, 0.0), InvalidArgument);
 }
 
 }  // namespace

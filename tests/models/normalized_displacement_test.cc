@@ -107,14 +107,5 @@ TEST(NormalizedDisplacement, OfAForceAtSlipIsNone) {
   EXPECT_TRUE(displacement.Evaluate(model, {1.001, 0.4}, PathOfForces(model, force), force, d));
 }
 
-TEST(NormalizedDisplacement, OfAModelThatIsScaledByThePeakIsRefused) {
-  const History force = {0.0, 0.5};
-  History d(force.size());
-  NormalizedDisplacement displacement;
-  const FrictionModel& model = Model("simplified-dahl");
-  EXPECT_THROW(displacement.Evaluate(model, {1.0, 0.4}, PathOfForces(model, force), force, d),
-               InvalidArgument);
-}
-
 }  // namespace
 }  // namespace mindahl::models::normalized_displacement_test

@@ -34,14 +34,6 @@ History WithRig(const History& contact, const std::vector<double>& force, const 
   return displacement;
 }
 
-/// Models that take a rig.
-std::vector<FrictionModel> Models() {
-  std::vector<FrictionModel> models;
-  std::ranges::copy_if(FrictionModels(), std::back_inserter(models),
-                       [](const FrictionModel& model) { return !model.scaled_by_peak; });
-  return models;
-}
-
 // ---- The composed branch law ----------------------------------------------------------------
 
 /// Φ by Newton's rule at 50 digits, from the answer to be checked; bisection where it leaves the
@@ -114,7 +106,7 @@ TEST(Rig, LeavesTheForceThatTheContactHasAtItsOwnDisplacement) {
   constexpr double kBound = 1.1e-13;
   Generator generator(62);
   Worst worst;
-  for (const FrictionModel& model : Models()) {
+  for (const FrictionModel& model : FrictionModels()) {
     for (int i = 0; i < 3000; ++i) {
       const History contact = testing::RandomHistory(generator);
       const double alpha = i % 4 == 0 ? 1.0 / 3.0 : i % 7 == 0 ? 1.0 : Uniform(generator, 0, 2.5);
@@ -144,7 +136,6 @@ TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
     const BranchLaw law{1.0, 0.4, 1.0};
     EXPECT_EQ(RespondWithRig(model, law, {}, history), Respond(model, law, history));
     // And a very stiff one is none to rounding: 5e-14·Tc of either.
-    if (model.scaled_by_peak) continue;
     const auto stiff = RespondWithRig(model, law, {1e200}, history);
     const auto rigid = Respond(model, law, history);
     for (std::size_t i = 0; i < stiff.size(); ++i) EXPECT_NEAR(stiff[i], rigid[i], 1e-13);
@@ -159,8 +150,6 @@ TEST(Rig, IsRefusedWhereItMeansNothing) {
     EXPECT_THROW(RespondWithRig(Model("mindlin-dahl"), law, {stiffness}, history), InvalidArgument)
         << stiffness;
   }
-  EXPECT_THROW(RespondWithRig(Model("simplified-dahl"), law, {1.0}, history), InvalidArgument);
-  EXPECT_NO_THROW(RespondWithRig(Model("simplified-dahl"), law, {}, history));
   // Dahl's law is 2^α steeper from slip to slip.
   EXPECT_THROW(RespondWithRig(Model("dahl"), {1.0, 400.0, 1.0}, {1e-70}, {1e75, 9e74}),
                InvalidArgument);

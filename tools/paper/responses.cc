@@ -9,6 +9,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
+#include "mindahl/models/simplified_law.h"
 
 namespace mindahl::paper {
 
@@ -21,20 +22,6 @@ namespace {
 
 const FrictionModel& Model(const char* name) { return *models::FindFrictionModel(name); }
 
-/// Eq. 26 on the virgin curve, eq. 27 after it.
-models::BranchScale FullDahlScale(double signed_force, double peak, bool virgin) {
-  const char* equation = virgin ? "mindlin-dahl" : "simplified-dahl";
-  return Model(equation).scale(signed_force, peak, virgin);
-}
-
-FrictionModel PrintedFullDahl() {
-  FrictionModel model = Model("simplified-dahl");
-  model.name = "full-dahl";
-  model.title = "Full-Dahl as printed, with a T* from outside";
-  model.scale = FullDahlScale;
-  return model;
-}
-
 std::vector<double> Evaluate(const FrictionModel& model, const BranchLaw& law,
                              const LoadingPath& path, const std::vector<double>& displacement) {
   std::vector<double> force(displacement.size());
@@ -46,12 +33,20 @@ std::size_t FirstReversal(const std::vector<double>& displacement) {
   return loop::FindReversals(displacement, 0.0).front();
 }
 
-/// Amplitudes at which the law's T* is Mindlin's: the branch law depends on σx alone.
-std::vector<double> AmplitudesOfMindlinsPeak(const BranchLaw& law, const Excitation& excitation) {
-  const double ratio = ExactLaw().tangential_stiffness / law.tangential_stiffness;
-  std::vector<double> amplitude = excitation.envelope;
-  for (double& value : amplitude) value *= ratio;
-  return amplitude;
+/// The virgin curve for so many samples, then eq. 27 step by step, at the T* of Mindlin's loop.
+std::vector<double> SteadyBranches(const BranchLaw& law, const Excitation& excitation,
+                                   std::size_t virgin) {
+  std::vector<double> force;
+  double last = 0.0;
+  for (std::size_t i = 0; i < excitation.displacement.size(); ++i) {
+    const double at = excitation.displacement[i];
+    const double peak = contact::MindlinVirginForce(kContact, excitation.envelope[i]);
+    force.push_back(
+        i < virgin ? BackboneForce(law, at)
+                   : models::SimplifiedDahlStep(law, peak, i > 0 ? force[i - 1] : 0.0, at - last));
+    last = at;
+  }
+  return force;
 }
 
 /// Mindlin's loop between ±amplitude, on the branch that runs in the direction of `step`.
@@ -95,21 +90,11 @@ std::vector<double> MindlinForce(const Excitation& excitation) {
 }
 
 std::vector<double> FullDahlForce(const BranchLaw& law, const Excitation& excitation) {
-  LoadingPath path = models::MakeEnvelopePath(excitation.displacement,
-                                              AmplitudesOfMindlinsPeak(law, excitation), 0.0);
-  const std::size_t first_reversal = FirstReversal(excitation.displacement);
-  for (std::size_t i = 0; i <= first_reversal; ++i) {
-    path.branches[i].origin = 0.0;
-    path.branches[i].parent = -1;
-    path.branches[i].start = models::BranchStart::kUnloaded;
-  }
-  return Evaluate(PrintedFullDahl(), law, path, excitation.displacement);
+  return SteadyBranches(law, excitation, FirstReversal(excitation.displacement) + 1);
 }
 
 std::vector<double> SimplifiedDahlForce(const BranchLaw& law, const Excitation& excitation) {
-  const LoadingPath path = models::MakeEnvelopePath(excitation.displacement,
-                                                    AmplitudesOfMindlinsPeak(law, excitation), 0.0);
-  return Evaluate(Model("simplified-dahl"), law, path, excitation.displacement);
+  return SteadyBranches(law, excitation, 0);
 }
 
 std::vector<double> RememberingForce(const char* model, const Excitation& excitation) {

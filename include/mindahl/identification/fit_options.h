@@ -26,7 +26,7 @@ struct Prior {
 /// Sets what is fitted and how. Parameters have the names of Terms(); with several records those of
 /// a record are numbered from 1: force_offset_2.
 struct FitOptions {
-  /// One of FrictionModels() that is not scaled_by_peak.
+  /// One of FrictionModels().
   const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
   /// Empty: both are fitted and the smaller AICc on effective samples is kept.

@@ -15,13 +15,13 @@ namespace mindahl::methods {
 /// An imposed displacement [m]; the contact is unloaded at 0.
 struct Drive {
   std::span<const double> displacement{};
-  /// Amplitude [m] at each sample where it changes along the path, else empty. Used only by a model
-  /// that refers to its steady loop.
+  /// Amplitude [m] at each sample where it changes along the path, else empty; no method looks at
+  /// it, but Simplified-Dahl does (models/simplified_law.h).
   std::span<const double> envelope = {};
 };
 
 /// Makes the loading path of a drive, in which every change of direction is a reversal.
-/// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
+/// @throws InvalidArgument as MakeLoadingPath
 models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
 /// Sets how finely a method resolves.
@@ -87,5 +87,7 @@ double CostOf(const Method& method, const models::FrictionModel& model,
 
 /// Time that reading a displacement and writing a force takes [ns].
 inline constexpr double kCostOfSample = 1.5;
+/// Time that a step of Simplified-Dahl under an envelope takes [ns]: it opens a branch of its own.
+inline constexpr double kCostOfStep = 139.3;
 
 }  // namespace mindahl::methods

@@ -34,18 +34,17 @@ struct ContactStateOptions {
 class ContactState {
  public:
   /// Makes the virgin contact: T = 0 at δ₀, nothing to remember.
-  /// @param model  any of FrictionModels() that is not scaled by the peak, or a model of the user's
-  ///   that outlives the state and its copies
+  /// @param model  any of FrictionModels(), or a model of the user's that outlives the state and
+  /// its
+  ///   copies
   /// @param law    its α is used as it stands, also for a model that prescribes one
-  /// @throws InvalidArgument for an invalid law, option or spring (as EvaluateForce), and for a
-  ///   model that is scaled by the peak: it refers to the amplitude of the whole excitation, which
-  ///   no step knows
+  /// @throws InvalidArgument for an invalid law, option or spring (as EvaluateForce)
   ContactState(const FrictionModel& model, const BranchLaw& law,
                const ContactStateOptions& options = {});
 
   /// Moves on to δ and returns the force there.
   /// @param displacement  δ [m], within ±1e307; the present one is no step
-  /// @returns T [N]; |T| <= Tc where the model is bounded
+  /// @returns T [N]; |T| <= Tc
   /// @throws InvalidArgument, the state being left as it was, for a displacement that is NaN or out
   ///   of range, for α > 1 beyond 1.8e200 elastic limits of a branch, and for a branch 1e100 times
   ///   stiffer than the spring
@@ -143,7 +142,7 @@ class ContactState {
   static double TranscendentalShare(const Shape& shape, double y);
 
   [[nodiscard]] double Force(double force_over_slip) const {
-    return law_.slip_force * std::clamp(force_over_slip, -limit_, limit_);
+    return law_.slip_force * std::clamp(force_over_slip, -1.0, 1.0);
   }
 
   [[nodiscard]] ScaledBranch Open(const Branch& branch, double origin_force) const;
@@ -157,7 +156,6 @@ class ContactState {
   double unloaded_displacement_;
   bool sprung_;
   double spring_travel_ = 0.0;  // Tc/k_r [m]
-  double limit_;                // of |T|/Tc
   Course course_;
   Shape shape_;  // on the present branch
   double displacement_ = 0.0;

@@ -21,7 +21,6 @@ struct BranchScale {
   double remaining = 1.0;            ///< v >= 0
   double span = 1.0;                 ///< 1 or 2
   double remaining_per_force = 0.0;  ///< ∂v/∂(s·t₀), s the branch's direction
-  double remaining_per_peak = 0.0;   ///< ∂v/∂t*, t* the steady peak force over Tc
 };
 
 /// Force over Tc at the extremes of the steady loop between ±X, y = σX/Tc, with its derivatives.
@@ -39,14 +38,10 @@ struct FrictionModel {
   std::string_view title;  ///< in reports
   Memory memory = Memory::kReturnPoint;
   std::optional<double> shape_exponent = std::nullopt;  ///< α where the model prescribes it
-  bool bounded = true;                                  ///< |T| <= Tc on every path
-  /// `scale` looks at the peak: the model needs the amplitude as an input, so it cannot be fitted.
-  bool scaled_by_peak = false;
 
   /// @param signed_force  s·T₀/Tc at the branch's origin, s its direction
-  /// @param peak          T*/Tc of the steady loop at the amplitude of the excitation
   /// @param virgin        the branch starts at the unloaded contact
-  BranchScale (*scale)(double signed_force, double peak, bool virgin) = nullptr;
+  BranchScale (*scale)(double signed_force, bool virgin) = nullptr;
   SteadyPeak (*steady_peak)(double y, double shape_exponent) = nullptr;
 };
 

@@ -33,7 +33,7 @@ enum class BranchStart : std::uint8_t {
 /// One branch of the response: T(δ) = T₀ + s·(branch law of |δ − origin|).
 struct Branch {
   double origin = 0.0;       ///< [m]
-  double amplitude = 0.0;    ///< X [m] of the excitation, for models that refer to its steady loop
+  double amplitude = 0.0;    ///< X [m] of the excitation, of the steady loop before it
   std::int32_t parent = -1;  ///< branch on which the origin lies; −1 unless start is kReversal
   BranchStart start = BranchStart::kReversal;
   std::int8_t direction = 1;  ///< s = ±1; on the virgin curve, which is run both ways, the first
@@ -71,6 +71,9 @@ struct LoadingPath {
   std::vector<BranchRun> runs;     ///< contiguous, of all samples in order
   std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
   double asymmetry = 0.0;          ///< asymmetry of the slip forces, as InitialContact's
+
+  /// Returns the largest |T| [Tc], which rounding must not exceed.
+  [[nodiscard]] double limit() const { return 1 + std::abs(asymmetry); }
 };
 
 /// Returns the largest force [Tc] in the direction of a branch: that of the slip forces where it is
@@ -124,11 +127,5 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
 /// Makes the same into a path whose memory is used again.
 void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
                      Memory memory, const InitialContact& initial, LoadingPath& path);
-
-/// Makes the path of a model without memory whose steady amplitude changes along the way: every
-/// sample is a branch of its own, from the last, with the amplitude X given for it.
-/// @param amplitude  [m] of the excitation's envelope, one a sample
-LoadingPath MakeEnvelopePath(std::span<const double> displacement,
-                             std::span<const double> amplitude, double unloaded_displacement);
 
 }  // namespace mindahl::models

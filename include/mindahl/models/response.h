@@ -34,12 +34,11 @@ void Validate(const SeriesSpring& rig);
 /// @throws InvalidArgument for an invalid law, sizes that differ, or for α > 1 a displacement
 /// beyond
 ///   1.8e200 elastic limits of a branch, where the force still grows; for a spring that is invalid
-///   or 1e100 times softer than a branch, and for any spring with a model that is scaled by the
-///   peak, whose amplitude is the contact's
+///   or 1e100 times softer than a branch
 /// The law's α is used as it stands, also for a model that prescribes one.
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
-/// 10⁶); closed loops leave nothing behind. |T| <= Tc where the model is bounded. Cost: one branch
+/// 10⁶); closed loops leave nothing behind. |T| <= Tc. Cost: one branch
 /// law a sample and a branch; nothing is allocated per sample, 40 bytes per branch, and runs of one
 /// branch have no data-dependent jump. With a spring the same errors, and up to 3 iterations a
 /// sample (bench/response_bench.cc); none for α = 0.
@@ -55,14 +54,12 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
 /// with (v, span, k) the model's BranchScale on the branch from Tᵣ. α = 1/3 on the virgin branch
 /// and between ±T* are eqs 6, 8 and 9 of Peyret et al. (2017). T and δ turn together, so that
 /// Madelung's rules hold of forces as they do of displacements (docs/theory.md §5).
-/// @param model         any of FrictionModels() that is not scaled by the peak
 /// @param law           its α is used as it stands, also for a model that prescribes one
 /// @param force         T [N], |T| < Tc <= 1e307 N: at Tc the contact slides, and no displacement
 ///   belongs to the force. The force may jump: between samples it is taken to be monotone
 /// @param displacement  δ [m], written; same size; within ±1e307
 /// @param rig           spring in series, rigid unless given; δ is that of both
-/// @throws InvalidArgument for an invalid law or spring, an empty history, sizes that differ, a
-///   model that is scaled by the peak: it refers to the amplitude of an imposed displacement; and
+/// @throws InvalidArgument for an invalid law or spring, an empty history, sizes that differ, and
 ///   naming the sample for a force that is not below Tc, by more than rounding for Dahl's law, or a
 ///   displacement beyond 1e307 m, which α > 1 comes to before slip
 /// A branch has a relative error below (6 + |1 − α|·|ln u|) ε, as T → 0 and next to slip too; for

@@ -10,8 +10,8 @@ namespace mindahl::tradeoff {
 
 /// A way to compute the force of a contact along a drive: a model, and a method that evaluates it.
 struct Approximation {
-  std::string model;   ///< a name of FrictionModels() or LimitLaws()
-  std::string method;  ///< a name of Methods(); "" for a limit law, which has but one
+  std::string model;   ///< a name of FrictionModels() or SimplifiedLaws()
+  std::string method;  ///< a name of Methods(); "" for a spring and for Coulomb's law
   methods::Resolution resolution = {};
 };
 

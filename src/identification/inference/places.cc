@@ -151,7 +151,7 @@ void PutOn(const models::LoadingPath& path, std::size_t b, const Place& origin,
   at.direction = at.virgin ? std::copysign(1.0, at.imposed - branch.origin)
                            : static_cast<double>(branch.direction);
   at.sets_out = at.virgin && at.direction * branch.direction > 0;
-  const models::BranchScale scale = model.scale(at.direction * origin.carried, 0.0, at.virgin);
+  const models::BranchScale scale = model.scale(at.direction * origin.carried, at.virgin);
   at.span = scale.span;
   at.reach = scale.span * scale.remaining;
   at.origin = branch.origin;

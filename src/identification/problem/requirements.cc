@@ -85,9 +85,7 @@ double StiffnessOfLoop(const loop::PreparedRecord& record, double sense, double 
 }  // namespace
 
 void Validate(const FitOptions& options) {
-  if (options.model == nullptr || options.model->scaled_by_peak) {
-    throw InvalidArgument("the model cannot be fitted: its amplitude must be given");
-  }
+  if (options.model == nullptr) throw InvalidArgument("there is no model to be fitted");
   if (options.force_noise) RequirePositive("force_noise [N]", *options.force_noise);
   if (!(options.confidence > 0 && options.confidence < 1)) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
