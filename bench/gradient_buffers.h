@@ -12,10 +12,7 @@ struct GradientBuffers {
   explicit GradientBuffers(std::size_t samples) : t(samples), columns(4 * samples) {}
 
   [[nodiscard]] mindahl::models::NormalizedGradient gradient() {
-    return {.log_rate = Column(0),
-            .shape_exponent = Column(1),
-            .unloaded_displacement = Column(2),
-            .log_spring_travel = Column(3)};
+    return {Column(0), Column(1), Column(2), Column(3)};
   }
 
   std::vector<double> t;

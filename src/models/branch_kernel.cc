@@ -268,9 +268,9 @@ void DifferentiateGeneralRun(const ScaledBranch& branch, const BranchGradient& b
     const std::size_t count = Fill(displacement, begin, block);
     DifferentiateBlock(branch, branch_gradient, shape_exponent, limit, count, block);
     Keep(block.t, begin, count, t);
-    Keep(block.log_rate, begin, count, gradient.log_rate);
-    Keep(block.shape_exponent, begin, count, gradient.shape_exponent);
-    Keep(block.unloaded, begin, count, gradient.unloaded_displacement);
+    Keep(block.log_rate, begin, count, gradient[kRate]);
+    Keep(block.shape_exponent, begin, count, gradient[kShape]);
+    Keep(block.unloaded, begin, count, gradient[kUnloaded]);
   }
 }
 

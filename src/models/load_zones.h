@@ -8,12 +8,13 @@
 
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/variable_load.h"
+#include "models/response_gradient.h"
 
 namespace mindahl::models {
 
-/// A number with its derivatives by ln κ, α and δ₀, for arithmetic that takes them along.
+/// A number with its derivatives by the first three of ResponseParameter, ln κ, α and δ₀, for
+/// arithmetic that takes them along.
 using Tangent = Eigen::AutoDiffScalar<Eigen::Vector3d>;
-enum Direction : int { kLogRate, kShapeExponent, kUnloadedDisplacement };
 
 /// Returns the number without its derivatives, which alone decides between cases.
 inline double ValueOf(double x) { return x; }
@@ -37,11 +38,11 @@ struct ShareOfWidth {
     return shape.Force(width / (slip_displacement * (1 - shape_exponent)));
   }
   Tangent operator()(const Tangent& width, const Tangent& slip_displacement) const {
-    const Tangent remaining(1 - shape_exponent, -Eigen::Vector3d::Unit(kShapeExponent));
+    const Tangent remaining(1 - shape_exponent, -Eigen::Vector3d::Unit(kShape));
     const Tangent y = width / (slip_displacement * remaining);
     const auto phi = backbone::Differentiate(y.value(), shape_exponent);
     Tangent share(phi.force, phi.slope * y.derivatives());
-    share.derivatives()[kShapeExponent] += phi.shape_derivative;
+    share.derivatives()[kShape] += phi.shape_derivative;
     return share;
   }
 };

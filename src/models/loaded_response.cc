@@ -10,46 +10,34 @@
 namespace mindahl::models {
 namespace {
 
-/// δc and Tc over μN₀ under a load: δc = (N/N₀)^β/(κβ), β = 1 − α.
-class RimLaw {
- public:
-  RimLaw(double log_rate, double shape_exponent)
-      : log_rate_(log_rate), remaining_(1 - shape_exponent) {}
+/// Holds what a law under load depends on, with derivatives where they are taken along.
+template <typename Real>
+struct LawUnderLoad {
+  Real log_rate;   // ln κ
+  Real remaining;  // β = 1 − α
 
-  void At(double load_ratio, double log_load_ratio, LoadRim<double>& rim) const {
-    rim.slip_force = load_ratio;
-    rim.slip_displacement =
-        load_ratio > 0 ? std::exp(remaining_ * log_load_ratio - log_rate_) / remaining_ : 0.0;
+  /// δc and Tc over μN₀: δc = (N/N₀)^β/(κβ).
+  [[nodiscard]] LoadRim<Real> RimUnder(double load_ratio, double log_load_ratio) const {
+    using std::exp;
+    if (!(load_ratio > 0)) return {Real(0.0), Real(0.0)};
+    return {exp(remaining * log_load_ratio - log_rate) / remaining, Real(load_ratio)};
   }
-
-  void At(double load_ratio, double log_load_ratio, LoadRim<Tangent>& rim) const {
-    LoadRim<double> values;
-    At(load_ratio, log_load_ratio, values);
-    const double at = values.slip_displacement;
-    rim.slip_force = values.slip_force;
-    rim.slip_displacement = {at, {-at, at * (1 / remaining_ - log_load_ratio), 0.0}};
-  }
-
- private:
-  double log_rate_;
-  double remaining_;
 };
 
 /// Runs through a history.
 /// @param at_rest  where the contact is unloaded, with its derivatives
 /// @param keep     takes each sample and its force over μN₀
 template <typename Real, typename Share, typename Keep>
-void Follow(const LoadedHistory& history, const RimLaw& law, const Share& share,
+void Follow(const LoadedHistory& history, const LawUnderLoad<Real>& law, const Share& share,
             const Real& at_rest, ZonedContact<Real>& contact, Keep keep) {
   const std::size_t first = history.before.empty() ? 0 : history.before.front();
   double load = history.load_ratio[first];
-  LoadRim<Real> rim;
-  law.At(load, history.log_load_ratio[first], rim);
+  LoadRim<Real> rim = law.RimUnder(load, history.log_load_ratio[first]);
   StartUnloaded(rim, at_rest, contact);
   const auto move = [&](std::size_t i) {
     if (history.load_ratio[i] != load) {
       load = history.load_ratio[i];
-      law.At(load, history.log_load_ratio[i], rim);
+      rim = law.RimUnder(load, history.log_load_ratio[i]);
     }
     MoveTo(rim, history.displacement[i], share, contact);
   };
@@ -75,10 +63,9 @@ void RequireLawUnderLoad(const NormalizedLaw& law, const LoadedHistory& history,
 }
 
 /// Takes the nearest values that never fall, or never grow, from begin to end.
-void MakeMonotone(std::span<double> values, bool grows, std::vector<double>& means,
-                  std::vector<double>& counts) {
-  means.clear();
-  counts.clear();
+void MakeMonotone(std::span<double> values, bool grows) {
+  std::vector<double> means;
+  std::vector<double> counts;
   for (const double value : values) {
     means.push_back(value);
     counts.push_back(1.0);
@@ -117,14 +104,11 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
     RequireNonNegative("load ratio [-]", ratio);
     history.log_load_ratio.push_back(ratio > 0 ? std::log(ratio) : 0.0);  // 0: lifted off
   }
-  std::vector<double> means;
-  std::vector<double> counts;
   std::size_t begin = 0;
   for (std::size_t stroke = 0; stroke <= reversals.size(); ++stroke) {
     const std::size_t end = stroke < reversals.size() ? reversals[stroke] : displacement.size() - 1;
     const bool grows = displacement[end] > displacement[begin];
-    MakeMonotone(std::span(history.displacement).subspan(begin, end - begin + 1), grows, means,
-                 counts);
+    MakeMonotone(std::span(history.displacement).subspan(begin, end - begin + 1), grows);
     begin = end;
   }
   history.before.clear();
@@ -151,7 +135,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
   RequireLawUnderLoad(law, history, t);
   const double at_rest = history.before.empty() ? unloaded : 0.0;
   backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-    Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
+    Follow(history, LawUnderLoad<double>{std::log(law.rate), 1 - law.shape_exponent},
            ShareOfWidth{shape, law.shape_exponent}, at_rest, plain_,
            [&](std::size_t i, double force) { t[i] = force; });
   });
@@ -160,26 +144,25 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
 void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const LoadedHistory& history,
                                              double unloaded, std::span<double> t,
                                              const NormalizedGradient& gradient) {
-  if (gradient.empty()) {
+  if (IsEmpty(gradient)) {
     Evaluate(law, history, unloaded, t);
     return;
   }
   RequireLawUnderLoad(law, history, t);
-  const auto keep = [](std::span<double> column, std::size_t i, double value) {
-    if (!column.empty()) column[i] = value;
-  };
   using Shape = backbone::GeneralShape<double>;
   const bool has_origin = history.before.empty();
   Tangent at_rest(has_origin ? unloaded : 0.0);
-  if (has_origin) at_rest.derivatives()[kUnloadedDisplacement] = 1.0;
-  std::ranges::fill(gradient.log_spring_travel, 0.0);
-  Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
-         ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent}, at_rest, with_derivatives_,
-         [&](std::size_t i, const Tangent& force) {
+  if (has_origin) at_rest.derivatives()[kUnloaded] = 1.0;
+  std::ranges::fill(gradient[kSpring], 0.0);
+  const LawUnderLoad<Tangent> with_derivatives = {
+      {std::log(law.rate), Eigen::Vector3d::Unit(kRate)},
+      {1 - law.shape_exponent, -Eigen::Vector3d::Unit(kShape)}};
+  Follow(history, with_derivatives, ShareOfWidth<Shape>{{law.shape_exponent}, law.shape_exponent},
+         at_rest, with_derivatives_, [&](std::size_t i, const Tangent& force) {
            t[i] = force.value();
-           keep(gradient.log_rate, i, force.derivatives()[kLogRate]);
-           keep(gradient.shape_exponent, i, force.derivatives()[kShapeExponent]);
-           keep(gradient.unloaded_displacement, i, force.derivatives()[kUnloadedDisplacement]);
+           for (const ResponseParameter by : {kRate, kShape, kUnloaded}) {
+             if (!gradient[by].empty()) gradient[by][i] = force.derivatives()[by];
+           }
          });
 }
 

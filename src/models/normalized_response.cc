@@ -29,14 +29,13 @@ void DifferentiateRun(const backbone::InSeries<double>& shape, const ScaledBranc
                       const BranchGradient& branch_gradient, double limit,
                       std::span<const double> displacement, std::span<double> t,
                       const NormalizedGradient& gradient) {
-  const auto columns = gradient.columns();
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     double force = 0.0;
     const Gradient g = Differentiation::DifferentiateSample(shape, branch, branch_gradient,
                                                             displacement[i], force);
     t[i] = std::clamp(force, -limit, limit);
-    for (std::size_t j = 0; j < g.size(); ++j) {
-      if (!columns[j].empty()) columns[j][i] = g[j];
+    for (std::size_t j = 0; j < gradient.size(); ++j) {
+      if (!gradient[j].empty()) gradient[j][i] = g[static_cast<Eigen::Index>(j)];
     }
   }
 }
@@ -72,7 +71,7 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
                                        const LoadingPath& path,
                                        std::span<const double> displacement, std::span<double> t,
                                        const NormalizedGradient& gradient) {
-  if (gradient.empty()) {
+  if (IsEmpty(gradient)) {
     Evaluate(model, law, path, displacement, t);
     return;
   }
@@ -85,19 +84,16 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
   ScaleBranches(scaling, path, shape, branches_);
   RequireReach(branch_law, branches_, displacement);
   Differentiation(scaling, shape).Differentiate(path, branches_, gradients_);
-  const bool has_kernel = law.spring_travel == 0 && gradient.asymmetry.empty();
-  if (has_kernel) std::ranges::fill(gradient.log_spring_travel, 0.0);
+  const bool has_kernel = law.spring_travel == 0 && gradient[kAsymmetry].empty();
+  if (has_kernel) std::ranges::fill(gradient[kSpring], 0.0);
   for (const BranchRun& run : path.runs) {
     const auto b = static_cast<std::size_t>(run.branch);
     const auto part = [&](std::span<double> column) {
       return column.empty() ? column : column.subspan(run.begin, run.end - run.begin);
     };
     const std::span<const double> places = displacement.subspan(run.begin, run.end - run.begin);
-    const NormalizedGradient of_run{.log_rate = part(gradient.log_rate),
-                                    .shape_exponent = part(gradient.shape_exponent),
-                                    .unloaded_displacement = part(gradient.unloaded_displacement),
-                                    .log_spring_travel = part(gradient.log_spring_travel),
-                                    .asymmetry = part(gradient.asymmetry)};
+    NormalizedGradient of_run;
+    std::ranges::transform(gradient, of_run.begin(), part);
     if (has_kernel) {
       DifferentiateGeneralRun(branches_[b], gradients_[b], law.shape_exponent, limit, places,
                               part(t), of_run);
@@ -141,7 +137,7 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
          sensitivity.gain[b]);
     } else if (branch.start == BranchStart::kSteadyExtreme) {
       sensitivity.per_amplitude[b] = -branch.direction *
-                                     scaling.DifferentiatePeak(branch).peak.per_log_stiffness /
+                                     scaling.Peak(branch.amplitude).peak.per_log_stiffness /
                                      branch.amplitude;
     }
     gradients_.push_back(differentiation.DifferentiateByOriginForce(branch, branches_[b].force));
@@ -177,14 +173,13 @@ NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& bran
   const double of_v = log_v == 0 ? 1.0 : std::exp(-alpha * log_v);  // v^{−α}
   const double per_way = of_v * (1 + softening);                    // by |T − T_r|/Tc
   const double per_remaining = -branch.span * of_v * softening;
-  point.per_log_rate =
-      branch.start.per_log_rate + sign * (per_way * std::abs(way) / law.slip_force +
-                                          per_remaining * branch.remaining_per_log_rate);
-  point.per_shape = branch.start.per_shape +
-                    sign * branch.unit * (ReducedDisplacementPerShape(alpha, log_u) - log_v * y);
-  point.per_zero = branch.is_virgin
-                       ? -per_way
-                       : branch.start.per_zero + sign * per_remaining * branch.remaining_per_zero;
+  point.gradient =
+      branch.start.gradient +
+      sign * (Eigen::Vector3d(per_way * std::abs(way) / law.slip_force,
+                              branch.unit * (ReducedDisplacementPerShape(alpha, log_u) - log_v * y),
+                              0.0) +
+              per_remaining * branch.remaining_gradient);
+  if (branch.is_virgin) point.gradient[2] = -per_way;
   return point;
 }
 
@@ -193,8 +188,7 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
                                            std::span<double> d,
                                            const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
-  const bool with_gradient = !gradient.log_slip_force.empty() || !gradient.shape_exponent.empty() ||
-                             !gradient.unloaded_force.empty();
+  const bool with_gradient = !std::ranges::all_of(gradient, &std::span<double>::empty);
   const double zero = UnloadedAt(path);
   branches_.clear();
   branches_.reserve(path.branches.size());
@@ -208,8 +202,8 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
                   .remaining = scale.remaining,
                   .unit = scale.span * std::pow(scale.remaining, 1 - law.shape_exponent),
                   .is_virgin = is_virgin,
-                  .remaining_per_log_rate = scale.remaining_per_force * from.direction * t,
-                  .remaining_per_zero = -scale.remaining_per_force * from.direction};
+                  .remaining_gradient =
+                      scale.remaining_per_force * from.direction * Eigen::Vector3d(t, 0.0, -1.0)};
     if (from.start == BranchStart::kReversal) {
       const Branch& parent = branches_[static_cast<std::size_t>(from.parent)];
       branch.start = PointOn(parent, law, from.origin, with_gradient);
@@ -217,9 +211,8 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
       // The loop is symmetric: half of the branch to the other extreme lies on either side.
       const double other = from.origin + 2 * from.direction * from.amplitude;
       const Point point = PointOn(branch, law, other, with_gradient);
-      branch.start = {.d = -point.d / 2,
-                      .per_log_rate = -point.per_log_rate / 2,
-                      .per_shape = -point.per_shape / 2};
+      branch.start = {-point.d / 2, -point.gradient / 2};
+      branch.start.gradient[2] = 0.0;
     }
     branches_.push_back(branch);
   }
@@ -229,10 +222,9 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
       const Point point = PointOn(branch, law, force[i], with_gradient);
       d[i] = point.d;
       if (!std::isfinite(point.d)) return false;
-      if (!gradient.log_slip_force.empty()) gradient.log_slip_force[i] = -point.per_log_rate;
-      if (!gradient.shape_exponent.empty()) gradient.shape_exponent[i] = point.per_shape;
-      if (!gradient.unloaded_force.empty()) {
-        gradient.unloaded_force[i] = point.per_zero / law.slip_force;
+      for (std::size_t j = 0; j < gradient.size(); ++j) {
+        const double unit = j == 2 ? law.slip_force : 1.0;
+        if (!gradient[j].empty()) gradient[j][i] = point.gradient[static_cast<int>(j)] / unit;
       }
     }
   }

@@ -20,23 +20,13 @@ struct NormalizedLaw {
   double spring_travel = 0.0;         ///< c = Tc/k_r [m] of a spring in series; 0 without one
 };
 
-/// Derivatives of t = T/Tc, a column each; an empty one is not wanted.
-struct NormalizedGradient {
-  std::span<double> log_rate;               ///< ∂t/∂ln κ
-  std::span<double> shape_exponent;         ///< ∂t/∂α
-  std::span<double> unloaded_displacement;  ///< ∂t/∂δ₀ [1/m], of a virgin contact
-  std::span<double> log_spring_travel;      ///< ∂t/∂ln c
-  std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
+/// Derivatives of t = T/Tc by each ResponseParameter, a column each; an empty one is not wanted.
+using NormalizedGradient = std::array<std::span<double>, kParameters>;
 
-  /// Returns the columns in the order of ResponseParameter.
-  [[nodiscard]] std::array<std::span<double>, kParameters> columns() const {
-    return {log_rate, shape_exponent, unloaded_displacement, log_spring_travel, asymmetry};
-  }
-  /// True if no derivative is wanted.
-  [[nodiscard]] bool empty() const {
-    return std::ranges::all_of(columns(), [](const auto& column) { return column.empty(); });
-  }
-};
+/// True if no derivative is wanted.
+inline bool IsEmpty(const NormalizedGradient& gradient) {
+  return std::ranges::all_of(gradient, &std::span<double>::empty);
+}
 
 /// Derivatives of forces over Tc by the points where branches start, for fits of these points.
 struct OriginSensitivity {
@@ -85,12 +75,9 @@ struct ForcedLaw {
   double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0
 };
 
-/// Derivatives of d = σδ/Tc, a column each; an empty one is not wanted.
-struct DisplacementGradient {
-  std::span<double> log_slip_force;  ///< ∂d/∂ln Tc
-  std::span<double> shape_exponent;  ///< ∂d/∂α
-  std::span<double> unloaded_force;  ///< ∂d/∂T₀ [1/N], of a virgin contact
-};
+/// Derivatives of d = σδ/Tc by −ln Tc, α and T₀ [1/N] of a virgin contact, a column each; an empty
+/// one is not wanted.
+using DisplacementGradient = std::array<std::span<double>, 3>;
 
 /// The inverse of NormalizedResponse: d = σδ/Tc, from where the contact is unloaded, of a contact
 /// whose force is imposed (response.h has the equations), and its gradient, for solvers. On a
@@ -120,11 +107,10 @@ class NormalizedDisplacement {
                      const DisplacementGradient& gradient);
 
  private:
+  /// d with its derivatives by −ln Tc, α and T₀/Tc.
   struct Point {
     double d = 0.0;
-    double per_log_rate = 0.0;  // of 1/Tc
-    double per_shape = 0.0;
-    double per_zero = 0.0;  // of T₀/Tc
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   };
   struct Branch {
     double origin = 0.0;     // T_r [N]
@@ -133,9 +119,8 @@ class NormalizedDisplacement {
     double remaining = 1.0;  // v
     double unit = 1.0;       // m·v^β
     bool is_virgin = false;
-    double remaining_per_log_rate = 0.0;
-    double remaining_per_zero = 0.0;
-    Point start = {};  // at the origin
+    Eigen::Vector3d remaining_gradient = Eigen::Vector3d::Zero();  // of v
+    Point start = {};                                              // at the origin
   };
   static Point PointOn(const Branch& branch, const ForcedLaw& law, double force,
                        bool with_gradient);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -15,14 +15,14 @@ namespace mindahl::models {
 
 /// Numbers the parameters on which forces over Tc depend: ln(σ/Tc), α, δ₀, ln c of a spring, c =
 /// Tc/k_r its travel at slip, and the asymmetry a of slip forces Tc(1 ± a).
-enum ResponseParameter : std::size_t { kRate, kShape, kUnloaded, kSpring, kAsymmetry, kParameters };
-using Gradient = std::array<double, kParameters>;
+enum ResponseParameter : int { kRate, kShape, kUnloaded, kSpring, kAsymmetry, kParameters };
+using Gradient = Eigen::Vector<double, kParameters>;
 
 /// Holds the derivatives of a branch.
 struct BranchGradient {
-  Gradient force{};
-  Gradient height{};
-  Gradient log_rate{};
+  Gradient force = Gradient::Zero();
+  Gradient height = Gradient::Zero();
+  Gradient log_rate = Gradient::Zero();
   double origin_per_unloaded = 0.0;  // 1 on the virgin curve, which moves with δ₀
   /// True of a virgin curve that is run both ways, on which a larger limit on one side is a smaller
   /// one on the other: ∂height/∂a has the sign of e there.
@@ -49,14 +49,10 @@ class Differentiation {
   /// Returns how a branch changes with the force over Tc at its origin, in the place of ln rate.
   [[nodiscard]] BranchGradient DifferentiateByOriginForce(const Branch& branch,
                                                           double origin_force) const {
-    const BranchScale scale = scaling_.ScaleOf(branch, origin_force);
     BranchGradient result;
     result.force[kRate] = 1.0;
     result.origin_per_unloaded = 1.0;
-    if (scale.remaining <= 0) return result;
-    const double remaining = scale.remaining_per_force * branch.direction;
-    result.height[kRate] = scale.span * remaining;
-    result.log_rate[kRate] = (shape_.shape_exponent - 1) * remaining / scale.remaining;
+    AddRemaining(scaling_.ScaleOf(branch, origin_force), branch, result);
     return result;
   }
 
@@ -71,12 +67,9 @@ class Differentiation {
     const double sign = std::copysign(1.0, e);
     force = branch.force + branch.height * sign * phi.force;
     // κ = h·k·c follows height and rate: Φ + κ∂Φ/∂κ = φ/(1+κφ'), Y∂Φ/∂Y + κ∂Φ/∂κ = yφ'/(1+κφ').
-    Gradient result;
-    for (std::size_t j = 0; j < result.size(); ++j) {
-      result[j] = gradient.force[j] +
-                  sign * (gradient.height[j] * (series.share * phi.force) +
-                          branch.height * (series.share * phi.elastic) * gradient.log_rate[j]);
-    }
+    Gradient result =
+        gradient.force + sign * (gradient.height * (series.share * phi.force) +
+                                 branch.height * (series.share * phi.elastic) * gradient.log_rate);
     if (gradient.runs_both_ways) result[kAsymmetry] *= sign;
     result[kShape] += sign * branch.height * (series.share * phi.shape_derivative);
     result[kUnloaded] -=
@@ -88,7 +81,7 @@ class Differentiation {
  private:
   [[nodiscard]] Gradient OriginGradient(const Branch& branch, const ScaledBranches& scaled,
                                         std::span<const BranchGradient> gradients) const {
-    Gradient gradient{};
+    Gradient gradient = Gradient::Zero();
     switch (branch.start) {
       case BranchStart::kUnloaded:
         return gradient;
@@ -96,7 +89,7 @@ class Differentiation {
         gradient[kAsymmetry] = 1.0;
         return gradient;
       case BranchStart::kSteadyExtreme: {
-        const auto [peak, per_log_spring_travel] = scaling_.DifferentiatePeak(branch);
+        const auto [peak, per_log_spring_travel] = scaling_.Peak(branch.amplitude);
         gradient[kRate] = -branch.direction * peak.per_log_stiffness;
         gradient[kShape] = -branch.direction * peak.per_shape;
         gradient[kSpring] = -branch.direction * per_log_spring_travel;
@@ -119,11 +112,7 @@ class Differentiation {
     result.force = origin_gradient;
     result.log_rate[kRate] = 1.0;
     if (scale.remaining <= 0) return result;
-    for (std::size_t j = 0; j < result.height.size(); ++j) {
-      const double remaining = scale.remaining_per_force * branch.direction * origin_gradient[j];
-      result.height[j] = scale.span * remaining;
-      result.log_rate[j] += (shape_.shape_exponent - 1) * remaining / scale.remaining;
-    }
+    AddRemaining(scale, branch, result);
     result.log_rate[kShape] += std::log(scale.remaining);
     if (branch.start != BranchStart::kUnloaded) return result;
     result.origin_per_unloaded = 1.0;
@@ -133,6 +122,14 @@ class Differentiation {
     result.height[kAsymmetry] = result.runs_both_ways ? 1.0 : branch.direction;
     result.log_rate[kAsymmetry] = -result.height[kAsymmetry] / VirginLimit(path, branch);
     return result;
+  }
+
+  /// Adds what the force at the origin changes of height and rate.
+  void AddRemaining(const BranchScale& scale, const Branch& branch, BranchGradient& to) const {
+    if (scale.remaining <= 0) return;
+    const Gradient remaining = scale.remaining_per_force * branch.direction * to.force;
+    to.height += scale.span * remaining;
+    to.log_rate += (shape_.shape_exponent - 1) * remaining / scale.remaining;
   }
 
   const BranchScaling& scaling_;

@@ -66,11 +66,6 @@ class BranchScaling {
         shape_exponent_(law.shape_exponent),
         series_compliance_(rate_ * spring_travel) {}
 
-  [[nodiscard]] SteadyPeak Peak(const Branch& branch) const {
-    const double y = rate_ * std::min(branch.amplitude, backbone::Reach(rate_));
-    return model_.steady_peak(ContactAmplitude(y), shape_exponent_);
-  }
-
   /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
   /// left side is increasing and concave, so that Newton's rule rises to the root from below.
   [[nodiscard]] double ContactAmplitude(double total) const {
@@ -93,10 +88,10 @@ class BranchScaling {
     SteadyPeak peak;                     // ∂/∂ln σ at a given c
     double per_log_spring_travel = 0.0;  // ∂t*/∂ln c
   };
-  [[nodiscard]] PeakInSeries DifferentiatePeak(const Branch& branch) const {
-    const SteadyPeak contact = Peak(branch);
+  [[nodiscard]] PeakInSeries Peak(double amplitude) const {
+    const double y = ContactAmplitude(rate_ * std::min(amplitude, backbone::Reach(rate_)));
+    const SteadyPeak contact = model_.steady_peak(y, shape_exponent_);
     if (series_compliance_ == 0) return {contact};
-    const double y = ContactAmplitude(rate_ * std::min(branch.amplitude, backbone::Reach(rate_)));
     const double yielding =
         y > 0 ? series_compliance_ * (contact.per_log_stiffness / y) : series_compliance_;
     return {{contact.force, contact.per_log_stiffness / (1 + yielding),
@@ -128,7 +123,7 @@ class BranchScaling {
       case BranchStart::kSteadyCentre:
         return asymmetry;
       case BranchStart::kSteadyExtreme:
-        return -branch.direction * Peak(branch).force;
+        return -branch.direction * Peak(branch.amplitude).peak.force;
       case BranchStart::kReversal:
         break;
     }

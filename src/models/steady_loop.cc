@@ -16,7 +16,7 @@ namespace {
 
 /// Returns t* at the amplitude.
 double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
-  return BranchScaling(model, law).Peak({.amplitude = amplitude}).force;
+  return BranchScaling(model, law).Peak(amplitude).peak.force;
 }
 
 }  // namespace

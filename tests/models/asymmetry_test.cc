@@ -156,7 +156,7 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
           const LoadingPath path = PathOf(walk, {.state = state, .asymmetry = asymmetry});
           std::vector<double> t(walk.size());
           NormalizedGradient gradient;
-          gradient.asymmetry = derivative;
+          gradient[kAsymmetry] = derivative;
           NormalizedResponse response;
           response.Differentiate(Masing(), law, path, walk, t, gradient);
           return t;

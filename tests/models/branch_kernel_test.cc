@@ -36,10 +36,7 @@ struct Columns {
 Columns Evaluate(double shape_exponent, const std::vector<double>& displacement) {
   Columns columns(displacement.size());
   DifferentiateGeneralRun(kBranch, GradientOfBranch(), shape_exponent, 1.0, displacement, columns.t,
-                          {.log_rate = columns.rate,
-                           .shape_exponent = columns.shape,
-                           .unloaded_displacement = columns.unloaded,
-                           .log_spring_travel = {}});
+                          {columns.rate, columns.shape, columns.unloaded});
   return columns;
 }
 

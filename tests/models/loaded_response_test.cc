@@ -117,11 +117,7 @@ TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
         std::array<History, 3> columns;
         for (History& column : columns) column.resize(samples);
         NormalizedLoadedResponse().Differentiate({.rate = kRate, .shape_exponent = alpha}, history,
-                                                 unloaded, t,
-                                                 {.log_rate = columns[0],
-                                                  .shape_exponent = columns[1],
-                                                  .unloaded_displacement = columns[2],
-                                                  .log_spring_travel = {}});
+                                                 unloaded, t, {columns[0], columns[1], columns[2]});
         EXPECT_EQ(t.size(), samples);
         const std::array<History, 3> expected = {
             Differences([&](double h) { return at(h, 0, 0); }, kStep),

@@ -62,9 +62,9 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
             {gradient.log_slip_force, gradient.shape_exponent, gradient.unloaded_force}));
         // Each column alone is the same.
         Gradient alone(force.size());
-        const std::array<DisplacementGradient, 3> columns = {{{alone.log_slip_force, {}, {}},
-                                                              {{}, alone.shape_exponent, {}},
-                                                              {{}, {}, alone.unloaded_force}}};
+        const std::array<DisplacementGradient, 3> columns = {{{{alone.log_slip_force, {}, {}}},
+                                                              {{{}, alone.shape_exponent, {}}},
+                                                              {{{}, {}, alone.unloaded_force}}}};
         for (const DisplacementGradient& column : columns) {
           ASSERT_TRUE(displacement.Differentiate(
               model, {kSlipForce, alpha}, PathOfForces(model, force, initial), force, d, column));
@@ -82,8 +82,8 @@ TEST(NormalizedDisplacement, GradientIsThatOfDifferences) {
         };
         expect(gradient.log_slip_force,
                Reduced(model, {kSlipForce * std::exp(kStep), alpha}, force, initial),
-               Reduced(model, {kSlipForce * std::exp(-kStep), alpha}, force, initial), 2 * kStep,
-               "ln Tc");
+               Reduced(model, {kSlipForce * std::exp(-kStep), alpha}, force, initial), -2 * kStep,
+               "-ln Tc");
         expect(gradient.shape_exponent, Reduced(model, {kSlipForce, alpha + kStep}, force, initial),
                Reduced(model, {kSlipForce, alpha - kStep}, force, initial), 2 * kStep, "alpha");
         if (state == InitialState::kSteady) continue;

@@ -35,10 +35,7 @@ inline void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw
                                       .shape_exponent = law.shape_exponent,
                                       .spring_travel = law.slip_force / rig.stiffness},
                                      path, displacement, force,
-                                     {.log_rate = column(0),
-                                      .shape_exponent = column(1),
-                                      .unloaded_displacement = column(2),
-                                      .log_spring_travel = column(3)});
+                                     {column(0), column(1), column(2), column(3)});
   for (std::size_t i = 0; i < size; ++i) {
     double* row = &gradient[i * kGradientColumns];
     const double per_rate = column(0)[i];

@@ -222,12 +222,9 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
 }
 
 models::NormalizedGradient Response::GradientOf(const ResponseColumns& columns) const {
-  return {
-      .log_rate = columns[TermId::kSigma],
-      .shape_exponent = columns[TermId::kAlpha],
-      .unloaded_displacement = columns[TermId::kDisplacementOffset],
-      .log_spring_travel = columns[TermId::kRigStiffness],
-      .asymmetry = HasPathAsymmetry(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
+  return {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kDisplacementOffset],
+          columns[TermId::kRigStiffness],
+          HasPathAsymmetry(*problem_) ? columns[TermId::kAsymmetry] : std::span<double>()};
 }
 
 void Response::DifferentiatePath(const LawPoint& at, std::size_t r, std::span<double> t,
@@ -253,14 +250,8 @@ void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<
   const models::ForcedLaw law{.slip_force = std::exp(-at.log_rate), .shape_exponent = at.shape};
   const bool is_below_slip = displacement_.Differentiate(
       *problem_->model, law, PathOf(r, at.theta), problem_->data->records[r].excitation(), t,
-      {.log_slip_force = columns[TermId::kSigma],
-       .shape_exponent = columns[TermId::kAlpha],
-       .unloaded_force = columns[TermId::kForceOffset]});
-  if (!is_below_slip) {
-    std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
-    return;
-  }
-  for (double& value : columns[TermId::kSigma]) value = -value;
+      {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
+  if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
 }
 
 void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<double> t,
