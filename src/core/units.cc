@@ -4,7 +4,6 @@
 #include <array>
 #include <numbers>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/from_chars.h"
@@ -81,6 +80,20 @@ constexpr std::array kPressures = {
     Entry{"kgf/cm2", 98066.5, 1, "kgf/cm²"},
 };
 
+struct UnitsOfBase {
+  std::string_view base;
+  std::span<const Entry> units;
+};
+constexpr std::array kBases = {UnitsOfBase{"m", kLengths}, UnitsOfBase{"rad", kAngles},
+                               UnitsOfBase{"N", kForces},  UnitsOfBase{"N m", kTorques},
+                               UnitsOfBase{"s", kTimes},   UnitsOfBase{"Pa", kPressures}};
+
+/// Returns the units of a base; none of another word.
+std::span<const Entry> UnitsOf(std::string_view base) {
+  const auto found = std::ranges::find(kBases, base, &UnitsOfBase::base);
+  return found == kBases.end() ? std::span<const Entry>() : found->units;
+}
+
 /// "µ" has two code points, U+00B5 and U+03BC; both become "u".
 std::string WithAsciiMicro(std::string_view symbol) {
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
@@ -89,7 +102,21 @@ std::string WithAsciiMicro(std::string_view symbol) {
   return std::string(symbol);
 }
 
-std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) {
+std::string_view WithoutBlanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
+std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
+  if (const std::optional<Unit> unit = FindUnit(base, symbol)) return unit->ToSi(value);
+  return symbol == base && base != "-" ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Unit> FindUnit(std::string_view base, std::string_view symbol) {
   const std::string ascii = WithAsciiMicro(symbol);
   const std::string lower = LowerCase(symbol);
   const auto is_it = [&](const Entry& entry) {
@@ -99,63 +126,20 @@ std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) 
     return std::ranges::find(words, ascii) != words.end() ||
            (symbol.size() >= 3 && std::ranges::find(words, lower) != words.end());
   };
-  const auto entry = symbol.empty() ? table.end() : std::ranges::find_if(table, is_it);
-  if (entry == table.end()) return std::nullopt;
+  const std::span<const Entry> units = UnitsOf(base);
+  const auto entry = symbol.empty() ? units.end() : std::ranges::find_if(units, is_it);
+  if (entry == units.end()) return std::nullopt;
   return Unit{std::string(entry->symbol), entry->numerator, entry->denominator};
 }
 
-std::string Symbols(std::span<const Entry> table) {
+std::string UnitSymbols(std::string_view base) {
   std::string result;
-  for (const Entry& entry : table) {
+  for (const Entry& entry : UnitsOf(base)) {
     if (!result.empty()) result += ", ";
     result += entry.symbol;
   }
   return result;
 }
-
-}  // namespace
-
-std::optional<Unit> LengthUnit(std::string_view symbol) { return Find(kLengths, symbol); }
-std::optional<Unit> AngleUnit(std::string_view symbol) { return Find(kAngles, symbol); }
-std::optional<Unit> TorqueUnit(std::string_view symbol) { return Find(kTorques, symbol); }
-std::optional<Unit> ForceUnit(std::string_view symbol) { return Find(kForces, symbol); }
-bool IsPressureUnit(std::string_view symbol) { return Find(kPressures, symbol).has_value(); }
-std::optional<Unit> TimeUnit(std::string_view symbol) { return Find(kTimes, symbol); }
-
-std::string LengthUnitSymbols() { return Symbols(kLengths); }
-std::string AngleUnitSymbols() { return Symbols(kAngles); }
-std::string TorqueUnitSymbols() { return Symbols(kTorques); }
-std::string ForceUnitSymbols() { return Symbols(kForces); }
-std::string TimeUnitSymbols() { return Symbols(kTimes); }
-
-namespace {
-
-std::string_view WithoutBlanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::optional<Unit> PressureUnit(std::string_view text) { return Find(kPressures, text); }
-
-/// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
-std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
-  using Finder = std::optional<Unit> (*)(std::string_view);
-  const std::array<std::pair<std::string_view, Finder>, 6> finders = {{{"m", &LengthUnit},
-                                                                       {"N", &ForceUnit},
-                                                                       {"s", &TimeUnit},
-                                                                       {"rad", &AngleUnit},
-                                                                       {"N m", &TorqueUnit},
-                                                                       {"Pa", &PressureUnit}}};
-  for (const auto& [name, find] : finders) {
-    if (name != base) continue;
-    const std::optional<Unit> unit = find(symbol);
-    return unit ? std::optional(unit->ToSi(value)) : std::nullopt;
-  }
-  return symbol == base && base != "-" ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
 
 std::size_t BeginOfUnit(std::string_view text) {
   double value = 0.0;

@@ -21,20 +21,9 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
-std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
-  const std::optional<Unit> force = ForceUnit(symbol);
-  return force ? force : TorqueUnit(symbol);
-}
-
-std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
-
 constexpr std::array kDimensions = {
-    UnitsOfDimension{LengthUnit, LengthUnitSymbols, "m"},
-    UnitsOfDimension{AngleUnit, AngleUnitSymbols, "rad"},
-    UnitsOfDimension{ForceUnit, ForceUnitSymbols, "N"},
-    UnitsOfDimension{TorqueUnit, TorqueUnitSymbols, "N m"},
-    UnitsOfDimension{TimeUnit, TimeUnitSymbols, "s"},
-    UnitsOfDimension{ForceOrTorqueUnit, ForceOrTorqueUnitSymbols, "N"},
+    UnitsOfDimension{"m"},   UnitsOfDimension{"rad"}, UnitsOfDimension{"N"},
+    UnitsOfDimension{"N m"}, UnitsOfDimension{"s"},   UnitsOfDimension{"N", "N m"},
 };
 
 /// True if a list "|a|b|" has the word.

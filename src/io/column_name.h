@@ -16,9 +16,16 @@ enum class Dimension { kLength, kAngle, kForce, kTorque, kTime, kForceOrTorque, 
 
 /// Holds the units of a dimension.
 struct UnitsOfDimension {
-  std::optional<Unit> (*find)(std::string_view);
-  std::string (*symbols)();
   std::string_view si;
+  std::string_view or_else = {};  // base of other units that it may have, "" for none
+
+  [[nodiscard]] std::optional<Unit> find(std::string_view symbol) const {
+    const std::optional<Unit> unit = FindUnit(si, symbol);
+    return unit ? unit : FindUnit(or_else, symbol);
+  }
+  [[nodiscard]] std::string symbols() const {
+    return or_else.empty() ? UnitSymbols(si) : UnitSymbols(si) + ", " + UnitSymbols(or_else);
+  }
 };
 /// @param dimension  before kOther
 const UnitsOfDimension& UnitsOf(Dimension dimension);

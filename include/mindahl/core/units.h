@@ -17,19 +17,22 @@ struct Unit {
   [[nodiscard]] double ToSi(double value) const { return value * numerator / denominator; }
 };
 
-/// Finds a unit of length: m, cm, mm, um/µm/micron, nm, pm, in/inch, ft/feet, mil/thou; nullopt
-/// when the symbol is not a length.
-std::optional<Unit> LengthUnit(std::string_view symbol);
+/// Finds a unit of the quantity whose base is one of these, by its symbol or another name of it;
+/// nullopt where the symbol is none. "µ" may be u:
+///   m    m, cm, mm, um/micron, nm, pm, in/inch, ft/feet, mil/thou
+///   rad  rad, mrad, deg/°, rev
+///   N    N, mN, uN, daN, kN, MN, lbf/lb, kgf/kg, gf/g/grams, kip, dyn; case decides between mN
+///        (10⁻³) and MN (10⁶)
+///   N m  N m, mN m, uN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m
+///   s    s/sec, ms, us, ns, min, h
+///   Pa   Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2
+std::optional<Unit> FindUnit(std::string_view base, std::string_view symbol);
 
-/// Finds a unit of angle: rad, mrad, deg/°, rev.
-std::optional<Unit> AngleUnit(std::string_view symbol);
+/// Returns the symbols of units of that base, for messages: "m, mm, um, nm, in".
+std::string UnitSymbols(std::string_view base);
 
-/// Finds N, mN, uN/µN, daN, kN, MN, lbf/lb, kgf/kg, gf/g/grams, kip, dyn; case decides between mN
-/// (10⁻³) and MN (10⁶).
-std::optional<Unit> ForceUnit(std::string_view symbol);
-
-/// Finds N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m.
-std::optional<Unit> TorqueUnit(std::string_view symbol);
+/// True for a pressure, which no column is.
+inline bool IsPressureUnit(std::string_view symbol) { return FindUnit("Pa", symbol).has_value(); }
 
 /// Reads a number in `unit`, or one with a unit of the same kind: "210GPa" and "2.1e11" in Pa,
 /// "50 N", "48 N/um" in N/m; "inf" is a number. Empty where the text is neither.
@@ -38,18 +41,5 @@ std::optional<double> ParseQuantity(std::string_view text, std::string_view unit
 
 /// Returns where the unit of a quantity begins: at its end where it has none.
 std::size_t BeginOfUnit(std::string_view text);
-
-/// True for a pressure, which no column is: Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2.
-bool IsPressureUnit(std::string_view symbol);
-
-/// Finds a unit of time: s/sec, ms, us/µs, ns, min, h.
-std::optional<Unit> TimeUnit(std::string_view symbol);
-
-/// Returns the accepted symbols, for messages: "m, mm, um, nm, in".
-std::string LengthUnitSymbols();
-std::string AngleUnitSymbols();
-std::string ForceUnitSymbols();
-std::string TorqueUnitSymbols();
-std::string TimeUnitSymbols();
 
 }  // namespace mindahl
