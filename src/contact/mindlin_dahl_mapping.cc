@@ -86,35 +86,31 @@ double HertzRadiusOf(const KnownContact& known) {
 /// @param compute  of known properties
 template <typename Compute>
 UncertainValue Propagated(const KnownContact& known, const Compute& compute) {
-  constexpr double kStep = 1e-5;
-  constexpr double kLargestPoissonRatio = 0.5;
   KnownContact moved = known;
   UncertainValue result = compute(known);
-  const auto add = [&](std::optional<UncertainValue>& input, double step, double largest) {
+  const auto add = [&](std::optional<UncertainValue>& input, bool is_poisson_ratio = false) {
+    constexpr double kStep = 1e-5;
+    constexpr double kLargestPoissonRatio = 0.5;
     if (!input || !(input->standard_error > 0)) return;
     const double at = input->value;
-    const double above = std::min(at + step, largest);
+    const double step = kStep * (is_poisson_ratio ? 1 + at : std::abs(at));
+    const double above = is_poisson_ratio ? std::min(at + step, kLargestPoissonRatio) : at + step;
+    const double below = at - step;
     input->value = above;
     const double more = compute(moved);
-    const double below = at - step;
     input->value = below;
     const double change = (more - compute(moved)) / (above - below) * input->standard_error;
     input->value = at;
     result.standard_error = std::hypot(result.standard_error, change);
   };
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto add_relative = [&](std::optional<UncertainValue>& input) {
-    if (input) add(input, kStep * std::abs(input->value), kInfinity);
-  };
   for (KnownBody* body : {&moved.body_1, &moved.body_2}) {
-    add_relative(body->youngs_modulus);
-    add_relative(body->radius);
-    if (!body->poisson_ratio) continue;
-    add(body->poisson_ratio, kStep * (1 + body->poisson_ratio->value), kLargestPoissonRatio);
+    add(body->youngs_modulus);
+    add(body->radius);
+    add(body->poisson_ratio, true);
   }
-  add_relative(moved.normal_load);
-  add_relative(moved.contact_radius);
-  add_relative(moved.tangential_compliance);
+  add(moved.normal_load);
+  add(moved.contact_radius);
+  add(moved.tangential_compliance);
   return result;
 }
 
