@@ -151,7 +151,7 @@ SteadyLaw LawOf(const ModelLaw& contact, Form form, const ConversionOptions& opt
       break;
   }
   constexpr double kElastic = 1e-13;  // of the amplitude: what slips later is rounding
-  const double friction = LoopEnergy(contact, amplitude) / (4 * amplitude);
+  const double friction = LoopOf(contact, amplitude).energy / (4 * amplitude);
   if (!(friction > 0)) {
     throw InvalidArgument("the contact sticks at this amplitude: Coulomb's friction would be 0");
   }

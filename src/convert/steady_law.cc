@@ -102,14 +102,6 @@ double VirginForce(const IwanElements& elements, double x) {
   return force;
 }
 
-/// The steady loop of a law between ±X.
-struct SteadyLoop {
-  double peak;                          // T* [N]
-  double energy;                        // W [J]
-  std::vector<double> corners;          // distances [m] at which the rising branch bends
-  std::function<double(double)> force;  // on it [N], of distances [m] that do not fall
-};
-
 SteadyLoop LoopOf(const ModelLaw& of, double amplitude) {
   const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
   const double share = peak / of.law.slip_force;
@@ -155,10 +147,14 @@ SteadyLoop LoopOf(const IwanElements& elements, double amplitude) {
   return loop;
 }
 
+}  // namespace
+
 SteadyLoop LoopOf(const SteadyLaw& law, double amplitude) {
   RequirePositive("amplitude [m]", amplitude);
   return std::visit([&](const auto& of) { return LoopOf(of, amplitude); }, law);
 }
+
+namespace {
 
 /// Stiffness and slip force with which a law has a contact's peak force and energy at an amplitude.
 struct Scales {
@@ -168,8 +164,9 @@ struct Scales {
 
 /// @param unit  the law with a stiffness and a slip force of 1
 Scales ScalesOf(const ModelLaw& contact, double amplitude, const SteadyLaw& unit) {
-  const double wanted_peak = PeakForce(contact, amplitude);
-  const double fullness = LoopEnergy(contact, amplitude) / (4 * amplitude * wanted_peak);
+  const SteadyLoop wanted = LoopOf(contact, amplitude);
+  const double wanted_peak = wanted.force(2 * amplitude);
+  const double fullness = wanted.energy / (4 * amplitude * wanted_peak);
   // W/(4·y·t*) grows from 0 for a loop that sticks to 1 for one that slides.
   const auto excess = [&](double log_y) {
     const double y = std::exp(log_y);
@@ -185,18 +182,6 @@ Scales ScalesOf(const ModelLaw& contact, double amplitude, const SteadyLaw& unit
 }
 
 }  // namespace
-
-void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
-                          std::span<double> force) {
-  RequireSameSize("distance", distance.size(), "force", force.size());
-  std::ranges::transform(distance, force.begin(), LoopOf(law, amplitude).force);
-}
-
-double PeakForce(const SteadyLaw& law, double amplitude) {
-  return LoopOf(law, amplitude).force(2 * amplitude);
-}
-
-double LoopEnergy(const SteadyLaw& law, double amplitude) { return LoopOf(law, amplitude).energy; }
 
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
   constexpr int kPlaces = 512;
@@ -225,8 +210,9 @@ BranchLaw SamePeakAndEnergy(const ModelLaw& contact, double amplitude,
                             const models::FrictionModel& model, double shape_exponent) {
   if (shape_exponent == 0) {
     // A spring with Coulomb's limit loses 4Tc(X − Tc/k).
-    const double peak = PeakForce(contact, amplitude);
-    const double slid = LoopEnergy(contact, amplitude) / (4 * peak);
+    const SteadyLoop loop = LoopOf(contact, amplitude);
+    const double peak = loop.force(2 * amplitude);
+    const double slid = loop.energy / (4 * peak);
     return {peak / (amplitude - slid), 0.0, peak};
   }
   const auto [stiffness, slip_force] =

@@ -78,7 +78,8 @@ TEST(Conversion, HasThePeakForceAndTheEnergyOfTheContact) {
     for (const ModelLaw& contact : {kMindlin, ModelLaw{&Model("dahl"), {4e7, 0.7, 40.0}}}) {
       for (const char* target : {"lugre", "bouc-wen", "lammps", "mujoco"}) {
         const Conversion made = To(target, contact, {.amplitude = amplitude});
-        EXPECT_NEAR(PeakForce(made.law, amplitude) / PeakForce(contact, amplitude), 1.0, kSolved)
+        EXPECT_NEAR(LoopOf(made.law, amplitude).peak / LoopOf(contact, amplitude).peak, 1.0,
+                    kSolved)
             << target << ' ' << lambda;
         EXPECT_NEAR(made.at_amplitude.energy, 0.0, 1e-6) << target << ' ' << lambda;
         EXPECT_LT(made.at_amplitude.force, 0.3) << target << ' ' << lambda;
@@ -90,7 +91,7 @@ TEST(Conversion, HasThePeakForceAndTheEnergyOfTheContact) {
 TEST(Conversion, ToCoulombsFrictionLosesTheEnergyOfTheLoopAndNoPresliding) {
   // A rectangle of height F differs by F + T* after a reversal.
   constexpr double kElastic = 1e-12;  // ten times what a spring of 1e-13·X leaves
-  const double energy = LoopEnergy(kMindlin, kAmplitude);
+  const double energy = LoopOf(kMindlin, kAmplitude).energy;
   const double peak = models::SteadyPeakForce(*kMindlin.model, kMindlin.law, kAmplitude);
   for (const char* target : {"mujoco-joint", "urdf", "sdf"}) {
     const Conversion joint = To(target, kMindlin);

@@ -22,7 +22,7 @@ struct Branch {
   }
   [[nodiscard]] std::vector<double> Of(const SteadyLaw& law) const {
     std::vector<double> force(distance.size());
-    EvaluateRisingBranch(law, distance.back() / 2, distance, force);
+    std::ranges::transform(distance, force.begin(), LoopOf(law, distance.back() / 2).force);
     return force;
   }
   std::vector<double> distance;
@@ -92,7 +92,7 @@ TEST(SteadyLaw, OfBoucWenMatchesIntegratedEquation) {
 TEST(SteadyLaw, EnergyOfBoucAndWenIsDahlsForBetaAndNOfOne) {
   constexpr double kEnergy = 1e-6;  // as stated
   for (const double amplitude : {1e-8, 1e-7, 1e-6, 2e-5}) {
-    EXPECT_NEAR(LoopEnergy(BoucWenLaw{4e7, 40.0, 1.0, 1.0}, amplitude) /
+    EXPECT_NEAR(LoopOf(BoucWenLaw{4e7, 40.0, 1.0, 1.0}, amplitude).energy /
                     models::SteadyLoopEnergy(Model("dahl"), {4e7, 1.0, 40.0}, amplitude),
                 1.0, kEnergy)
         << amplitude;
@@ -116,7 +116,7 @@ TEST(SteadyLaw, OfElementsIsTheirOwnSteadyLoop) {
       area += (expected[i + 2] + expected[i + 1]) * (branch.distance[i] - branch.distance[i - 1]);
     }
     // W = 2∫T dx over the branch; of a polygon the trapezoids miss a step's square at each corner.
-    EXPECT_NEAR(LoopEnergy(elements, amplitude) / (4 * amplitude * 40.0),
+    EXPECT_NEAR(LoopOf(elements, amplitude).energy / (4 * amplitude * 40.0),
                 area / (4 * amplitude * 40.0), 1e-5);
   }
 }
@@ -169,8 +169,8 @@ TEST(SteadyLaw, RefusesInvalidLaw) {
   EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 0.0, 1.0, 0.5}), InvalidArgument);
   EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 0.5, 0.5}), InvalidArgument);
   EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 1.0, 1.0, 0.0}), InvalidArgument);
-  EXPECT_THROW(LoopEnergy(BoucWenLaw{1.0, 1.0, 1.0, 0.5}, -1.0), InvalidArgument);
-  EXPECT_THROW(LoopEnergy(ModelLaw{&Model("dahl"), {0.0, 1.0, 1.0}}, 1.0), InvalidArgument);
+  EXPECT_THROW(LoopOf(BoucWenLaw{1.0, 1.0, 1.0, 0.5}, -1.0).energy, InvalidArgument);
+  EXPECT_THROW(LoopOf(ModelLaw{&Model("dahl"), {0.0, 1.0, 1.0}}, 1.0).energy, InvalidArgument);
 }
 
 }  // namespace

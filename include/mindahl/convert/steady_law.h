@@ -1,7 +1,8 @@
 #pragma once
 
-#include <span>
+#include <functional>
 #include <variant>
+#include <vector>
 
 #include "mindahl/methods/iwan.h"
 #include "mindahl/models/branch_law.h"
@@ -30,22 +31,21 @@ struct BoucWenLaw {
 
 using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
 
-/// Computes the force [N] on the rising branch of the steady loop between ±amplitude, at distances
-/// from its start at −amplitude. The falling branch is its image through the centre.
+/// The steady loop of a law between ±X.
+struct SteadyLoop {
+  double peak = 0.0;            ///< T* [N], the force at +X
+  double energy = 0.0;          ///< W [J] lost per cycle
+  std::vector<double> corners;  ///< distances [m] from its start at which the rising branch bends
+  /// Returns the force [N] on the rising branch at a distance [m] from its start at −X, none
+  /// shorter than that of the last call. The falling branch is its image through the centre.
+  std::function<double(double)> force;
+};
+
 /// @param amplitude  X [m], finite, > 0
-/// @param distance   [m], in 0 … 2X, ascending
-/// @param force      written; same size
-/// @throws InvalidArgument for an invalid law or amplitude, and sizes that differ
-/// Error below 1e-13 of the slip force, of Bouc's and Wen's below 1e-8.
-void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
-                          std::span<double> force);
-
-/// Returns T* [N], the force at +amplitude. Throws and errs as EvaluateRisingBranch().
-double PeakForce(const SteadyLaw& law, double amplitude);
-
-/// Returns W [J] lost per cycle of the steady loop between ±amplitude. Relative error as of
-/// SteadyLoopEnergy, of Bouc's and Wen's below 1e-6 for X > 0.01·Tc/k.
-double LoopEnergy(const SteadyLaw& law, double amplitude);
+/// @throws InvalidArgument for an invalid law or amplitude
+/// Error of forces below 1e-13 of the slip force, of Bouc's and Wen's below 1e-8; relative error of
+/// the energy as of SteadyLoopEnergy, of Bouc's and Wen's below 1e-6 for X > 0.01·Tc/k.
+SteadyLoop LoopOf(const SteadyLaw& law, double amplitude);
 
 /// Holds the differences of one law's steady loop from another's.
 struct LoopError {
