@@ -133,6 +133,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
       Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
     Append(result.findings, FindFewPlaces(problem, thresholds));
+    if (!problem.data->is_forced()) Append(result.findings, FindForceAtLimit(attempt.prepared));
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));

@@ -173,6 +173,10 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
      "the force keeps changing while the contact slides"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
+    {"force_at_limit",
+     "the force reads {limit:force} in {share%} of the samples, to the last digit: the sensor is "
+     "at its "
+     "limit, and Tc is no less"},
     {"few_places",
      "all samples lie in {places} places of the loop: sample out of step with the motion, or more "
      "often"},

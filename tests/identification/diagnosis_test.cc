@@ -1,5 +1,6 @@
 #include "identification/diagnosis/diagnosis.h"
 
+#include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit.h"
 #include "support/prelude.h"
@@ -97,6 +98,26 @@ TEST(FindVaryingLoads, StateTheAmplitudeOfASineAboutTheMeanOfWhatCounts) {
   ASSERT_EQ(findings.size(), 1U);
   // The variance of 0.5, 0.3 and 0.1 is 0.08/3.
   EXPECT_NEAR(findings[0].numbers[0].second, std::sqrt(2 * 0.08 / 3), 1e-15);
+}
+
+TEST(ForceAtLimit, IsOfASensorThatSaturatesAndNotOfAPlateau) {
+  Generator generator(5);
+  const loop::Record clean = Loop();
+  EXPECT_FALSE(FitOne(clean).FindFinding("force_at_limit")) << "a plateau that was computed";
+  const loop::Record noisy = WithForceNoise(clean, 0.2, generator);
+  EXPECT_FALSE(FitOne(noisy).FindFinding("force_at_limit"));
+  loop::Record counted = noisy;
+  for (double& force : counted.force) force = 4.0 * std::round(force / 4.0);
+  EXPECT_FALSE(FitOne(counted).FindFinding("force_at_limit")) << "steps repeat everywhere";
+  loop::Record clipped = noisy;
+  const double limit = 0.6 * *std::ranges::max_element(clean.force);
+  for (double& force : clipped.force) force = std::min(force, limit);
+  const FitResult fit = FitOne(clipped);
+  const Finding* finding = fit.FindFinding("force_at_limit");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->Number("limit"), limit);
+  EXPECT_FALSE(fit.Find("slip_force")->is_known());
+  EXPECT_FALSE(fit.Find("alpha")->is_known());
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ inline constexpr auto kFindings = [] {
       {"alpha_limited_by_load", kBoundedBelow},
       {"search_limit", kNotIdentifiable},
       {"few_places", kNotIdentifiable},
+      {"force_at_limit", kNotIdentifiable, kWarning, true},
       {"unknown_past", kNotIdentifiable},
       {.code = "shape_or_rig", .severity = kNote},
       {.code = "prior_contradicted"},

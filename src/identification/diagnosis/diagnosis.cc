@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "core/probability.h"
+#include "loop/statistics.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
@@ -287,6 +289,31 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
   if (!is_known) finding.parameters.emplace_back("asymmetry");
   finding.numbers = {{"never_slips", most}};
   return finding;
+}
+
+std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
+  constexpr double kOften = 0.05;  // of the samples
+  constexpr double kNoise = 1e-4;  // of the range: what is computed repeats its slip force
+  for (const loop::PreparedRecord& record : records.records) {
+    const std::span<const double> force = record.record.force;
+    const auto [lowest, highest] = std::ranges::minmax(force);
+    const auto count = static_cast<double>(force.size());
+    for (const double limit : {highest, lowest}) {
+      const double share = static_cast<double>(std::ranges::count(force, limit)) / count;
+      if (share < kOften) continue;
+      std::vector<double> others(force.begin(), force.end());
+      std::erase(others, lowest);
+      std::erase(others, highest);
+      const bool is_noisy =
+          others.size() > 8 && loop::NoiseByDifferences(others, 4) > kNoise * (highest - lowest);
+      const std::set<double> distinct(others.begin(), others.end());
+      if (!is_noisy || 2 * distinct.size() < others.size()) continue;
+      return Finding{.code = "force_at_limit",
+                     .parameters = {"alpha", "slip_force"},
+                     .numbers = {{"limit", limit}, {"share", share}}};
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {

@@ -51,6 +51,11 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
 /// held, the offsets of the records in which it does not.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
+/// `force_at_limit`: a force that stands at its largest or least reading, to the last digit, in a
+/// twentieth of the samples, though it has noise and no other reading repeats. That is the sensor's
+/// limit and not the contact's.
+std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records);
+
 /// Samples that come back to the same few places of the loop in every cycle, however many they are:
 /// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
