@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
-#include "io/cells.h"
+#include "core/text.h"
 #include "mindahl/core/units.h"
 
 namespace mindahl::cli {
@@ -79,7 +79,7 @@ CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most) {
 CLI::Validator InUnit(const std::string& unit) {
   const auto convert = [unit](std::string& text) -> std::string {
     // A text without a unit is read, and refused, as a number.
-    if (io::Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
+    if (Trimmed(std::string_view(text).substr(BeginOfUnit(text))).empty()) return {};
     const std::optional<double> value = ParseQuantity(text, unit);
     if (!value) {
       return fmt::format("'{}' is no quantity in {}: write a number or its unit", text, unit);

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "core/from_chars.h"
 #include "core/nearest_name.h"
-#include "io/cells.h"
+#include "core/text.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
@@ -41,13 +41,13 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
     const std::size_t at = text.find(separator);
     if (at == std::string_view::npos) continue;
     stated = text.substr(0, at);
-    magnitude = io::Trimmed(text.substr(at + separator.size()));
+    magnitude = Trimmed(text.substr(at + separator.size()));
     break;
   }
   const bool is_percentage = magnitude.ends_with('%');
   if (is_percentage) magnitude.remove_suffix(1);
   // A unit at the end is that of the value too.
-  if (io::Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
+  if (Trimmed(std::string_view(stated).substr(BeginOfUnit(stated))).empty()) {
     stated += magnitude.substr(BeginOfUnit(magnitude));
   }
   std::optional<double> standard_error = ParseQuantity(magnitude, is_percentage ? "-" : unit);

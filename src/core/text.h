@@ -18,6 +18,13 @@ inline std::string LowerCase(std::string_view text) {
   return lower;
 }
 
+/// Returns the text without the blanks and tabs around it.
+inline std::string_view Trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
 /// Returns the number of characters of a text in UTF-8: of bytes that do not go on with one.
 inline std::size_t CharactersIn(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(

@@ -107,12 +107,6 @@ std::optional<double> ReadClock(std::string_view text) {
 
 }  // namespace
 
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes) {
   std::size_t end = std::min(text.find('\n'), text.size());
   ++lines;

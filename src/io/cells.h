@@ -5,13 +5,11 @@
 #include <string_view>
 
 #include "core/from_chars.h"
+#include "core/text.h"
 
 namespace mindahl::io {
 
 inline constexpr double kDay = 86'400.0;  // [s]
-
-/// Returns the text without the blanks and tabs around it.
-std::string_view Trimmed(std::string_view text);
 
 /// Takes the first row off a text, without its end: a line, and those below it while a quotation
 /// mark is open.

@@ -21,11 +21,6 @@ constexpr std::string_view kOtherUnits =
 constexpr std::string_view kRemarks =
     "|raw|ave|avg|mean|min|max|rms|filtered|measured|actual|abs|rel|calc|corrected|trigger|demand|";
 
-constexpr std::array kDimensions = {
-    UnitsOfDimension{"m"},   UnitsOfDimension{"rad"}, UnitsOfDimension{"N"},
-    UnitsOfDimension{"N m"}, UnitsOfDimension{"s"},   UnitsOfDimension{"N", "N m"},
-};
-
 /// True if a list "|a|b|" has the word.
 bool Lists(std::string_view list, std::string_view word) {
   return list.find('|' + std::string(word) + '|') != std::string_view::npos;
@@ -125,11 +120,7 @@ NameEvidence EvidenceOf(std::string_view name) {
   return evidence;
 }
 
-bool IsKnown(std::string_view symbol) {
-  const Dimension dimension = DimensionOfUnit(symbol);
-  return (dimension != Dimension::kOther && dimension != Dimension::kNone) ||
-         IsPressureUnit(symbol) || Lists(kOtherUnits, symbol);
-}
+bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
 
 /// True for a text in brackets that can only be meant as a unit, though none that is known.
 bool MayBeUnit(std::string_view text) {
@@ -170,10 +161,10 @@ void TakeUnitAtEnd(ColumnName& split) {
     const bool is_marked = plain[at] == ',' || plain[at] == '/';
     const NameEvidence evidence = EvidenceOf(name);
     // "F_h" is a horizontal force, "F_rad" a radial one; "k_N" is nothing that is known.
-    const Dimension dimension = DimensionOfUnit(unit);
-    const bool agrees =
-        evidence.word.empty() ? CharactersIn(unit) > 1 : MayHaveRole(dimension, evidence.role);
-    if (!is_marked && (!agrees || dimension == Dimension::kOther)) continue;
+    const std::optional<Dimension> dimension = DimensionOf(unit);
+    const bool agrees = evidence.word.empty() ? dimension && CharactersIn(unit) > 1
+                                              : MayHaveRole(dimension, evidence.role);
+    if (!is_marked && !agrees) continue;
     split.unit = unit;
     if (name.ends_with(" in")) name.resize(name.size() - 3);
     const bool is_perhaps_normal = LowerCase(name) == "f" && unit == "N";
@@ -184,30 +175,25 @@ void TakeUnitAtEnd(ColumnName& split) {
 
 }  // namespace
 
-const UnitsOfDimension& UnitsOf(Dimension dimension) {
-  return kDimensions.at(static_cast<std::size_t>(dimension));
+std::optional<Dimension> DimensionOf(std::string_view symbol) {
+  const std::optional<Unit> unit = FindUnit(symbol);
+  return unit ? std::optional(unit->dimension) : std::nullopt;
 }
 
-Dimension DimensionOfUnit(std::string_view symbol) {
-  if (symbol.empty()) return Dimension::kNone;
-  for (const Dimension dimension : {Dimension::kLength, Dimension::kAngle, Dimension::kForce,
-                                    Dimension::kTorque, Dimension::kTime}) {
-    if (UnitsOf(dimension).find(symbol)) return dimension;
+bool MayHaveRole(std::optional<Dimension> dimension, Role role) {
+  switch (dimension.value_or(Dimension::kPressure)) {
+    case Dimension::kLength:
+    case Dimension::kAngle:
+      return role == Role::kDisplacement;
+    case Dimension::kForce:
+    case Dimension::kTorque:
+      return role == Role::kForce || role == Role::kNormalLoad;
+    case Dimension::kTime:
+      return role == Role::kTime;
+    case Dimension::kPressure:
+      return false;
   }
-  return Dimension::kOther;
-}
-
-bool MayHaveRole(Dimension dimension, Role role) {
-  const bool is_angular = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
-  switch (role) {
-    case Role::kDisplacement:
-      return dimension == (is_angular ? Dimension::kAngle : Dimension::kLength);
-    case Role::kForce:
-    case Role::kNormalLoad:
-      return dimension == (is_angular ? Dimension::kTorque : Dimension::kForce);
-    default:
-      return role == Role::kTime && dimension == Dimension::kTime;
-  }
+  return false;
 }
 
 std::string_view WithoutBrackets(std::string_view cell) {

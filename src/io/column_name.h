@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,28 +13,10 @@ namespace mindahl::io {
 /// Names what a column may be.
 enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther };
 
-enum class Dimension { kLength, kAngle, kForce, kTorque, kTime, kForceOrTorque, kOther, kNone };
-
-/// Holds the units of a dimension.
-struct UnitsOfDimension {
-  std::string_view si;
-  std::string_view or_else = {};  // base of other units that it may have, "" for none
-
-  [[nodiscard]] std::optional<Unit> find(std::string_view symbol) const {
-    const std::optional<Unit> unit = FindUnit(si, symbol);
-    return unit ? unit : FindUnit(or_else, symbol);
-  }
-  [[nodiscard]] std::string symbols() const {
-    return or_else.empty() ? UnitSymbols(si) : UnitSymbols(si) + ", " + UnitSymbols(or_else);
-  }
-};
-/// @param dimension  before kOther
-const UnitsOfDimension& UnitsOf(Dimension dimension);
-
-/// Returns the dimension of a unit; kNone for "".
-Dimension DimensionOfUnit(std::string_view symbol);
 /// True if a quantity of that dimension may have the role.
-bool MayHaveRole(Dimension dimension, Role role);
+bool MayHaveRole(std::optional<Dimension> dimension, Role role);
+/// Returns the dimension of a unit; none of one that is not known.
+std::optional<Dimension> DimensionOf(std::string_view symbol);
 
 /// Holds what the words of a name say; those of words.h.
 struct NameEvidence {

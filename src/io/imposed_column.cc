@@ -20,8 +20,8 @@ std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string
     if (first_is_another) columns.terms = names.Find("", Role::kDisplacement, taken).terms;
     if (columns.terms.empty()) columns.terms = {{0, 1.0}};
   }
-  const Dimension dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
-                                                   : DimensionOfUnit(columns.unit);
+  const auto dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
+                                              : DimensionOf(columns.unit);
   const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
   std::vector<std::string> notes;  // SI is the documented default here
   return names.InUnit(Role::kDisplacement, std::move(columns), is_torsional, notes).Numbers(table);

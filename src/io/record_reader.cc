@@ -162,7 +162,7 @@ void RecordBuilder::FindOrigin(const ColumnNames& names, Expression& time) {
     note("holds times of day: taken as seconds since midnight of the first one's day");
   } else if (const std::string stated = is_as_written ? names.UnitOf(first, "--time") : "";
              !stated.empty()) {
-    const auto unit = FindUnit("s", stated);
+    const auto unit = FindUnit(stated);
     if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
   } else if (time.unit.empty() && is_as_written) {
     time.unit = ImpliedTimeUnit(names[first].name.evidence.word, start);

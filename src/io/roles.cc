@@ -21,9 +21,10 @@ constexpr std::array kRules = {
               &RecordColumns::displacement},
     RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque, &RecordColumns::force},
     RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime, &RecordColumns::time},
-    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kForceOrTorque,
+    // A joint carries a torque.
+    RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kTorque,
               &RecordColumns::normal_load},
-    RoleRules{"covariate", "--covariate", Dimension::kOther, Dimension::kOther, nullptr},
+    RoleRules{"covariate", "--covariate", {}, {}, nullptr},
 };
 constexpr std::array kRolesOfRecord = {Role::kDisplacement, Role::kForce, Role::kTime,
                                        Role::kNormalLoad};
@@ -76,7 +77,7 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
     found = is_named || !has_word ? kUnit - kStep : 0;
   }
   if (is_named) {
-    const bool may_be = column.dimension == Dimension::kNone || is_of_unit;
+    const bool may_be = column.unit.empty() || is_of_unit;
     const bool is_needed = role == Role::kDisplacement || role == Role::kForce;
     const int others = std::min<int>(static_cast<int>(evidence.other_words), kStep - 1);
     found += may_be ? kWord - kStep * evidence.rank - others : is_needed ? 1 : 0;
@@ -87,10 +88,15 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
 /// Returns whether a column is an angle or a torque, or else a length or a force, by the unit or
 /// else the name; empty where neither says.
 std::optional<bool> IsAngular(const ColumnNames& names, std::size_t column, std::string_view unit) {
-  const Dimension dimension = unit.empty() ? names[column].dimension : DimensionOfUnit(unit);
+  const auto dimension = unit.empty() ? names[column].dimension : DimensionOf(unit);
   if (dimension == Dimension::kAngle || dimension == Dimension::kTorque) return true;
   if (dimension == Dimension::kLength || dimension == Dimension::kForce) return false;
   return names[column].name.evidence.is_angular ? std::optional(true) : std::nullopt;
+}
+
+std::string SiUnit(Dimension dimension) {
+  const std::string symbols = UnitSymbols(dimension);
+  return symbols.substr(0, symbols.find(','));
 }
 
 class RoleAssigner {
@@ -190,60 +196,56 @@ class RoleAssigner {
   /// Returns the columns that may have a role: the one that is given, else those with evidence; of
   /// these, those that go to and fro, if any does. There is always one, perhaps without a column.
   std::vector<Candidate> CandidatesFor(Role role) {
-    const std::string& unit = roles_[role].unit;
-    if (!IsMissing(role)) return {{ColumnOf(role), 0, IsAngular(names_, ColumnOf(role), unit)}};
-    std::vector<Candidate> moving;
-    std::vector<Candidate> unmoved;
-    std::vector<std::size_t> all;
+    const auto candidate = [&](std::size_t column, int evidence) {
+      return Candidate{column, evidence, IsAngular(names_, column, roles_[role].unit)};
+    };
+    if (!IsMissing(role)) return {candidate(ColumnOf(role), 0)};
+    std::vector<Candidate> found;
+    std::vector<std::size_t> columns;
+    int most_moving = 0;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const int evidence = EvidenceFor(names_[column], role);
       if (taken_[column] || !names_[column].is_numeric || evidence <= 0) continue;
-      all.push_back(column);
-      (names_[column].goes_to_and_fro ? moving : unmoved)
-          .push_back({column, evidence, IsAngular(names_, column, unit)});
+      found.push_back(candidate(column, evidence));
+      columns.push_back(column);
+      if (names_[column].goes_to_and_fro) most_moving = std::max(most_moving, evidence);
     }
-    if (all.empty()) return {Candidate{}};
-    if (moving.empty()) return unmoved;
-    const auto most = [](const std::vector<Candidate>& of) {
-      return of.empty() ? 0 : std::ranges::max(of, {}, &Candidate::evidence).evidence;
-    };
-    if (most(unmoved) >= most(moving)) {
+    if (found.empty()) return {Candidate{}};
+    if (most_moving == 0) return found;
+    const auto rests = [&](const Candidate& of) { return !names_[*of.column].goes_to_and_fro; };
+    if (std::ranges::any_of(
+            found, [&](const Candidate& of) { return rests(of) && of.evidence >= most_moving; })) {
       notes_.push_back(fmt::format("{}: {}: one that goes to and fro is taken", file_,
-                                   names_.MayEachBe(role, all)));
+                                   names_.MayEachBe(role, columns)));
     }
-    return moving;
+    std::erase_if(found, rests);
+    return found;
   }
 
   /// Takes the displacement and the force of the most evidence that go together.
   void FindPair() {
     constexpr int kMismatch = 40;
     const std::vector<Candidate> displacements = CandidatesFor(Role::kDisplacement);
+    const std::vector<Candidate> forces = CandidatesFor(Role::kForce);
+    if (!displacements.front().column && LeftColumns().empty()) ThrowNoColumn(Role::kDisplacement);
     int most = std::numeric_limits<int>::min();
-    std::set<std::size_t> of_displacement;
-    std::set<std::size_t> of_force;
-    for (const Candidate& f : CandidatesFor(Role::kForce)) {
-      for (const Candidate& x : displacements) {
+    std::array<std::set<std::size_t>, 2> best;
+    for (const Candidate& x : displacements) {
+      for (const Candidate& f : forces) {
         if (x.column && x.column == f.column) continue;
         const bool differs = x.is_angular && f.is_angular && x.is_angular != f.is_angular;
         const int evidence = x.evidence + f.evidence - (differs ? kMismatch : 0);
         if (evidence < most) continue;
-        if (evidence > std::exchange(most, evidence)) {
-          of_displacement.clear();
-          of_force.clear();
-        }
-        if (x.column) of_displacement.insert(*x.column);
-        if (f.column) of_force.insert(*f.column);
+        if (evidence > std::exchange(most, evidence)) best = {};
+        if (x.column) best[0].insert(*x.column);
+        if (f.column) best[1].insert(*f.column);
       }
     }
-    const std::optional<std::size_t> first = displacements.front().column;
-    if (most == std::numeric_limits<int>::min() && first) of_displacement.insert(*first);
-    for (const auto& [role, columns] :
-         {std::pair(Role::kDisplacement, of_displacement), std::pair(Role::kForce, of_force)}) {
+    // The only column with evidence has it of both.
+    if (most == std::numeric_limits<int>::min()) best[0].insert(*displacements.front().column);
+    for (const Role role : {Role::kDisplacement, Role::kForce}) {
+      const std::set<std::size_t>& columns = best.at(static_cast<std::size_t>(role));
       if (!IsMissing(role) || columns.empty()) continue;
-      const bool has_other = !of_displacement.empty() || !IsMissing(Role::kDisplacement);
-      if (columns.size() > 1 && !has_other && LeftColumns().empty()) {
-        ThrowNoColumn(Role::kDisplacement);
-      }
       if (columns.size() > 1) names_.ThrowAmbiguous(role, {columns.begin(), columns.end()});
       Take(*columns.begin(), role);
     }
@@ -254,7 +256,7 @@ class RoleAssigner {
     std::vector<std::size_t> left;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const bool is_unknown = of.dimension == Dimension::kNone && of.name.evidence.word.empty();
+      const bool is_unknown = of.unit.empty() && of.name.evidence.word.empty();
       if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
     }
     return left;
@@ -330,7 +332,7 @@ class RoleAssigner {
     const auto unit = [&](Role role) {
       const std::string stated =
           roles_[role].unit.empty() ? names_.UnitOf(ColumnOf(role), "") : roles_[role].unit;
-      return stated.empty() ? std::string(UnitsOf(RulesOf(role).angular).si) : stated;
+      return stated.empty() ? SiUnit(RulesOf(role).angular) : stated;
     };
     Refuse(
         "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
@@ -388,8 +390,8 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
     columns_.push_back(ObservedIn(column.values));
     Column& added = columns_.back();
     added.name = SplitColumnName(column.name);
-    added.dimension = DimensionOfUnit(added.name.unit.empty() ? WithoutBrackets(column.unit)
-                                                              : std::string_view(added.name.unit));
+    added.unit = added.name.unit.empty() ? WithoutBrackets(column.unit) : added.name.unit;
+    added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
   }
 }
@@ -444,11 +446,10 @@ bool ColumnNames::StatesOneUnit(std::size_t column) const {
 }
 
 std::string ColumnNames::UnitOf(std::size_t column, std::string_view option) const {
-  const std::string& unit = columns_[column].name.unit;
-  const std::string of_row(WithoutBrackets(table_.columns[column].unit));
-  if (StatesOneUnit(column)) return unit.empty() ? of_row : unit;
+  const std::string& unit = columns_[column].unit;
+  if (StatesOneUnit(column)) return unit;
   Refuse("{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}", Header(),
-         Label(column), unit, of_row,
+         Label(column), unit, WithoutBrackets(table_.columns[column].unit),
          option.empty() ? "" : fmt::format(" with {} '{} [{}]'", option, column + 1, unit));
 }
 
@@ -500,47 +501,49 @@ std::string ColumnNames::Header() const {
 Quantity ColumnNames::InUnit(Role role, Expression sum, bool is_torsional,
                              std::vector<std::string>& notes) const {
   const auto& [name, option, linear, angular, given] = RulesOf(role);
-  const UnitsOfDimension& units = UnitsOf(is_torsional ? angular : linear);
+  const Dimension dimension = is_torsional ? angular : linear;
   const std::size_t first = sum.terms.front().column;
-  std::string where = table_.file;
-  const auto found = [&](const std::string& symbol) {
-    std::optional<Unit> unit = units.find(symbol);
-    if (!unit && IsPressureUnit(symbol)) {
-      Refuse(
-          "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is "
-          "an additional force, for which there is --covariate",
-          where, Label(first), symbol, name);
-    }
-    return unit;
+  const auto is_of_role = [&](const std::optional<Unit>& unit) {
+    return unit && (unit->dimension == linear || unit->dimension == dimension);
+  };
+  const auto require_no_pressure = [&](const std::string& symbol, const std::string& where) {
+    if (DimensionOf(symbol) != Dimension::kPressure) return;
+    Refuse(
+        "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is an "
+        "additional force, for which there is --covariate",
+        where, Label(first), symbol, name);
   };
   if (!sum.unit.empty()) {
-    if (const auto unit = found(sum.unit)) return {role, std::move(sum), *unit};
-    Refuse("{}: the {} unit '{}' is not known: must be one of {}", where, name,
-           ForMessage(sum.unit), units.symbols());
+    if (const auto unit = FindUnit(sum.unit); is_of_role(unit))
+      return {role, std::move(sum), *unit};
+    require_no_pressure(sum.unit, table_.file);
+    Refuse("{}: the {} unit '{}' is not known: must be one of {}", table_.file, name,
+           ForMessage(sum.unit), UnitSymbols(dimension));
   }
   const std::string stated = UnitOf(first, option);
+  const std::string si = SiUnit(dimension);
   for (const Expression::Term& term : sum.terms) {
     if (UnitOf(term.column, option) == stated) continue;
     Refuse(
         "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
         "as in {} '… [{}]'",
-        where, Label(first), Label(term.column), option, units.si);
+        table_.file, Label(first), Label(term.column), option, si);
   }
-  const bool is_of_columns = !sum.is_scaled || units.find(stated);
-  if (!stated.empty() && is_of_columns) {
-    where = fmt::format("{}:{}", Header(), first + 1);
-    if (const auto unit = found(stated)) return {role, std::move(sum), *unit};
+  if (const auto unit = FindUnit(stated); is_of_role(unit)) return {role, std::move(sum), *unit};
+  if (!stated.empty() && !sum.is_scaled) {
+    const std::string where = fmt::format("{}:{}", Header(), first + 1);
+    require_no_pressure(stated, where);
     Refuse(
         "{}: the unit '{}' of {} is not known for the {}: must be one of {}, or choose the unit "
         "with {} '{} [{}]'",
-        where, ForMessage(stated), Label(first), name, units.symbols(), option, first + 1,
-        units.si);
+        where, ForMessage(stated), Label(first), name, UnitSymbols(dimension), option, first + 1,
+        si);
   }
   if (stated.empty() && (role != Role::kTime || sum.terms.size() > 1)) {
-    notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so", where,
-                                name, Label(first), units.si, option, first + 1, units.si));
+    notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
+                                table_.file, name, Label(first), si, option, first + 1, si));
   }
-  return {role, std::move(sum), {.symbol = std::string(units.si)}};
+  return {role, std::move(sum), *FindUnit(si)};
 }
 
 Roles AssignRoles(const ColumnNames& names, const RecordColumns& columns,

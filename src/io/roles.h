@@ -19,7 +19,7 @@ namespace mindahl::io {
 struct RoleRules {
   std::string_view name;  ///< "normal load"
   std::string_view option;
-  Dimension linear, angular;  // of its units; a joint carries a torque
+  Dimension linear, angular;  // of its units
   std::string RecordColumns::*given;
 };
 const RoleRules& RulesOf(Role role);
@@ -63,7 +63,8 @@ class ColumnNames {
   /// A column, with what is evidence of its role.
   struct Column {
     ColumnName name;
-    Dimension dimension = Dimension::kNone;
+    std::string unit = {};  ///< in the name, or else of the units row
+    std::optional<Dimension> dimension = {};
     bool is_numeric = false;   ///< half of its rows or more have a number
     bool is_clock = false;     ///< its numbers are times of day
     bool is_constant = false;  ///< all numbers are the same
