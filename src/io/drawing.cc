@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/locale/utf.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/text.h"
-#include "io/source.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {
@@ -352,23 +352,28 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
 }
 
 std::string HtmlText(std::string_view text) {
+  constexpr std::array<std::pair<char32_t, std::string_view>, 5> kEscapes = {
+      {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
+  using Utf8 = boost::locale::utf::utf_traits<char>;
   std::string escaped;
   escaped.reserve(text.size());
-  for (std::size_t at = 0; at < text.size();) {
-    constexpr std::array<std::pair<char, std::string_view>, 5> kEscapes = {
-        {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
-    const std::size_t length = Utf8LengthAt(text, at);
-    const auto first = static_cast<unsigned char>(text[at]);
+  for (const char *at = text.data(), *end = at + text.size(); at != end;) {
+    const char* next = at;
+    const char32_t character = Utf8::decode(next, end);
     const auto* const escape =
-        std::ranges::find(kEscapes, text[at], &std::pair<char, std::string_view>::first);
-    if (length == 0 || (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F) {
-      escaped += "\xEF\xBF\xBD";
+        std::ranges::find(kEscapes, character, &std::pair<char32_t, std::string_view>::first);
+    if (character == boost::locale::utf::illegal || character == boost::locale::utf::incomplete) {
+      next = at + 1;
+    }
+    const bool is_control = character < 0x20 && character != '\n' && character != '\t';
+    if (next == at + 1 && (is_control || character >= 0x7F)) {
+      escaped += "\uFFFD";
     } else if (escape != kEscapes.end()) {
       escaped += escape->second;
     } else {
-      escaped += text.substr(at, length);
+      escaped.append(at, next);
     }
-    at += std::max<std::size_t>(length, 1);
+    at = next;
   }
   return escaped;
 }

@@ -32,14 +32,14 @@ std::string NameOfInput(const std::filesystem::path& path);
 /// Returns a text from a file as a message shows it: on one line, cut off after 60 bytes or so.
 std::string ForMessage(std::string_view text);
 
-/// Returns the bytes of the character of UTF-8 that begins there, 0 where there is none.
-std::size_t Utf8LengthAt(std::string_view text, std::size_t at);
-
 /// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
 /// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
-/// UTF-8, Shift-JIS by two characters or more that begin with 0x81 to 0x9F, GB18030 by pairs of
-/// bytes from 0xA1 on alone; the rest is Windows-1252, of which Latin-1 is a part.
+/// UTF-8, Shift-JIS by two bytes or more from 0x81 to 0x9F, GB18030 by two characters of GB2312 in
+/// a row; the rest is Windows-1252, of which Latin-1 is a part.
 std::string EncodingOf(std::string_view head);
+
+/// An iconv_t, closed with it.
+using Decoder = std::unique_ptr<void, void (*)(void*)>;
 
 /// A file, plain or compressed by gzip, as UTF-8 in pieces of whole lines that end in LF.
 class LinePieces {
@@ -68,18 +68,15 @@ class LinePieces {
     bool is_shared;  ///< standard input, which nobody closes
     void operator()(gzFile_s* file) const;
   };
-  struct CloseDecoder {
-    void operator()(void* decoder) const;
-  };
   void ReadBytes(std::string& to);
   void FindEncoding();
-  void Decode();
+  void TakeUndecoded();
   [[noreturn]] void ThrowZeroByte(const std::string& line) const;
 
   std::string name_;
   std::string encoding_;
   std::unique_ptr<gzFile_s, CloseGzip> file_;
-  std::unique_ptr<void, CloseDecoder> decoder_;  // iconv_t
+  Decoder decoder_{nullptr, nullptr};
   // gzread() fills it; of a short file the most of it is never touched.
   std::unique_ptr<char[]> piece_ = std::make_unique_for_overwrite<char[]>(kPiece);
   std::string undecoded_;  // bytes that were read
