@@ -52,7 +52,8 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   const std::uintmax_t most = MemoryOfProcess();
   if (!is_no_file) RequireMemory(0, size, most, name);
   const Layout layout = FindLayout(text, name);
-  TableReader reader(layout, name, skip_broken);
+  LeftOutRows skipped;
+  TableReader reader(layout, skip_broken ? &skipped : nullptr);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
     if (!reader.fault().empty()) break;
@@ -66,7 +67,7 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
         fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
                     table.header_line, table.blocks.size()));
   }
-  if (const LeftOutRows& skipped = reader.skipped(); skipped.count > 0) {
+  if (skipped.count > 0) {
     table.notes.push_back(fmt::format("{} broken row{} left out, the first: {}", skipped.count,
                                       skipped.count == 1 ? " is" : "s are", skipped.fault));
   }

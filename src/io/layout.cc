@@ -106,8 +106,8 @@ class Reading {
   [[nodiscard]] long score() const { return score_; }
   [[nodiscard]] std::size_t open_quote_line() const { return open_quote_line_; }
 
-  /// Finds the data and the header above them.
-  Layout Find(const std::string& file) &&;
+  /// Finds the data and the header above them, which may be a comment.
+  Layout Find(const std::string& file, const Row* comment) &&;
   [[noreturn]] void ThrowNoNumbers(const std::string& file) const;
 
  private:
@@ -117,11 +117,14 @@ class Reading {
   [[nodiscard]] std::optional<Strings> HeaderCells(const Row& row) const;
   [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
   void FindNames(const std::string& file);
+  void FindNamesIn(Row comment);
   void FindStatedUnits(const Row& row);
   void FindInterval();
+  void MakeColumns();
   [[noreturn]] void ThrowNoHeader(const std::string& file) const;
 
   Layout layout_;
+  Strings names_, units_;  // one a column, or none
   std::vector<Row> rows_;
   std::size_t columns_ = 0;     ///< number in most rows with data
   long score_ = 0;              ///< numbers less broken numbers in the rows with so many columns
@@ -164,18 +167,32 @@ Reading::Reading(std::span<const Row> sampled, char delimiter) {
   for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
 }
 
-Layout Reading::Find(const std::string& file) && {
+Layout Reading::Find(const std::string& file, const Row* comment) && {
+  layout_.header.file = file;
   data_ = FirstDataRow();
   PassResults();
   layout_.data_offset = rows_[data_].offset;
   layout_.data_line = rows_[data_].line;
   FindNames(file);
-  layout_.columns = std::max({columns_, layout_.names.size(), layout_.units.size()});
-  if (!layout_.names.empty()) layout_.names.resize(layout_.columns);
-  if (!layout_.units.empty()) layout_.units.resize(layout_.columns);
-  layout_.holds_numbers.resize(layout_.columns);
-  layout_.mostly_numbers.resize(layout_.columns);
+  if (layout_.header.header_line == 0 && comment != nullptr) FindNamesIn(*comment);
+  FindInterval();
+  MakeColumns();
   return std::move(layout_);
+}
+
+void Reading::MakeColumns() {
+  std::vector<TableColumn>& columns = layout_.header.columns;
+  columns.resize(std::max({columns_, names_.size(), units_.size()}));
+  layout_.holds_numbers.resize(columns.size());
+  layout_.mostly_numbers.resize(columns.size());
+  for (std::size_t k = 0; k < names_.size(); ++k) columns[k].name = names_[k];
+  for (std::size_t k = 0; k < units_.size(); ++k) columns[k].unit = units_[k];
+  // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+  for (std::size_t k = 1; k < columns.size(); ++k) {
+    const bool may_be = layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
+    std::string& unit = columns[k - 1].unit;
+    if (may_be && unit.empty() && LooksLikeUnit(columns[k].name)) unit = columns[k].name;
+  }
 }
 
 std::size_t Reading::FirstDataRow() const {
@@ -264,7 +281,7 @@ void Reading::FindNames(const std::string& file) {
   for (std::size_t k = data_; k-- > begin;) {
     const Row& row = rows_[k];
     const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
-    if (layout_.names.empty() && may_be_data) break;
+    if (names_.empty() && may_be_data) break;
     auto cells = HeaderCells(row);
     if (!cells) {
       FindStatedUnits(row);
@@ -272,52 +289,68 @@ void Reading::FindNames(const std::string& file) {
     }
     if (IsUnitsRow(*cells)) {
       const bool states = StatesUnits(cells->front());
-      if (!layout_.units.empty() || (!states && !layout_.names.empty())) continue;
+      if (!units_.empty() || (!states && !names_.empty())) continue;
       if (states) cells->front().clear();
-      layout_.units = std::move(*cells);
+      units_ = std::move(*cells);
       layout_.units_row = row.text;
-      if (layout_.names.empty()) header = k;
+      if (names_.empty()) header = k;
       continue;
     }
     const std::size_t known = CountKnownWords(*cells);
-    const bool is_adjacent = k + 1 == data_ || (k + 1 == header && layout_.names.empty());
-    const bool is_better = (most == 0 && known >= 2) || (layout_.names.empty() && is_adjacent);
+    const bool is_adjacent = k + 1 == data_ || (k + 1 == header && names_.empty());
+    const bool is_better = (most == 0 && known >= 2) || (names_.empty() && is_adjacent);
     if (!is_better || (!is_adjacent && !NamesColumns(*cells))) continue;
     most = known;
     header = k;
-    layout_.names = std::move(*cells);
+    names_ = std::move(*cells);
     layout_.names_row = row.text;
   }
-  if (layout_.names.empty() && !std::ranges::all_of(layout_.units, LooksLikeUnit)) {
-    layout_.names = std::exchange(layout_.units, {});  // one of the names is a symbol of a unit
+  if (names_.empty() && !std::ranges::all_of(units_, LooksLikeUnit)) {
+    names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
     layout_.names_row = std::exchange(layout_.units_row, {});
   }
-  FindInterval();
   if (data_ == 0) return;
   if (header == data_) ThrowNoHeader(file);
-  layout_.header_line = rows_[header].line;
-  layout_.preamble_rows = header;
+  const std::size_t line = layout_.header.header_line = rows_[header].line;
+  if (header > 0) {
+    layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
+                                               line, header, header == 1 ? "" : "s"));
+  }
+}
+
+/// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
+void Reading::FindNamesIn(Row comment) {
+  comment.text.remove_prefix(comment.text.find('#') + 1);
+  if (!comment.ReadCells(layout_.delimiter, open_quote_line_)) return;
+  const std::size_t columns = std::max(columns_, units_.size());
+  for (const Strings& cells :
+       {comment.cells, JoinBracketedUnits(comment.cells), SplitAtTwoBlanks(comment.text)}) {
+    if (cells.size() != columns || CountKnownWords(cells) < 2) continue;
+    names_ = cells;
+    layout_.header.header_line = comment.line;
+    return;
+  }
 }
 
 /// A row of the preamble that states the units, "Y_Unit_Label" of LabVIEW or "Unit", behind which
 /// those of the columns stand.
 void Reading::FindStatedUnits(const Row& row) {
-  if (!layout_.units.empty() || row.cells.size() < 2) return;
+  if (!units_.empty() || row.cells.size() < 2) return;
   if (!StatesUnits(row.cells.front()) || row.cells.size() > columns_ + 1) return;
-  layout_.units = row.cells;
-  layout_.units.front().clear();
-  layout_.units.resize(columns_);
+  units_ = row.cells;
+  units_.front().clear();
+  units_.resize(columns_);
 }
 
 /// The time between rows of a LabVIEW file without a column of it.
 void Reading::FindInterval() {
-  if (layout_.names.empty() || layout_.names.front() != "X_Value" || layout_.mostly_numbers[0]) {
+  if (names_.empty() || names_.front() != "X_Value" || layout_.mostly_numbers[0]) {
     return;
   }
   for (const Row& row : std::span(rows_).first(data_)) {
     if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
     const Cell cell = ReadCell(row.cells[1], true);
-    if (cell.kind == Cell::Kind::kNumber && cell.value > 0) layout_.interval = cell.value;
+    if (cell.kind == Cell::Kind::kNumber && cell.value > 0) layout_.header.interval = cell.value;
   }
 }
 
@@ -366,20 +399,6 @@ char StatedDelimiter(std::string_view row) {
   return states ? row.back() : '\0';
 }
 
-/// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
-void FindNamesIn(Row comment, Layout& layout) {
-  comment.text.remove_prefix(comment.text.find('#') + 1);
-  std::size_t open_quote_line = 0;
-  if (!comment.ReadCells(layout.delimiter, open_quote_line)) return;
-  for (const Strings& cells :
-       {comment.cells, JoinBracketedUnits(comment.cells), SplitAtTwoBlanks(comment.text)}) {
-    if (cells.size() != layout.columns || CountKnownWords(cells) < 2) continue;
-    layout.names = cells;
-    layout.header_line = comment.line;
-    return;
-  }
-}
-
 }  // namespace
 
 Layout FindLayout(std::string_view text, const std::string& file) {
@@ -424,9 +443,8 @@ Layout FindLayout(std::string_view text, const std::string& file) {
     widest->ThrowNoNumbers(file);
   }
   open_quote_line = best->open_quote_line();
-  Layout layout = std::move(*best).Find(file);
+  Layout layout = std::move(*best).Find(file, comment ? &*comment : nullptr);
   if (open_quote_line > 0 && open_quote_line < layout.data_line) throw_open(open_quote_line);
-  if (layout.header_line == 0 && comment) FindNamesIn(*std::move(comment), layout);
   return layout;
 }
 

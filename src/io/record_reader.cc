@@ -62,8 +62,9 @@ void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
 class RecordBuilder {
  public:
   /// Assigns the columns, by the rows that the table has.
-  RecordBuilder(const CsvTable& table, const RecordColumns& asked)
-      : skip_broken_(asked.skip_broken_rows) {
+  /// @param left_out  counts the rows without a number in a column that is used
+  RecordBuilder(const CsvTable& table, const RecordColumns& asked, LeftOutRows& left_out)
+      : skip_broken_(asked.skip_broken_rows), left_out_(left_out) {
     const std::optional<double>& rate = asked.sample_rate;
     if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
       Refuse("--sample-rate {}: must be finite and > 0 Hz", *rate);
@@ -97,8 +98,6 @@ class RecordBuilder {
   [[nodiscard]] RecordFile& file() { return file_; }
   /// Returns the columns that are used, from 0, each once.
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
-  /// Returns the rows left out so far.
-  [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
 
   /// Appends the rows of a table, up to one that is refused; those without a number in a column
   /// that is used are left out.
@@ -118,7 +117,7 @@ class RecordBuilder {
   std::vector<Quantity> quantities_;
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
-  LeftOutRows left_out_;
+  LeftOutRows& left_out_;
   std::size_t rows_ = 0;      // seen so far
   double interval_ = 0.0;     // [s] between rows, in place of a column of times
   double time_origin_ = 0.0;  // in the unit of the time
@@ -380,12 +379,13 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
 }  // namespace
 
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
-  RecordBuilder builder(table, columns);
+  LeftOutRows left_out;
+  RecordBuilder builder(table, columns, left_out);
   Samples samples;
   std::string fault = builder.Add(table, samples);
   if (fault.empty()) fault = builder.TooManyLeftOut();
   RecordFile& file = builder.file();
-  file.left_out = builder.left_out();
+  file.left_out = left_out;
   if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
   if (!fault.empty()) throw InputError(fault);
   if (file.left_out.count > 0) {
@@ -411,11 +411,10 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 struct RecordStream::State {
   State(const std::filesystem::path& path, const RecordColumns& columns)
       : pieces(path, columns.encoding),
-        name(NameOfInput(path)),
         rows(pieces.Next()),
-        layout(FindLayout(rows, name)),
-        builder(FirstRows(), columns),
-        reader(layout, name, columns.skip_broken_rows, builder.wanted()) {
+        layout(FindLayout(rows, NameOfInput(path))),
+        builder(FirstRows(), columns, left_out),
+        reader(layout, columns.skip_broken_rows ? &left_out : nullptr, builder.wanted()) {
     if (!columns.with.empty()) {
       Refuse("--with: a record that is read in pieces is of one file: join them before");
     }
@@ -428,14 +427,15 @@ struct RecordStream::State {
   /// those at fault is for Next() to say.
   CsvTable FirstRows() const {
     constexpr std::size_t kJudged = LinePieces::kPiece / 8;  // [bytes]
-    TableReader first(layout, name, /*skip_broken=*/true);
+    LeftOutRows skipped;
+    TableReader first(layout, &skipped);
     const std::string_view data = rows.substr(layout.data_offset);
     first.Read(data.substr(0, std::min(data.find('\n', kJudged), data.size() - 1) + 1));
     return std::move(first.table());
   }
 
   LinePieces pieces;
-  std::string name;
+  LeftOutRows left_out;
   std::string_view rows;  // of the first piece
   Layout layout;
   RecordBuilder builder;
@@ -450,7 +450,7 @@ RecordStream::~RecordStream() = default;
 const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
 
 bool RecordStream::Next(Samples& samples) {
-  auto& [pieces, name, rows, layout, builder, reader, refusal] = *state_;
+  auto& [pieces, left_out, rows, layout, builder, reader, refusal] = *state_;
   for (const auto column : loop::kRecordColumns) (samples.*column).clear();
   samples.lines.clear();
   while (samples.lines.empty()) {
@@ -467,16 +467,7 @@ bool RecordStream::Next(Samples& samples) {
   return true;
 }
 
-LeftOutRows RecordStream::left_out() const {
-  const LeftOutRows& missing = state_->builder.left_out();
-  LeftOutRows all = state_->reader.skipped();
-  if (missing.count > 0 && (all.count == 0 || missing.first_line < all.first_line)) {
-    all.first_line = missing.first_line;
-    all.fault = missing.fault;
-  }
-  all.count += missing.count;
-  return all;
-}
+LeftOutRows RecordStream::left_out() const { return state_->left_out; }
 
 std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
 

@@ -8,39 +8,16 @@
 
 namespace mindahl::io {
 
-TableReader::TableReader(const Layout& layout, std::string file, bool skip_broken,
-                         std::vector<std::size_t> wanted)
+TableReader::TableReader(const Layout& layout, LeftOutRows* skipped,
+                         const std::vector<std::size_t>& wanted)
     : layout_(layout),
-      wanted_(std::move(wanted)),
-      places_(layout.columns, -1),
-      line_(layout.data_line - 1),
-      skip_broken_(skip_broken) {
-  const bool reads_all = wanted_.empty();
-  for (std::size_t column = 0; column < layout.columns && reads_all; ++column) {
-    if (layout.holds_numbers[column]) wanted_.push_back(column);
-  }
-  values_.resize(wanted_.size());
-  last_clock_.resize(wanted_.size());
-  for (std::size_t k = 0; k < wanted_.size(); ++k) places_[wanted_[k]] = static_cast<int>(k);
-  table_.file = std::move(file);
-  table_.header_line = layout.header_line;
-  table_.interval = layout.interval;
-  table_.columns.resize(layout.columns);
-  for (std::size_t column = 0; column < layout.columns; ++column) {
-    if (!layout.names.empty()) table_.columns[column].name = layout.names[column];
-    if (!layout.units.empty()) table_.columns[column].unit = layout.units[column];
-    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
-    if (column == 0 || !layout.mostly_numbers[column - 1] || layout.mostly_numbers[column])
-      continue;
-    const std::string& name = table_.columns[column].name;
-    std::string& unit = table_.columns[column - 1].unit;
-    if (unit.empty() && LooksLikeUnit(name)) unit = name;
-  }
-  if (layout.preamble_rows > 0) {
-    table_.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", table_.file,
-                                       layout.header_line, layout.preamble_rows,
-                                       layout.preamble_rows == 1 ? "" : "s"));
-  }
+      table_(layout.header),
+      skipped_(skipped),
+      is_wanted_(wanted.empty() ? layout.holds_numbers : std::vector<bool>(layout.columns())),
+      values_(layout.columns()),
+      last_clock_(layout.columns()),
+      line_(layout.data_line - 1) {
+  for (const std::size_t column : wanted) is_wanted_[column] = true;
 }
 
 void TableReader::Clear() {
@@ -58,8 +35,8 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
 }
 
 void TableReader::RefuseRow(const std::string& fault) {
-  if (skip_broken_) {
-    skipped_.Add(row_line_, fault);
+  if (skipped_ != nullptr) {
+    skipped_->Add(row_line_, fault);
   } else {
     fault_ = fault;
   }
@@ -81,15 +58,16 @@ void TableReader::ReadRow(std::string_view row) {
   EndGap();
   if (!fault_.empty()) return;
   for (CellFault& cell : cell_faults_) {
-    TableColumn& column = table_.columns[wanted_[cell.place]];
+    TableColumn& column = table_.columns[cell.column];
     std::string& first = cell.is_missing ? column.missing : column.fault;
     if (!first.empty()) continue;
     first = std::move(cell.message);
     if (!cell.is_missing) column.fault_row = table_.rows();
   }
   table_.lines.push_back(row_line_);
-  auto value = values_.begin();
-  for (const std::size_t column : wanted_) table_.columns[column].values.push_back(*value++);
+  for (std::size_t column = 0; column < values_.size(); ++column) {
+    if (is_wanted_[column]) table_.columns[column].values.push_back(values_[column]);
+  }
 }
 
 /// Reads the values of a row.
@@ -98,18 +76,17 @@ bool TableReader::ReadCells(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
   bool has_content = false;
   std::size_t column = 0;
-  for (; column < places_.size() && cells.has_next(); ++column) {
-    if (places_[column] < 0) {
+  for (; column < values_.size() && cells.has_next(); ++column) {
+    if (!is_wanted_[column]) {
       has_content = cells.Skip() || has_content;
       continue;
     }
-    const auto place = static_cast<std::size_t>(places_[column]);
-    double& value = values_[place];
+    double& value = values_[column];
     const std::string_view number = mark_ == ',' ? std::string_view() : cells.TakeNumber(value);
     if (number.empty()) {
       const std::string_view text = cells.Take();
       has_content = has_content || !text.empty();
-      value = ValueOf(place, text);
+      value = ValueOf(column, text);
     } else {
       has_content = true;
       if (mark_ == '\0' && layout_.has_decimal_comma() && number.find('.') != number.npos) {
@@ -118,7 +95,7 @@ bool TableReader::ReadCells(std::string_view row) {
       }
     }
   }
-  if (has_content && cell_faults_.empty() && column == places_.size() && !cells.has_next()) {
+  if (has_content && cell_faults_.empty() && column == values_.size() && !cells.has_next()) {
     return true;
   }
   const std::size_t count = column;
@@ -126,13 +103,13 @@ bool TableReader::ReadCells(std::string_view row) {
   for (; cells.has_next(); ++column) {
     const std::string_view text = cells.Take();
     if (text.empty() || !too_many.empty()) continue;
-    too_many =
-        At(column, fmt::format("'{}' is one cell too many: the table has {} column{}{}",
-                               ForMessage(text), layout_.columns, layout_.columns == 1 ? "" : "s",
-                               layout_.delimiter == ','
-                                   ? "; leave out commas that separate thousands, and separate the "
-                                     "columns by ';' or tabs where commas are decimal marks"
-                                   : ""));
+    too_many = At(
+        column, fmt::format("'{}' is one cell too many: the table has {} column{}{}",
+                            ForMessage(text), layout_.columns(), layout_.columns() == 1 ? "" : "s",
+                            layout_.delimiter == ','
+                                ? "; leave out commas that separate thousands, and separate the "
+                                  "columns by ';' or tabs where commas are decimal marks"
+                                : ""));
   }
   if (cells.is_open()) {
     RefuseRow(
@@ -140,14 +117,13 @@ bool TableReader::ReadCells(std::string_view row) {
     return false;
   }
   if (!has_content && too_many.empty()) return false;
-  for (std::size_t missing = count; missing < places_.size(); ++missing) {
-    if (places_[missing] < 0) continue;
-    const auto place = static_cast<std::size_t>(places_[missing]);
-    values_[place] = Cell().value;
+  for (std::size_t missing = count; missing < values_.size(); ++missing) {
+    if (!is_wanted_[missing]) continue;
+    values_[missing] = Cell().value;
     cell_faults_.push_back(
-        {place, false,
+        {missing, false,
          At(missing, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
-                                 count == 1 ? "" : "s", layout_.columns))});
+                                 count == 1 ? "" : "s", layout_.columns()))});
   }
   if ((!cell_faults_.empty() || !too_many.empty()) && BelongsToHeader(row)) return false;
   if (!too_many.empty()) RefuseRow(too_many);
@@ -155,14 +131,13 @@ bool TableReader::ReadCells(std::string_view row) {
 }
 
 /// Reads a cell that is not plainly a number.
-double TableReader::ValueOf(std::size_t place, std::string_view text) {
-  const std::size_t column = wanted_[place];
+double TableReader::ValueOf(std::size_t column, std::string_view text) {
   Cell cell = ReadCell(text, layout_.has_decimal_comma());
   const bool has_mark = cell.kind == Cell::Kind::kNumber && cell.decimal_mark != '\0';
   if (has_mark && layout_.has_decimal_comma() && cell.decimal_mark != mark_) {
     if (mark_ != '\0') {
       cell_faults_.push_back(
-          {place, false,
+          {column, false,
            At(column, fmt::format("'{}' has the decimal mark '{}' and line {} has '{}': use one "
                                   "throughout",
                                   ForMessage(text), cell.decimal_mark, mark_line_, mark_))});
@@ -173,7 +148,7 @@ double TableReader::ValueOf(std::size_t place, std::string_view text) {
   }
   if (cell.kind == Cell::Kind::kClock) {
     // A time of day without a date that is 12 h or more before the last is of the next day.
-    double& last = last_clock_[place];
+    double& last = last_clock_[column];
     while (cell.value < kDay && cell.value + kDay / 2 < last) {
       cell.value += kDay;
     }
@@ -184,7 +159,7 @@ double TableReader::ValueOf(std::size_t place, std::string_view text) {
     const TableColumn& of = table_.columns[column];
     const bool is_first = (is_missing ? of.missing : of.fault).empty();
     cell_faults_.push_back(
-        {place, is_missing, is_first ? At(column, DescribeCellFault(text, cell.kind)) : ""});
+        {column, is_missing, is_first ? At(column, DescribeCellFault(text, cell.kind)) : ""});
   }
   return cell.value;
 }
@@ -200,11 +175,11 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   // Its first column of numbers has a text.
   CellCursor cells(row, layout_.delimiter);
   std::size_t column = 0;
-  for (; column < layout_.columns && !layout_.mostly_numbers[column]; ++column) {
+  for (; column < layout_.columns() && !layout_.mostly_numbers[column]; ++column) {
     if (cells.has_next()) cells.Skip();
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
-  if (column == layout_.columns ||
+  if (column == layout_.columns() ||
       ReadCell(first, layout_.has_decimal_comma()).kind != Cell::Kind::kText) {
     return false;
   }
@@ -212,7 +187,7 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   gap_ = At(column, DescribeCellFault(first, Cell::Kind::kText));
   if (!layout_.names_row.empty()) {
     *gap_ += fmt::format("; a further block of rows must have the columns of line {} above it",
-                         layout_.header_line);
+                         table_.header_line);
   }
   return true;
 }

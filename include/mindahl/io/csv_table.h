@@ -26,7 +26,7 @@ struct LeftOutRows {
   std::string fault = {};      ///< "file:line:column: …"
 
   void Add(std::size_t line, const std::string& of_row) {
-    if (count++ > 0) return;
+    if (count++ > 0 && line >= first_line) return;
     first_line = line;
     fault = of_row;
   }
