@@ -31,23 +31,22 @@ std::vector<const Values*> HeightsOf(const PlotSeries& series) {
 void RequireDrawable(const PlotPanel& panel) {
   RequirePositive("height of a panel", panel.height);
   if (panel.series.empty()) throw InvalidArgument("a panel has no series: must have one");
-  const auto require = [](const std::string& name, const Values& values, bool logarithmic) {
-    for (const double value : values) {
-      RequireFinite(name, value);
-      if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
-    }
-  };
   for (const PlotSeries& series : panel.series) {
     const std::string name = fmt::format("'{}'", series.label);
     if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-    require("x of " + name, series.x, panel.log_x);
-    for (const Values* heights : HeightsOf(series)) {
-      RequireSameSize("x of " + name, series.x.size(), "y of " + name, heights->size());
-      require("y of " + name, *heights, panel.log_y);
+    std::vector<const Values*> coordinates = HeightsOf(series);
+    coordinates.push_back(&series.x);
+    for (const Values* values : coordinates) {
+      const bool is_x = values == &series.x;
+      const std::string what = (is_x ? "x of " : "y of ") + name;
+      RequireSameSize("x of " + name, series.x.size(), what, values->size());
+      for (const double value : *values) {
+        RequireFinite(what, value);
+        if ((is_x ? panel.log_x : panel.log_y) && value <= 0) {
+          ThrowInvalid(what, value, "must be > 0 on a logarithmic axis");
+        }
+      }
     }
-  }
-  for (const PlotMark& mark : panel.marks) {
-    require(fmt::format("mark '{}'", mark.label), {mark.x}, panel.log_x);
   }
 }
 
@@ -67,6 +66,9 @@ std::string WithPower(double value, bool shows_one) {
 /// One axis: data to pixels, and where its tics are.
 class Axis {
  public:
+  double from_pixel = 0.0;
+  double to_pixel = 0.0;
+
   /// @param margin  on either side of the data, a fraction of their span
   Axis(std::pair<double, double> data, double margin, bool logarithmic)
       : logarithmic_(logarithmic), from_(At(data.first)), to_(At(data.second)) {
@@ -83,8 +85,7 @@ class Axis {
     PlaceTics();
   }
 
-  /// Returns the place of a value between the pixels of the axis' ends.
-  [[nodiscard]] double Pixel(double value, double from_pixel, double to_pixel) const {
+  [[nodiscard]] double Pixel(double value) const {
     return from_pixel + (At(value) - from_) / (to_ - from_) * (to_pixel - from_pixel);
   }
   [[nodiscard]] const Values& tics() const { return tics_; }
@@ -180,31 +181,22 @@ std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
 /// Returns the classes of each series: in these it differs from others, in colour, and beyond the
 /// first six in dashes or filled markers.
 std::vector<std::string> LooksOf(const PlotPanel& panel) {
-  constexpr std::size_t kColours = 6;  // classes s0 … s5
-  constexpr double kLastShade = 7;     // classes h0 … h7
+  constexpr int kColours = 6;       // classes s0 … s5
+  constexpr double kLastShade = 7;  // classes h0 … h7
   std::vector<std::string> looks;
-  looks.reserve(panel.series.size());
-  std::size_t count = 0;
+  int place = -1;
   for (const PlotSeries& series : panel.series) {
     if (series.shade) {
-      const double shade = std::clamp(*series.shade, 0.0, 1.0);
-      looks.push_back(fmt::format("h{}", std::lround(shade * kLastShade)));
+      looks.push_back(
+          fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade)));
       continue;
     }
     const bool continues = series.label.empty() && series.style == PlotStyle::kLine;
-    if (!continues || count == 0) ++count;
-    const std::size_t place = count - 1;
+    if (!continues || place < 0) ++place;
     looks.push_back(
         fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : ""));
   }
   return looks;
-}
-
-/// A coordinate, to a tenth of a pixel.
-std::string Coordinate(double pixel) {
-  std::string text = fmt::format("{:.1f}", pixel);
-  if (text.ends_with(".0")) text.resize(text.size() - 2);
-  return text == "-0" ? "0" : text;
 }
 
 /// Points as "M1 2L3 4…" or, where a shape is given, each as that, those left out that fall on the
@@ -213,7 +205,7 @@ std::string Points(const Values& x, const Values& y, std::string_view shape, cha
   std::string path;
   std::string last;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const std::string at = fmt::format("{} {}", Coordinate(x[k]), Coordinate(y[k]));
+    const std::string at = fmt::format("{:.4g} {:.4g}", x[k], y[k]);
     if (at == last) continue;
     path += path.empty() || !shape.empty() ? first : 'L';
     path.append(at).append(shape);
@@ -237,9 +229,8 @@ std::string DrawPoints(const PlotSeries& series, const std::string& look) {
   }
   if (style == PlotStyle::kPoints) draw("dots", Points(series.x, series.y, "h0"));
   if (style != PlotStyle::kMarkers && style != PlotStyle::kPoints) {
-    const std::string line = Points(series.x, series.y, "");
     // A path of one point draws nothing.
-    draw("line", line.find('L') == std::string::npos ? line + "h0" : line);
+    draw("line", Points(series.x, series.y, "") + "h0");
   }
   if (style == PlotStyle::kMarkers || style == PlotStyle::kLineAndPoints) {
     draw("marker", Points(series.x, series.y, kCircle));
@@ -247,23 +238,13 @@ std::string DrawPoints(const PlotSeries& series, const std::string& look) {
   return drawn;
 }
 
-std::string LegendSymbol(PlotStyle style, const std::string& look) {
-  PlotSeries symbol{.label = "", .x = {1, 25}, .y = {6, 6}, .style = style};
-  if (style == PlotStyle::kPoints) symbol.x = {5, 13, 21};
-  if (style == PlotStyle::kMarkers) symbol.x = {13};
-  symbol.y.assign(symbol.x.size(), 6);
-  symbol.lower.assign(symbol.x.size(), 12);
-  symbol.upper.assign(symbol.x.size(), 0);
-  return DrawPoints(symbol, look);
-}
-
 double WidthOf(std::string_view label) {
   return kTicCharacter * static_cast<double>(CharactersIn(label));
 }
 
 std::string Text(double x, double y, std::string_view anchor, std::string_view text) {
-  return fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>", Coordinate(x),
-                     Coordinate(y), anchor, HtmlText(text));
+  return fmt::format("<text x=\"{:.4g}\" y=\"{:.4g}\" text-anchor=\"{}\">{}</text>", x, y, anchor,
+                     HtmlText(text));
 }
 
 }  // namespace
@@ -272,10 +253,13 @@ std::vector<LegendEntry> LegendOf(const PlotPanel& panel) {
   std::vector<LegendEntry> legend;
   const std::vector<std::string> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
-    const PlotSeries& series = panel.series[k];
-    if (!series.label.empty()) {
-      legend.push_back({LegendSymbol(series.style, looks[k]), series.label});
-    }
+    const auto& [label, x, y, style, lower, upper, shade] = panel.series[k];
+    if (label.empty()) continue;
+    PlotSeries symbol{.x = {1, 13, 25}, .y = {6, 6, 6}, .style = style};
+    if (style == PlotStyle::kMarkers) symbol.x = {13, 13, 13};
+    symbol.lower = {12, 12, 12};
+    symbol.upper = {0, 0, 0};
+    legend.push_back({DrawPoints(symbol, looks[k]), label});
   }
   return legend;
 }
@@ -285,15 +269,14 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
   RequireDrawable(panel);
   constexpr double kMarginX = 0.02;
   constexpr double kMarginY = 0.05;
-  const Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
-  const Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
-  const double top = kAboveAxes;
-  const double bottom = kAboveAxes + axes_height;
-  const double right = width - kRightMargin;
+  Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
+  Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
+  const double top = y_axis.to_pixel = kAboveAxes;
+  const double bottom = y_axis.from_pixel = kAboveAxes + axes_height;
+  const double right = x_axis.to_pixel = width - kRightMargin;
   double left = kLeftMargin;
   for (const double tic : y_axis.tics()) left = std::max(left, 14 + WidthOf(y_axis.Label(tic)));
-  const auto x_pixel = [&](double x) { return x_axis.Pixel(x, left, right); };
-  const auto y_pixel = [&](double y) { return y_axis.Pixel(y, bottom, top); };
+  x_axis.from_pixel = left;
 
   std::string grid;
   std::string labels;
@@ -301,34 +284,38 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
   for (const double tic : x_axis.tics()) {
     const std::string label = x_axis.Label(tic);
     const double half = WidthOf(label) / 2;
-    const double at = x_pixel(tic);
-    grid += fmt::format("M{} {}V{}", Coordinate(at), Coordinate(top), Coordinate(bottom));
+    const double at = x_axis.Pixel(tic);
+    grid += fmt::format("M{:.4g} {:.4g}V{:.4g}", at, top, bottom);
     if (at - half < last_end || at + half > width) continue;
     last_end = at + half;
     labels += Text(at, bottom + 19, "middle", label);
   }
   for (const double tic : y_axis.tics()) {
-    const double at = y_pixel(tic);
-    grid += fmt::format("M{} {}H{}", Coordinate(left), Coordinate(at), Coordinate(right));
+    const double at = y_axis.Pixel(tic);
+    grid += fmt::format("M{:.4g} {:.4g}H{:.4g}", left, at, right);
     labels += Text(left - 7, at + 5, "end", y_axis.Label(tic));
   }
   std::string elements = fmt::format(
-      "<path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"M{} {}V{}H{}\"/>{}", grid,
-      Coordinate(left), Coordinate(top), Coordinate(bottom), Coordinate(right), labels);
+      "<path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"M{:.4g} {:.4g}V{:.4g}H{:.4g}\"/>{}",
+      grid, left, top, bottom, right, labels);
   elements += Text(2, 17, "start", panel.y_label);
   elements += Text(right, bottom + 44, "end", panel.x_label);
 
   const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
   const std::vector<std::string> looks = LooksOf(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
-    const PlotSeries& series = panel.series[k];
-    PlotSeries pixels{.label = "", .style = series.style};
-    for (const std::size_t point : Thinned(series, most)) {
-      pixels.x.push_back(x_pixel(series.x[point]));
-      pixels.y.push_back(y_pixel(series.y[point]));
-      if (series.style != PlotStyle::kBand) continue;
-      pixels.lower.push_back(y_pixel(series.lower[point]));
-      pixels.upper.push_back(y_pixel(series.upper[point]));
+    PlotSeries pixels = panel.series[k];
+    const std::vector<std::size_t> kept = Thinned(pixels, most);
+    const auto draw_on = [&](const Axis& axis, Values& values) {
+      Values drawn;
+      for (const std::size_t point : kept) drawn.push_back(axis.Pixel(values[point]));
+      values = std::move(drawn);
+    };
+    draw_on(x_axis, pixels.x);
+    draw_on(y_axis, pixels.y);
+    if (pixels.style == PlotStyle::kBand) {
+      draw_on(y_axis, pixels.lower);
+      draw_on(y_axis, pixels.upper);
     }
     elements += DrawPoints(pixels, looks[k]);
   }
@@ -337,15 +324,13 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
   last_end = -width;
   double line = 0;
   for (const PlotMark& mark : panel.marks) {
-    const double at = x_pixel(mark.x);
-    elements += fmt::format("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at),
-                            Coordinate(top), Coordinate(bottom));
-    if (mark.label.empty()) continue;
     constexpr double kLine = 18;
-    line = at < last_end ? line + kLine : 0;
+    const double at = x_axis.Pixel(mark.x);
     const bool is_left = at + WidthOf(mark.label) > width;
+    line = at < last_end ? line + kLine : 0;
     last_end = at + (is_left ? 0 : WidthOf(mark.label));
     elements +=
+        fmt::format("<path class=\"mark\" d=\"M{:.4g} {:.4g}V{:.4g}\"/>", at, top, bottom) +
         Text(at + (is_left ? -5 : 5), top + 14 + line, is_left ? "end" : "start", mark.label);
   }
   return elements;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -19,7 +20,7 @@
 namespace mindahl::io {
 namespace {
 
-// The rules of style of a drawing by itself, on white. Colours differ in lightness, so that they
+// On white. Colours differ in lightness, so that they
 // are distinct in grey and for colour-blind readers too; shades go from early, dark, to late.
 constexpr std::string_view kStyle =
     "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
@@ -28,22 +29,26 @@ constexpr std::string_view kStyle =
     ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
     ".dots{stroke-width:3.2;stroke-linecap:round}.marker{fill:#fff;stroke-width:1.8}"
     ".area{fill-opacity:.22}.line.more{stroke-dasharray:10 5}";
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kColours = {{
-    {"s0", "#c2334a"},
-    {"s1", "#2f6ea5"},
-    {"s2", "#3a9d6e"},
-    {"s3", "#8d6bb1"},
-    {"s4", "#e09f3e"},
-    {"s5", "#5f6b76"},
-    {"h0", "#440154"},
-    {"h1", "#46327e"},
-    {"h2", "#365c8d"},
-    {"h3", "#277f8e"},
-    {"h4", "#1fa187"},
-    {"h5", "#4ac16d"},
-    {"h6", "#8fb52d"},
-    {"h7", "#c2a50a"},
-}};
+constexpr std::array<std::string_view, 6> kColours = {"#c2334a", "#2f6ea5", "#3a9d6e",
+                                                      "#8d6bb1", "#e09f3e", "#5f6b76"};
+constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
+                                                     "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
+
+/// The rules of style of a drawing by itself.
+std::string Style() {
+  std::string style(kStyle);
+  const auto add = [&](char kind, std::span<const std::string_view> colours) {
+    for (std::size_t k = 0; k < colours.size(); ++k) {
+      style += fmt::format(
+          ".{0}{1}.line,.{0}{1}.dots,.{0}{1}.marker{{stroke:{2}}}"
+          ".{0}{1}.area,.{0}{1}.more.marker{{fill:{2}}}",
+          kind, k, colours[k]);
+    }
+  };
+  add('s', kColours);
+  add('h', kShades);
+  return style;
+}
 
 /// A legend in rows above its panel.
 struct Legend {
@@ -78,18 +83,12 @@ std::string SvgOf(const Plot& plot) {
   if (plot.panels.empty()) throw InvalidArgument("number of panels = 0 is invalid: must be >= 1");
   RequirePositive("plot width [px]", plot.width);
   RequirePositive("plot height [px]", plot.height);
-  std::string style(kStyle);
-  for (const auto& [name, colour] : kColours) {
-    style += fmt::format(
-        ".{0}.line,.{0}.dots,.{0}.marker{{stroke:{1}}}.{0}.area,.{0}.more.marker{{fill:{1}}}", name,
-        colour);
-  }
   std::string svg = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
       "viewBox=\"0 0 {0} {1}\">\n<style>{2}</style>\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-      plot.width, plot.height, style);
+      plot.width, plot.height, Style());
   double top = kEdge;
   if (!plot.title.empty()) {
     svg += fmt::format(

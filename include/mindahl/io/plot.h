@@ -27,7 +27,7 @@ struct PlotSeries {
 /// A vertical line across a panel, where something happened.
 struct PlotMark {
   double x = 0.0;       ///< finite; > 0 on a logarithmic axis
-  std::string label{};  ///< next to it; "" = none
+  std::string label{};  ///< next to it
 };
 
 /// One pair of axes, with its title and its legend above it.
