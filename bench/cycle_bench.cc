@@ -20,7 +20,7 @@
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/io/record_stream.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"

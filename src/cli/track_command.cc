@@ -16,7 +16,7 @@
 #include "mindahl/core/interruption.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
-#include "mindahl/io/record_stream.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/report/units.h"
 #include "report/html.h"
 

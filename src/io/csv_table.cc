@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <system_error>
 #include <utility>
@@ -102,6 +103,48 @@ CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {
   table.lines.resize(rows);
   std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
   return table;
+}
+
+std::string CsvCell(const std::string& text) {
+  constexpr std::string_view kFormula = "=+-@";
+  if (text.size() > 1 && kFormula.find(text.front()) != std::string_view::npos) {
+    return CsvCell("./" + text);
+  }
+  const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
+                     !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
+  if (plain) return text;
+  std::string quoted = "\"";
+  for (const char character : text) {
+    if (character == '"') quoted += '"';
+    quoted += character;
+  }
+  return quoted + '"';
+}
+
+std::string CsvText(const std::vector<CsvColumn>& columns) {
+  if (columns.empty()) throw InvalidArgument("number of columns = 0 is invalid: must be >= 1");
+  const std::size_t rows = columns.front().values.size();
+  std::string text;
+  for (const CsvColumn& column : columns) {
+    RequireSameSize(columns.front().name, rows, column.name, column.values.size());
+    if (!text.empty()) text += ',';
+    text += CsvCell(column.name);
+  }
+  text += '\n';
+  auto out = std::back_inserter(text);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t index = 0; index < columns.size(); ++index) {
+      const CsvColumn& column = columns[index];
+      const double value = column.values[row];
+      if (std::isinf(value)) {
+        ThrowInvalid(fmt::format("{} of row {}", column.name, row + 1), value, "must be finite");
+      }
+      if (index > 0) text += ',';
+      if (!std::isnan(value)) fmt::format_to(out, "{:.17g}", value);
+    }
+    text += '\n';
+  }
+  return text;
 }
 
 }  // namespace mindahl::io

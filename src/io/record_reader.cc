@@ -12,7 +12,6 @@
 #include "io/roles.h"
 #include "io/table_reader.h"
 #include "mindahl/io/csv_table.h"
-#include "mindahl/io/record_stream.h"
 
 namespace mindahl::io {
 namespace {
@@ -63,8 +62,9 @@ class RecordBuilder {
  public:
   /// Assigns the columns, by the rows that the table has.
   /// @param left_out  counts the rows without a number in a column that is used
-  RecordBuilder(const CsvTable& table, const RecordColumns& asked, LeftOutRows& left_out)
+  RecordBuilder(const ColumnNames& names, const RecordColumns& asked, LeftOutRows& left_out)
       : skip_broken_(asked.skip_broken_rows), left_out_(left_out) {
+    const CsvTable& table = names.table();
     const std::optional<double>& rate = asked.sample_rate;
     if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
       Refuse("--sample-rate {}: must be finite and > 0 Hz", *rate);
@@ -73,7 +73,6 @@ class RecordBuilder {
       Refuse("{}: --time and --sample-rate exclude each other", table.file);
     }
     file_.notes = table.notes;
-    const ColumnNames names(table);
     Roles roles = AssignRoles(names, asked, file_.notes);
     file_.is_torsional = roles.is_torsional;
     const auto choose = [&](Role role) {
@@ -111,7 +110,11 @@ class RecordBuilder {
   ChosenColumn Choose(const ColumnNames& names, Role role, Expression sum, const std::string& text);
   void FindOrigin(const ColumnNames& names, Expression& time);
   bool Follows(double& time, const Unit& unit);
-  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
+  struct Fault {
+    bool is_missing;
+    std::string message;
+  };
+  Fault FaultOf(const CsvTable& table, std::size_t row) const;
 
   RecordFile file_;
   std::vector<Quantity> quantities_;
@@ -201,10 +204,9 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
     const bool is_whole =
         std::ranges::all_of(values, [row](const auto& of) { return std::isfinite(of[row]); });
     if (!is_whole || (time != nullptr && !Follows((*time)[row], quantities_[2].unit))) {
-      bool is_missing = false;
-      std::string fault = FaultOf(table, row, is_missing);
+      const auto [is_missing, fault] = FaultOf(table, row);
       if (!is_missing && !skip_broken_) {
-        refusal = std::move(fault);
+        refusal = fault;
         break;
       }
       left_out_.Add(table.lines[row], fault);
@@ -248,24 +250,24 @@ bool RecordBuilder::Follows(double& time, const Unit& unit) {
 }
 
 /// Describes what is wrong with a row.
-std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+RecordBuilder::Fault RecordBuilder::FaultOf(const CsvTable& table, std::size_t row) const {
   for (const std::size_t column : wanted_) {
     const TableColumn& of = table.columns[column];
     if (!std::isnan(of.values[row])) continue;
-    is_missing = of.fault.empty() || of.fault_row != row;
-    return is_missing && !of.missing.empty() ? of.missing : of.fault;
+    const bool is_missing = of.fault.empty() || of.fault_row != row;
+    return {is_missing, is_missing && !of.missing.empty() ? of.missing : of.fault};
   }
   for (const Quantity& quantity : quantities_) {
-    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
-    if (quantity.role != Role::kTime || !(last_time_ < time_above_)) continue;
-    return fmt::format(
-        "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
-        "the rows, split the file where a clock starts again, or rename the column if it holds no "
-        "time",
-        table.file, table.lines[row], quantity.first_column() + 1, last_time_, quantity.unit.symbol,
-        time_above_, quantity.unit.symbol);
+    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return {false, fault};
   }
-  return "";
+  const Quantity& time = quantities_[2];  // the only fault that is left
+  return {false,
+          fmt::format(
+              "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; "
+              "sort the rows, split the file where a clock starts again, or rename the column if "
+              "it holds no time",
+              table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
+              time_above_, time.unit.symbol)};
 }
 
 namespace {
@@ -284,18 +286,20 @@ std::vector<double> AtLines(const CsvTable& table, std::size_t column,
 
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
-void AddCovariates(const CsvTable& table, const std::vector<std::string>& choices,
+void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
                    RecordFile& file) {
-  const ColumnNames names(table);
-  std::vector<std::size_t> read;
-  const auto add = [&](std::size_t column, const std::string& name, std::vector<double> values) {
+  const CsvTable& table = names.table();
+  std::vector<bool> is_read(names.size());
+  const auto add = [&](std::size_t column, const std::string& name, bool may_be_constant) {
+    std::vector<double> values = AtLines(table, column, file.lines);
+    const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
+    if (values.empty() || !std::ranges::all_of(values, IsNumber)) return false;
+    if (!changes && !may_be_constant) return false;
     const std::string unit = names.UnitOf(column, "");
     file.covariates.push_back({.name = name, .index = column + 1, .unit = unit});
     file.record.covariates.push_back({.name = name, .unit = unit, .values = std::move(values)});
-    read.push_back(column);
-  };
-  const auto is_read = [&](std::size_t column) {
-    return std::ranges::find(read, column) != read.end();
+    is_read[column] = true;
+    return true;
   };
   for (const std::string& choice : choices) {
     const std::size_t column = names.Chosen(choice, Role::kOther);
@@ -304,27 +308,19 @@ void AddCovariates(const CsvTable& table, const std::vector<std::string>& choice
       Refuse("{}: {} is the {} already: choose another column for the covariate", table.file,
              names.Label(column), is_displacement ? "displacement" : "force");
     }
-    if (is_read(column)) {
+    if (is_read[column]) {
       Refuse("{}: {} is chosen twice as a covariate: choose it once", table.file,
              names.Label(column));
     }
-    std::vector<double> values = AtLines(table, column, file.lines);
-    if (values.empty() || !std::ranges::all_of(values, IsNumber)) {
-      static_cast<void>(table.Numbers(column));  // throws
-    }
-    add(column, choice, std::move(values));
+    if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
+  is_read[file.displacement.index - 1] = is_read[file.force.index - 1] = true;
+  if (file.time) is_read[file.time->index - 1] = true;
+  if (file.normal_load) is_read[file.normal_load->index - 1] = true;
   const std::size_t most = choices.size() + kMostOtherColumns;
-  for (const ChosenColumn* of : {&file.displacement, &file.force, file.time ? &*file.time : nullptr,
-                                 file.normal_load ? &*file.normal_load : nullptr}) {
-    if (of != nullptr) read.push_back(of->index - 1);
-  }
   for (std::size_t column = 0; column < names.size() && file.covariates.size() < most; ++column) {
-    if (is_read(column) || !names.StatesOneUnit(column) || names[column].is_clock) continue;
-    std::vector<double> values = AtLines(table, column, file.lines);
-    const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
-    if (!changes || !std::ranges::all_of(values, IsNumber)) continue;
-    add(column, names.NameOf(column), std::move(values));
+    if (is_read[column] || names[column].is_clock || !names.StatesOneUnit(column)) continue;
+    add(column, names.NameOf(column), false);
   }
 }
 
@@ -380,7 +376,8 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
 
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   LeftOutRows left_out;
-  RecordBuilder builder(table, columns, left_out);
+  const ColumnNames names(table);
+  RecordBuilder builder(names, columns, left_out);
   Samples samples;
   std::string fault = builder.Add(table, samples);
   if (fault.empty()) fault = builder.TooManyLeftOut();
@@ -396,7 +393,7 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   }
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
-  AddCovariates(table, columns.covariates, file);
+  AddCovariates(names, columns.covariates, file);
   return std::move(file);
 }
 
@@ -408,12 +405,32 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   return RecordOf(table, columns);
 }
 
+std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column) {
+  const ColumnNames names(table);
+  const std::vector<bool> taken(names.size());
+  Expression columns = names.Read(column, Role::kDisplacement);
+  if (columns.terms.empty()) {
+    const bool first_is_another =
+        std::ranges::any_of(std::array{Role::kTime, Role::kForce}, [&](Role other) {
+          const Expression found = names.Find("", other, taken);
+          return !found.terms.empty() && found.terms.front().column == 0;
+        });
+    if (first_is_another) columns.terms = names.Find("", Role::kDisplacement, taken).terms;
+    if (columns.terms.empty()) columns.terms = {{0, 1.0}};
+  }
+  const auto dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
+                                              : DimensionOf(columns.unit);
+  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
+  std::vector<std::string> notes;  // SI is the documented default here
+  return names.InUnit(Role::kDisplacement, std::move(columns), is_torsional, notes).Numbers(table);
+}
+
 struct RecordStream::State {
   State(const std::filesystem::path& path, const RecordColumns& columns)
       : pieces(path, columns.encoding),
         rows(pieces.Next()),
         layout(FindLayout(rows, NameOfInput(path))),
-        builder(FirstRows(), columns, left_out),
+        builder(ColumnNames(FirstRows()), columns, left_out),
         reader(layout, columns.skip_broken_rows ? &left_out : nullptr, builder.wanted()) {
     if (!columns.with.empty()) {
       Refuse("--with: a record that is read in pieces is of one file: join them before");

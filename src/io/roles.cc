@@ -352,13 +352,18 @@ class RoleAssigner {
 
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
 
+double Quantity::ValueIn(const CsvTable& table, std::size_t row) const {
+  double value = sum.offset;
+  for (const auto& [column, weight] : sum.terms) {
+    value += weight * table.columns[column].values[row];
+  }
+  return value;
+}
+
 std::vector<double> Quantity::Values(const CsvTable& table) const {
   std::vector<double> values = table.columns[first_column()].values;
-  if (sum.is_plain()) return values;
-  std::ranges::fill(values, sum.offset);
-  for (const Expression::Term& term : sum.terms) {
-    const std::vector<double>& numbers = table.columns[term.column].values;
-    for (std::size_t row = 0; row < values.size(); ++row) values[row] += term.weight * numbers[row];
+  for (std::size_t row = 0; row < values.size() && !sum.is_plain(); ++row) {
+    values[row] = ValueIn(table, row);
   }
   return values;
 }
@@ -374,10 +379,7 @@ std::vector<double> Quantity::Numbers(const CsvTable& table) const {
 }
 
 std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
-  double value = sum.offset;
-  for (const auto& [column, weight] : sum.terms) {
-    value += weight * table.columns[column].values[row];
-  }
+  const double value = ValueIn(table, row);
   if (std::isfinite(unit.ToSi(value))) return "";
   return fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 in SI units",
                      table.file, table.lines[row], first_column() + 1, RulesOf(role).name, value,

@@ -48,6 +48,8 @@ struct Quantity {
   Unit unit;
 
   [[nodiscard]] std::size_t first_column() const { return sum.terms.front().column; }
+  /// Returns its value in a row, in its unit.
+  [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const;
   /// Returns its values, one a row, in its unit.
   [[nodiscard]] std::vector<double> Values(const CsvTable& table) const;
   /// Returns them in SI units.

@@ -9,7 +9,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/io/record_stream.h"
 
 namespace mindahl::fuzz {
 namespace {

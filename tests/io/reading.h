@@ -6,7 +6,6 @@
 
 #include "core/text.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/io/record_stream.h"
 #include "support/prelude.h"
 #include "temporary_directory.h"
 

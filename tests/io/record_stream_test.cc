@@ -1,9 +1,8 @@
-#include "mindahl/io/record_stream.h"
-
 #include <fmt/format.h>
 
 #include <tuple>
 
+#include "mindahl/io/record_reader.h"
 #include "reading.h"
 
 // A stream reads a record in pieces; that it gives what reading whole gives is tested elsewhere.

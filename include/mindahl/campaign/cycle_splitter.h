@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/io/record_stream.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
