@@ -14,8 +14,6 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::string_view kDecimalDigits = "0123456789";
-
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 /// The texts that spreadsheets write for a number that they could not compute, and other marks.
@@ -40,44 +38,39 @@ Cell ReadWithPoint(std::string_view digits, bool negative) {
   return {.kind = Cell::Kind::kNumber, .value = negative ? -magnitude : magnitude};
 }
 
-/// Takes a whole number off a text.
-std::optional<int> TakeWhole(std::string_view& text) {
-  constexpr std::size_t kMostDigits = 6;
-  const std::size_t size = std::min(text.find_first_not_of(kDecimalDigits), text.size());
-  if (size == 0 || size > kMostDigits) return std::nullopt;
-  const auto number = NumberIn<int>(text.substr(0, size));
-  text.remove_prefix(size);
-  return number;
-}
-
-/// Takes three numbers with one of some signs between them off a text: "05.03.24", "10:11:12".
+/// Takes three whole numbers with a sign between them off a text: "10:11:12".
 /// @returns none, and leaves the text, where it does not begin with them
-std::optional<std::array<int, 3>> TakeThree(std::string_view& text, std::string_view signs) {
+std::optional<std::array<int, 3>> TakeThree(std::string_view& text, char sign) {
   std::string_view rest = text;
   std::array<int, 3> numbers{};
-  char sign = '\0';
   for (int& number : numbers) {
     if (&number != numbers.data()) {
-      const bool is_known = !rest.empty() && signs.find(rest.front()) != std::string_view::npos;
-      if (!is_known || (sign != '\0' && sign != rest.front())) return std::nullopt;
-      sign = rest.front();
+      if (!rest.starts_with(sign)) return std::nullopt;
       rest.remove_prefix(1);
     }
-    const std::optional<int> taken = TakeWhole(rest);
-    if (!taken) return std::nullopt;
-    number = *taken;
+    if (rest.empty() || !IsDigit(rest.front())) return std::nullopt;
+    const char* const end = rest.data() + rest.size();
+    const auto [stop, error] = FromChars(rest.data(), end, number);
+    if (error != std::errc()) return std::nullopt;
+    rest = {stop, end};
   }
   text = rest;
   return numbers;
 }
 
-constexpr std::string_view kSignsOfDates = "-./";
+/// Takes the three numbers of a date off a text, in the order that they have: "05.03.24".
+std::optional<std::array<int, 3>> TakeDate(std::string_view& text) {
+  for (const char sign : {'-', '.', '/'}) {
+    if (const auto numbers = TakeThree(text, sign)) return numbers;
+  }
+  return std::nullopt;
+}
 
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
   double midnight = 0.0;
-  if (const auto parts = TakeThree(text, kSignsOfDates)) {
+  if (const auto parts = TakeDate(text)) {
     if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
     text = Trimmed(text.substr(1));
     const auto& [year, month, day] = *parts;
@@ -88,17 +81,16 @@ std::optional<double> ReadClock(std::string_view text) {
       midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
     }
   }
-  const auto clock = TakeThree(text, ":");
+  const auto clock = TakeThree(text, ':');
   if (!clock) return std::nullopt;
   const auto& [hour, minute, second] = *clock;
   if (hour > 23 || minute > 59 || second > 60) return std::nullopt;  // 60: a leap second
   double seconds = 3600.0 * hour + 60.0 * minute + second;
   if (!text.empty() && std::string_view(".,:").find(text.front()) != std::string_view::npos) {
-    const std::size_t end = std::min(text.find_first_not_of(kDecimalDigits, 1), text.size());
-    const auto fraction = NumberIn<double>("0." + std::string(text.substr(1, end - 1)));
-    if (!fraction || end == 1) return std::nullopt;
-    seconds += *fraction;
-    text.remove_prefix(end);
+    const std::string digits(text.substr(1, text.find_first_not_of("0123456789", 1) - 1));
+    if (digits.empty()) return std::nullopt;
+    seconds += *NumberIn<double>("0." + digits);
+    text.remove_prefix(1 + digits.size());
   }
   // A zone is the same in all rows.
   const bool has_zone = text.starts_with('Z') || text.starts_with('+') || text.starts_with('-');
@@ -188,7 +180,7 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
   std::string_view rest = text;
-  const bool is_date = TakeThree(rest, kSignsOfDates) && rest.empty();
+  const bool is_date = TakeDate(rest) && rest.empty();
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
