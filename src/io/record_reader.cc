@@ -327,8 +327,12 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
 /// Returns the times of a table, by which another is joined to it; none where it has none.
 std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
-  Expression time = names.Find(given, Role::kTime, std::vector<bool>(names.size()));
-  if (time.terms.empty()) return {};
+  Expression time = names.Read(given, Role::kTime);
+  if (time.terms.empty()) {
+    const std::optional<std::size_t> best = names.Best(Role::kTime);
+    if (!best) return {};
+    time.terms = {{*best, 1.0}};
+  }
   if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
   return names.InUnit(Role::kTime, std::move(time), false, notes).Numbers(table);
@@ -407,16 +411,11 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 
 std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column) {
   const ColumnNames names(table);
-  const std::vector<bool> taken(names.size());
   Expression columns = names.Read(column, Role::kDisplacement);
   if (columns.terms.empty()) {
-    const bool first_is_another =
-        std::ranges::any_of(std::array{Role::kTime, Role::kForce}, [&](Role other) {
-          const Expression found = names.Find("", other, taken);
-          return !found.terms.empty() && found.terms.front().column == 0;
-        });
-    if (first_is_another) columns.terms = names.Find("", Role::kDisplacement, taken).terms;
-    if (columns.terms.empty()) columns.terms = {{0, 1.0}};
+    const bool first_is_another = names.Best(Role::kTime) == 0U || names.Best(Role::kForce) == 0U;
+    const auto best = first_is_another ? names.Best(Role::kDisplacement) : std::nullopt;
+    columns.terms = {{best.value_or(0), 1.0}};
   }
   const auto dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
                                               : DimensionOf(columns.unit);

@@ -51,7 +51,9 @@ ColumnNames::Column ObservedIn(std::span<const double> values) {
       .name = {},
       .is_numeric = !values.empty() && 2 * holes <= values.size(),
       .is_constant = rise == 0 && fall == 0,
-      .is_monotone = (rise > 0) != (fall > 0),
+      .trend = fall == 0   ? int{rise > 0}
+               : rise == 0 ? -1
+                           : 0,
       .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least)};
 }
 
@@ -153,8 +155,7 @@ class RoleAssigner {
 
   void TakeFound(Role role, const std::vector<bool>& taken) {
     if (!IsMissing(role)) return;
-    const Expression found = names_.Find("", role, taken);
-    if (!found.terms.empty()) return Take(found.terms.front().column, role);
+    if (const auto found = names_.Best(role, taken)) return Take(*found, role);
     for (std::size_t named = 0; named < taken.size() && role == Role::kTime; ++named) {
       if (taken[named] || !names_[named].name.evidence.names(role)) continue;
       notes_.push_back(fmt::format(
@@ -271,7 +272,7 @@ class RoleAssigner {
     std::string why;
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
-        return names_[column].is_constant || names_[column].is_monotone;
+        return names_[column].is_constant || names_[column].trend != 0;
       });
       why = ", of those that neither stay nor only grow";
     }
@@ -307,18 +308,14 @@ class RoleAssigner {
   void RequireMoving(Role role, Role other, int least_evidence) {
     const std::size_t column = ColumnOf(role);
     if (!roles_[role].unit.empty() || EvidenceFor(names_[column], role) >= least_evidence ||
-        !names_[column].is_monotone || !names_[ColumnOf(other)].goes_to_and_fro) {
+        names_[column].trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
     }
-    const CsvTable& table = names_.table();
-    const std::vector<double>& values = table.columns[column].values;
-    const auto last = std::find_if(values.rbegin(), values.rend(),
-                                   [](double value) { return !std::isnan(value); });
     Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "
         "{} with {}, by name or number: {}",
-        file_, table.lines.front(), column + 1, names_.Label(column),
-        *last > values.front() ? "grows" : "falls", names_.Label(ColumnOf(other)),
+        file_, names_.table().lines.front(), column + 1, names_.Label(column),
+        names_[column].trend > 0 ? "grows" : "falls", names_.Label(ColumnOf(other)),
         RulesOf(role).name, RulesOf(role).option, names_.Listing());
   }
 
@@ -418,19 +415,17 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, Role role) 
   return std::nullopt;
 }
 
-Expression ColumnNames::Find(const std::string& text, Role role,
-                             const std::vector<bool>& taken) const {
-  Expression columns = Read(text, role);
-  if (!columns.terms.empty()) return columns;
+std::optional<std::size_t> ColumnNames::Best(Role role, const std::vector<bool>& taken) const {
+  std::optional<std::size_t> best;
   int most = 0;
   for (std::size_t column = 0; column < size(); ++column) {
-    if (taken[column] || !columns_[column].is_numeric) continue;
+    if ((!taken.empty() && taken[column]) || !columns_[column].is_numeric) continue;
     const int evidence = EvidenceFor(columns_[column], role);
     if (evidence <= most) continue;
     most = evidence;
-    columns.terms = {{column, 1.0}};
+    best = column;
   }
-  return columns;
+  return best;
 }
 
 std::size_t ColumnNames::Chosen(const std::string& text, Role role) const {

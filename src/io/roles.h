@@ -70,7 +70,7 @@ class ColumnNames {
     bool is_numeric = false;   ///< half of its rows or more have a number
     bool is_clock = false;     ///< its numbers are times of day
     bool is_constant = false;  ///< all numbers are the same
-    bool is_monotone = false;  ///< only grows or only falls, as a clock or a counter does
+    int trend = 0;  ///< 1 where it only grows, as a clock or a counter does; -1 where it only falls
     /// Both rises and falls by a good part of its range: noise does not, nor does a friction force
     /// along a single stroke. Half the range is what one cycle from the middle has.
     bool goes_to_and_fro = false;
@@ -90,9 +90,10 @@ class ColumnNames {
   /// Returns the column of a name, from 0; empty where there is none.
   /// @throws InputError where it is that of several
   [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
-  /// Returns what is given, or else the column with the best evidence; none where none has any.
-  [[nodiscard]] Expression Find(const std::string& text, Role role,
-                                const std::vector<bool>& taken) const;
+  /// Returns the column with the best evidence; none where none has any.
+  /// @param taken  columns that are none of the role's; none where it is empty
+  [[nodiscard]] std::optional<std::size_t> Best(Role role,
+                                                const std::vector<bool>& taken = {}) const;
   /// Returns the column, from 0, that the user calls so.
   [[nodiscard]] std::size_t Chosen(const std::string& text, Role role) const;
   /// Finds the unit of a role's columns: as given, of the header, or SI with a note.
