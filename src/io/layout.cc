@@ -56,33 +56,29 @@ struct Row {
     return numbers >= 1 && (IsNumber(kinds.front()) || cells.size() - texts - empty >= 2);
   }
   [[nodiscard]] bool IsText() const { return numbers == 0 && texts >= 1; }
-};
-
-/// The words of a blank-separated header with each bracketed unit put back to its name.
-Strings JoinBracketedUnits(std::span<const std::string> words) {
-  Strings names;
-  bool within_brackets = false;
-  for (const std::string& word : words) {
-    if (!names.empty() && (within_brackets || word.starts_with('[') || word.starts_with('('))) {
-      names.back().append(" ").append(word);
-    } else {
-      names.push_back(word);
+  /// Returns that many names of a header between blanks: words, each with what is in brackets
+  /// behind it, or what two blanks or a tab separate.
+  [[nodiscard]] std::optional<Strings> NamesByBlanks(std::size_t number) const {
+    Strings names;
+    for (const std::string& word : cells) {
+      const bool is_within = !names.empty() && names.back().find_first_of("[(") != text.npos &&
+                             names.back().find_first_of("])") == text.npos;
+      if (!names.empty() && (is_within || word.starts_with('[') || word.starts_with('('))) {
+        names.back().append(" ").append(word);
+      } else {
+        names.push_back(word);
+      }
     }
-    within_brackets = names.back().find_first_of("[(") != std::string::npos &&
-                      names.back().find_first_of("])") == std::string::npos;
+    if (names.size() == number) return names;
+    names.clear();
+    for (std::string_view rest = Trimmed(text); !rest.empty(); rest = Trimmed(rest)) {
+      const std::size_t end = std::min({rest.find("  "), rest.find('\t'), rest.size()});
+      names.emplace_back(rest.substr(0, end));
+      rest.remove_prefix(end);
+    }
+    return names.size() == number ? std::optional(names) : std::nullopt;
   }
-  return names;
-}
-
-Strings SplitAtTwoBlanks(std::string_view line) {
-  Strings names;
-  for (line = Trimmed(line); !line.empty(); line = Trimmed(line)) {
-    const std::size_t end = std::min({line.find("  "), line.find('\t'), line.size()});
-    names.emplace_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
-  return names;
-}
+};
 
 bool IsUnitsRow(std::span<const std::string> cells) {
   const auto units = std::ranges::count_if(cells, LooksLikeUnit);
@@ -254,12 +250,7 @@ std::optional<Strings> Reading::HeaderCells(const Row& row) const {
   if (row.IsText() && columns <= row.cells.size() && columns <= most) {
     return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
   }
-  if (by_blanks) {
-    for (auto& cells : {JoinBracketedUnits(row.cells), SplitAtTwoBlanks(row.text)}) {
-      if (cells.size() == columns_) return cells;
-    }
-  }
-  return std::nullopt;
+  return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
 }
 
 /// True for a row of text that names every column that mostly holds numbers.
@@ -322,14 +313,11 @@ void Reading::FindNames(const std::string& file) {
 void Reading::FindNamesIn(Row comment) {
   comment.text.remove_prefix(comment.text.find('#') + 1);
   if (!comment.ReadCells(layout_.delimiter, open_quote_line_)) return;
-  const std::size_t columns = std::max(columns_, units_.size());
-  for (const Strings& cells :
-       {comment.cells, JoinBracketedUnits(comment.cells), SplitAtTwoBlanks(comment.text)}) {
-    if (cells.size() != columns || CountKnownWords(cells) < 2) continue;
-    names_ = cells;
-    layout_.header.header_line = comment.line;
-    return;
-  }
+  auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
+                                                : comment.NamesByBlanks(columns_);
+  if (!cells || CountKnownWords(*cells) < 2) return;
+  names_ = *std::move(cells);
+  layout_.header.header_line = comment.line;
 }
 
 /// A row of the preamble that states the units, "Y_Unit_Label" of LabVIEW or "Unit", behind which

@@ -57,10 +57,11 @@ bool IsIn(std::string text, const std::string& encoding) {
   Refuse("cannot read '{}': {}", name, reason);
 }
 
-/// The reader of standard input, which nobody closes.
-gzFile StandardInput() {
-  static const gzFile input = gzdopen(0, "rb");
-  if (input != nullptr) gzclearerr(input);
+std::shared_ptr<gzFile_s> OpenedForReading(const std::filesystem::path& path) {
+  if (path != kStandardInput) return {gzopen(path.c_str(), "rb"), gzclose};
+  // Nobody closes standard input.
+  static const std::shared_ptr<gzFile_s> input(gzdopen(0, "rb"), [](gzFile_s*) {});
+  if (input) gzclearerr(input.get());
   return input;
 }
 
@@ -101,10 +102,7 @@ std::string EncodingOf(std::string_view head) {
 }
 
 LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
-    : name_(NameOfInput(path)),
-      encoding_(std::move(encoding)),
-      file_(path == kStandardInput ? StandardInput() : gzopen(path.c_str(), "rb"),
-            {.is_shared = path == kStandardInput}) {
+    : name_(NameOfInput(path)), encoding_(std::move(encoding)), file_(OpenedForReading(path)) {
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
   ReadBytes(undecoded_);
@@ -116,10 +114,6 @@ LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
   }
   ends_lines_in_cr_ = text_.find('\n') == text_.npos && text_.find('\r') != text_.npos;
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
-}
-
-void LinePieces::CloseGzip::operator()(gzFile_s* file) const {
-  if (!is_shared) gzclose(file);
 }
 
 std::string_view LinePieces::Next() {

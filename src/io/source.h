@@ -64,10 +64,6 @@ class LinePieces {
   [[nodiscard]] const std::string& note() const { return note_; }
 
  private:
-  struct CloseGzip {
-    bool is_shared;  ///< standard input, which nobody closes
-    void operator()(gzFile_s* file) const;
-  };
   void ReadBytes(std::string& to);
   void FindEncoding();
   void TakeUndecoded();
@@ -75,7 +71,7 @@ class LinePieces {
 
   std::string name_;
   std::string encoding_;
-  std::unique_ptr<gzFile_s, CloseGzip> file_;
+  std::shared_ptr<gzFile_s> file_;
   Decoder decoder_{nullptr, nullptr};
   // gzread() fills it; of a short file the most of it is never touched.
   std::unique_ptr<char[]> piece_ = std::make_unique_for_overwrite<char[]>(kPiece);
