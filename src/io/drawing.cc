@@ -255,10 +255,9 @@ std::vector<LegendEntry> LegendOf(const PlotPanel& panel) {
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const auto& [label, x, y, style, lower, upper, shade] = panel.series[k];
     if (label.empty()) continue;
-    PlotSeries symbol{.x = {1, 13, 25}, .y = {6, 6, 6}, .style = style};
-    if (style == PlotStyle::kMarkers) symbol.x = {13, 13, 13};
-    symbol.lower = {12, 12, 12};
-    symbol.upper = {0, 0, 0};
+    PlotSeries symbol{.x = {1, 25}, .y = {6, 6}, .style = style, .lower = {12, 12}};
+    if (style == PlotStyle::kMarkers) symbol.x = {13, 13};
+    symbol.upper = {0, 0};
     legend.push_back({DrawPoints(symbol, looks[k]), label});
   }
   return legend;

@@ -99,7 +99,11 @@ class Reading {
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   [[nodiscard]] std::size_t columns() const { return columns_; }  ///< 0 without a row of data
-  [[nodiscard]] long score() const { return score_; }
+  /// Returns how well it explains the rows; without a row of data, how many cells it finds.
+  [[nodiscard]] std::pair<bool, long> rank() const {
+    const auto cells = static_cast<long>(rows_.empty() ? 0 : rows_.back().columns);
+    return {columns_ > 0, columns_ > 0 ? score_ : cells};
+  }
   [[nodiscard]] std::size_t open_quote_line() const { return open_quote_line_; }
 
   /// Finds the data and the header above them, which may be a comment.
@@ -406,33 +410,27 @@ Layout FindLayout(std::string_view text, const std::string& file) {
     }
   }
   std::optional<Reading> best;
-  std::optional<Reading> widest;  // of those without a row of numbers
   bool always_open = true;  // under the wrong delimiter, text after a closing quote reopens it
-  std::size_t open_quote_line = 0;
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
     if (stated != '\0' && delimiter != stated) continue;
     Reading reading(sampled, delimiter);
-    open_quote_line = reading.open_quote_line();
-    always_open = always_open && open_quote_line > 0;
-    if (reading.columns() > 0) {
-      if (!best || reading.score() > best->score()) best = std::move(reading);
-    } else if (!reading.rows().empty() &&
-               (!widest || reading.rows().back().columns > widest->rows().back().columns)) {
-      widest = std::move(reading);
-    }
+    always_open = always_open && reading.open_quote_line() > 0;
+    if (!best || reading.rank() > best->rank()) best = std::move(reading);
   }
-  const auto throw_open = [&](std::size_t at) {
-    Refuse("{}:{}: a quotation mark opened here is never closed", file, at);
+  const auto require_closed = [&, open = best ? best->open_quote_line() : 0](std::size_t before) {
+    if (open == 0 || open >= before) return;
+    Refuse("{}:{}: a quotation mark opened here is never closed", file, open);
   };
-  if (!best) {
-    if (always_open && open_quote_line > 0) throw_open(open_quote_line);
-    if (!widest) Refuse("{}: holds no data, only blank or '#' lines", file);
-    widest->ThrowNoNumbers(file);
+  if (!best || best->columns() == 0) {
+    if (always_open) require_closed(std::string::npos);
+    if (!best || best->rows().empty()) {
+      Refuse("{}: holds no data, only blank or '#' lines", file);
+    }
+    best->ThrowNoNumbers(file);
   }
-  open_quote_line = best->open_quote_line();
   Layout layout = std::move(*best).Find(file, comment ? &*comment : nullptr);
-  if (open_quote_line > 0 && open_quote_line < layout.data_line) throw_open(open_quote_line);
+  require_closed(layout.data_line);
   return layout;
 }
 
