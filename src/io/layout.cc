@@ -118,7 +118,6 @@ class Reading {
   [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
   void FindNames(const std::string& file);
   void FindNamesIn(Row comment);
-  void FindStatedUnits(const Row& row);
   void FindInterval();
   void MakeColumns();
   [[noreturn]] void ThrowNoHeader(const std::string& file) const;
@@ -278,10 +277,7 @@ void Reading::FindNames(const std::string& file) {
     const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
     if (names_.empty() && may_be_data) break;
     auto cells = HeaderCells(row);
-    if (!cells) {
-      FindStatedUnits(row);
-      continue;
-    }
+    if (!cells) continue;
     if (IsUnitsRow(*cells)) {
       const bool states = StatesUnits(cells->front());
       if (!units_.empty() || (!states && !names_.empty())) continue;
@@ -322,16 +318,6 @@ void Reading::FindNamesIn(Row comment) {
   if (!cells || CountKnownWords(*cells) < 2) return;
   names_ = *std::move(cells);
   layout_.header.header_line = comment.line;
-}
-
-/// A row of the preamble that states the units, "Y_Unit_Label" of LabVIEW or "Unit", behind which
-/// those of the columns stand.
-void Reading::FindStatedUnits(const Row& row) {
-  if (!units_.empty() || row.cells.size() < 2) return;
-  if (!StatesUnits(row.cells.front()) || row.cells.size() > columns_ + 1) return;
-  units_ = row.cells;
-  units_.front().clear();
-  units_.resize(columns_);
 }
 
 /// The time between rows of a LabVIEW file without a column of it.
