@@ -1,13 +1,11 @@
 #include "mindahl/campaign/evolution.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -33,73 +31,97 @@ struct Line {
   double x0 = 0.0;
   double level = 0.0;
   double slope = 0.0;
-  double spread = 0.0;   // Σw(x − x₀)², the mean weight 1
+  double weights = 0.0;
+  double spread = 0.0;   // Σw(x − x₀)²
   double squares = 0.0;  // Σw(y − line)²
 
   [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
+  /// Returns the variance of its value at a bin where a weight of one has the variance one.
+  [[nodiscard]] double VarianceAt(const Course::Bin& bin) const {
+    return 1 / weights + (slope == 0 ? 0.0 : (bin.cycle - x0) * (bin.cycle - x0) / spread);
+  }
 };
 
 Line LineThrough(Bins bins) {
-  double weights = 0.0;
   Line line;
-  for (const Course::Bin& bin : bins) weights += bin.weight;
-  const double mean_weight = weights / static_cast<double>(bins.size());
+  for (const Course::Bin& bin : bins) line.weights += bin.weight;
   for (const Course::Bin& bin : bins) {
-    line.x0 += bin.weight / weights * bin.cycle;
-    line.level += bin.weight / weights * bin.value;
+    line.x0 += bin.weight / line.weights * bin.cycle;
+    line.level += bin.weight / line.weights * bin.value;
   }
   double product = 0.0;
   for (const Course::Bin& bin : bins) {
-    const double w = bin.weight / mean_weight;
-    line.spread += w * (bin.cycle - line.x0) * (bin.cycle - line.x0);
-    product += w * (bin.cycle - line.x0) * (bin.value - line.level);
+    line.spread += bin.weight * (bin.cycle - line.x0) * (bin.cycle - line.x0);
+    product += bin.weight * (bin.cycle - line.x0) * (bin.value - line.level);
   }
   line.slope = line.spread > 0 ? product / line.spread : 0.0;
   for (const Course::Bin& bin : bins) {
     const double left = bin.value - line.At(bin.cycle);
-    line.squares += bin.weight / mean_weight * left * left;
+    line.squares += bin.weight * left * left;
   }
   return line;
 }
 
-/// Returns the squares that rounding leaves of values of this size.
-double Rounding(Bins bins) {
+/// The scatter of a time history, apart from what it follows.
+struct Noise {
+  double variance = 0.0;  // of a bin of weight one, as it counts in means over many
+  double degrees = 0.0;   // of freedom of that
+};
+
+/// Estimates it from second differences of the means of neighbouring blocks: a trend leaves these
+/// alone, their median disregards steps, and in blocks of eight bins correlated ones count.
+Noise NoiseOf(Bins bins) {
+  constexpr std::size_t kLongest = 8;
+  constexpr std::size_t kBlocks = 16;
+  constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
+  constexpr double kExact = 1e-3;                // of the largest value: less is no scatter
+  const std::size_t length = std::clamp<std::size_t>(bins.size() / kBlocks, 1, kLongest);
+  std::vector<Course::Bin> blocks;
   double largest = 0.0;
-  for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
-  constexpr double kDigits = 1e-12;
-  return static_cast<double>(bins.size()) * (kDigits * largest) * (kDigits * largest);
-}
-
-/// Returns how many independent values the residuals of a line are worth, by their lag-one
-/// correlation.
-double EffectiveCount(Bins bins, const Line& line) {
-  double product = 0.0;
-  double squares = 0.0;
-  double last = 0.0;
-  for (const Course::Bin& bin : bins) {
-    const double left = bin.value - line.At(bin.cycle);
-    product += left * last;
-    squares += left * left;
-    last = left;
+  double greatest_weight = 0.0;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (i % length > 0) {
+      blocks.back().Merge(bins[i]);
+    } else {
+      blocks.push_back(bins[i]);
+    }
+    largest = std::max(largest, std::abs(bins[i].value));
+    greatest_weight = std::max(greatest_weight, bins[i].weight);
   }
-  const auto count = static_cast<double>(bins.size());
-  const double correlation =
-      squares > Rounding(bins) ? std::clamp(product / squares, 0.0, 0.99) : 0.0;
-  return count * (1 - correlation) / (1 + correlation);
+  std::vector<double> squares;
+  for (std::size_t k = 2; k < blocks.size(); ++k) {
+    const double bend = blocks[k - 2].value - 2 * blocks[k - 1].value + blocks[k].value;
+    squares.push_back(bend * bend /
+                      (1 / blocks[k - 2].weight + 4 / blocks[k - 1].weight + 1 / blocks[k].weight));
+  }
+  const double degrees = static_cast<double>(squares.size()) / 2;
+  const double variance = boost::math::statistics::median(squares) / kMedianOfChiSquared;
+  return {std::max(variance, greatest_weight * std::pow(kExact * largest, 2)), degrees};
 }
 
-/// Bins that are left out between two segments: a change falls within a bin of several cycles.
-std::size_t GapOf(Bins bins) { return bins.front().count > 1 ? 1 : 0; }
+/// A part of a time history that a line describes.
+struct Segment {
+  Bins bins;
+  Line line;
 
-/// Appends the ends of segments with the probability of each; the last is that of all bins.
-void Divide(Bins bins, std::size_t offset, int depth,
-            std::vector<std::pair<std::size_t, double>>& ends) {
-  const auto none = [&] { ends.emplace_back(offset + bins.size(), 1.0); };
-  if (depth == 0 || bins.size() < 4 * kLeastBins) return none();
+  /// Returns the line's value within what values there were.
+  [[nodiscard]] double At(const Course::Bin& bin) const {
+    const auto least = std::ranges::min_element(bins, {}, &Course::Bin::least)->least;
+    const auto greatest = std::ranges::max_element(bins, {}, &Course::Bin::greatest)->greatest;
+    return std::clamp(line.At(bin.cycle), least, greatest);
+  }
+  [[nodiscard]] double first() const { return At(bins.front()); }
+  [[nodiscard]] double last() const { return At(bins.back()); }
+};
+
+/// Appends the segments of these bins.
+void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segments) {
+  // A change falls within a bin of several cycles, which is left out.
+  const std::size_t gap = bins.front().count > 1 ? 1 : 0;
+  const Line one = LineThrough(bins);
   std::size_t place = 0;
-  double least = std::numeric_limits<double>::infinity();
-  const std::size_t gap = GapOf(bins);
-  for (std::size_t k = kLeastBins; k + gap + kLeastBins <= bins.size(); ++k) {
+  double least = one.squares;
+  for (std::size_t k = kLeastBins; depth > 0 && k + gap + kLeastBins <= bins.size(); ++k) {
     const double squares =
         LineThrough(bins.first(k)).squares + LineThrough(bins.subspan(k + gap)).squares;
     if (squares < least) {
@@ -107,117 +129,101 @@ void Divide(Bins bins, std::size_t offset, int depth,
       place = k;
     }
   }
-  const Bins left = bins.first(place);
-  const Bins right = bins.subspan(place + gap);
-  const double one = LineThrough(bins).squares;
-  least = std::max(least, Rounding(bins));
-  // Squares of numbers near the largest double overflow.
-  if (place == 0 || !(one > 2 * Rounding(bins)) || !std::isfinite(one)) return none();
-  const double independent =
-      EffectiveCount(left, LineThrough(left)) + EffectiveCount(right, LineThrough(right));
   constexpr double kMore = 3;  // a level, a slope and a place
-  const double degrees = independent - 5;
-  if (degrees < 1) return none();
-  const double f = std::max(0.0, one - least) / kMore / (least / degrees);
+  const double f = (one.squares - least) / kMore / noise.variance;
+  // Squares of numbers near the largest double overflow.
   const double p_value =
-      std::min(1.0, static_cast<double>(bins.size()) * PValueOfF(f, kMore, degrees));
-  if (!(p_value < kChance)) return none();
-  Divide(left, offset, depth - 1, ends);
-  ends.back().second = p_value;
-  Divide(right, offset + place + gap, depth - 1, ends);
-}
-
-/// Returns a line's value within what values there were.
-double Stated(const Line& line, double cycle, Bins bins) {
-  const auto least = std::ranges::min_element(bins, {}, &Course::Bin::least)->least;
-  const auto greatest = std::ranges::max_element(bins, {}, &Course::Bin::greatest)->greatest;
-  return std::clamp(line.At(cycle), least, greatest);
-}
-
-std::optional<Change> TrendOf(Bins bins, const Line& line) {
-  const double degrees = std::max(1.0, EffectiveCount(bins, line) - 2);
-  const double squares = std::max(line.squares, Rounding(bins));
-  if (bins.size() <= 2 || !(squares > 0 && std::isfinite(squares))) return std::nullopt;
-  const double p_value =
-      PValueOfT(line.slope / std::sqrt(squares / degrees / line.spread), degrees);
-  const Change trend{bins.front().first_cycle, bins.back().last_cycle,
-                     Stated(line, bins.front().cycle, bins), Stated(line, bins.back().cycle, bins),
-                     p_value};
-  const bool is_large = std::abs(trend.to - trend.from) >= kSmallestTrend * std::abs(line.level);
-  return p_value < kChance && is_large ? std::optional(trend) : std::nullopt;
-}
-
-/// Returns the standard deviation of normal noise whose differences have this median.
-double Scatter(Bins bins) {
-  std::vector<double> differences = {0.0};
-  for (std::size_t i = 1; i < bins.size(); ++i) {
-    differences.push_back(std::abs(bins[i].value - bins[i - 1].value));
+      place == 0 || !std::isfinite(f)
+          ? 1.0
+          : std::min(1.0, static_cast<double>(bins.size()) * PValueOfF(f, kMore, noise.degrees));
+  if (p_value < kChance) {
+    Divide(bins.first(place), noise, depth - 1, segments);
+    Divide(bins.subspan(place + gap), noise, depth - 1, segments);
+    return;
   }
-  return 1.4826 / std::numbers::sqrt2 * boost::math::statistics::median(differences);
+  segments.push_back({bins, one});
 }
 
-/// Returns the bins, of which none is alone far from both of its neighbours.
+/// Returns the bins, each with the median of it and its neighbours: one alone that is off is none.
 std::vector<Course::Bin> WithoutOutliers(Bins bins) {
-  constexpr double kFar = 6;  // standard deviations
-  const double far = kFar * Scatter(bins);
   std::vector<Course::Bin> kept(bins.begin(), bins.end());
   for (std::size_t i = 1; i + 1 < bins.size(); ++i) {
     const auto [low, high] = std::minmax(bins[i - 1].value, bins[i + 1].value);
-    const double middle = std::clamp(bins[i].value, low, high);
-    if (std::abs(bins[i].value - middle) > far) kept[i].value = middle;
+    kept[i].value = std::clamp(bins[i].value, low, high);
   }
   return kept;
 }
 
-std::optional<std::size_t> SettledAt(Bins bins) {
-  if (bins.size() < 4 * kLeastBins) return std::nullopt;
-  const std::size_t tail = std::max<std::size_t>(1, bins.size() / 10);
-  std::vector<double> ends;
-  for (const Course::Bin& bin : bins.last(tail)) ends.push_back(bin.value);
-  const double level = boost::math::statistics::median(ends);
-  const double change = std::abs(level - bins.front().value);
-  const double band = std::max(kSettled * change, 3 * Scatter(bins));
-  if (!(change > 2 * band)) return std::nullopt;
-  std::size_t settled = bins.size();
-  while (settled > 0 && std::abs(bins[settled - 1].value - level) <= band) --settled;
-  if (settled + tail >= bins.size()) return std::nullopt;
-  // Nor does it go on beyond the scatter.
-  const Bins rest = bins.subspan(settled);
-  const double drift = LineThrough(rest).slope * (rest.back().cycle - rest.front().cycle);
-  if (std::abs(drift) > 2 * kSettled * change) return std::nullopt;
-  return bins[settled].first_cycle;
+/// Returns where segments stay near to their end.
+std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
+  const double end = segments.back().last();
+  double change = 0.0;
+  for (const Segment& each : segments) {
+    change = std::max({change, std::abs(each.first() - end), std::abs(each.last() - end)});
+  }
+  const std::size_t last = segments.back().bins.back().last_cycle;
+  const std::size_t first = segments.front().bins.front().first_cycle;
+  std::optional<std::size_t> settled;
+  for (const Segment& each : segments) {
+    for (const Course::Bin& bin : each.bins) {
+      const bool is_near = std::abs(each.At(bin) - end) <= kSettled * change;
+      settled = is_near ? settled.value_or(bin.first_cycle) : std::optional<std::size_t>();
+    }
+  }
+  if (!settled || *settled == first || 10 * (last - *settled) < last - first) return std::nullopt;
+  return settled;
+}
+
+/// Returns the step from one segment to the next where there is one: a jump by more than slopes
+/// make of it within the shortest segment, and beyond chance at one of so many places.
+std::optional<Change> StepBetween(const Segment& before, const Segment& after, const Noise& noise,
+                                  std::size_t places) {
+  const std::size_t cycle = before.bins.back().last_cycle + 1;
+  Change step = {cycle, cycle, before.last(), after.first()};
+  const double jump = std::abs(step.to - step.from);
+  const double steepest = std::max(std::abs(before.line.slope), std::abs(after.line.slope));
+  const double width = static_cast<double>(kLeastBins * before.bins.front().count);
+  const double error = std::sqrt(noise.variance * (before.line.VarianceAt(before.bins.back()) +
+                                                   after.line.VarianceAt(after.bins.front())));
+  step.p_value =
+      std::min(1.0, static_cast<double>(places) * PValueOfT(jump / error, noise.degrees));
+  const bool is_large = jump >= kSmallestStep * std::abs(step.from) && jump > width * steepest;
+  return is_large && step.p_value < kChance ? std::optional(step) : std::nullopt;
 }
 
 }  // namespace
 
 std::optional<CourseDescription> Describe(const Course& course) {
   if (course.bins().empty()) return std::nullopt;
-  const std::vector<Course::Bin> kept = WithoutOutliers(course.bins());
-  const Bins bins = kept;
-  CourseDescription description{
-      .first = course.first(), .last = course.last(), .settled_at = SettledAt(bins)};
-  std::vector<std::pair<std::size_t, double>> ends;
-  Divide(bins, 0, kDepth, ends);
-  std::size_t begin = 0;
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const auto [end, p_value] = ends[k];
-    const Bins segment = bins.subspan(begin, end - begin);
-    const Line line = LineThrough(segment);
-    if (const std::optional<Change> trend = TrendOf(segment, line)) {
-      description.trends.push_back(*trend);
+  CourseDescription description{.first = course.first(), .last = course.last()};
+  const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
+  if (bins.size() < 2 * kLeastBins) return description;
+  const Noise noise = NoiseOf(course.bins());
+  std::vector<Segment> segments;
+  Divide(bins, noise, kDepth, segments);
+  std::vector<Change>& trends = description.trends;
+  const Segment* before = nullptr;
+  for (Segment& segment : segments) {
+    Line& line = segment.line;
+    const double p_value =
+        PValueOfT(line.slope / std::sqrt(noise.variance / line.spread), noise.degrees);
+    const bool is_large =
+        std::abs(segment.last() - segment.first()) >= kSmallestTrend * std::abs(line.level);
+    if (!(p_value < kChance && is_large)) line.slope = 0;
+    std::optional<Change> step;
+    if (before != nullptr) step = StepBetween(*before, segment, noise, bins.size());
+    if (step) description.steps.push_back(*step);
+    if (before != nullptr && !step && before->line.slope * line.slope > 0) {
+      trends.back().last_cycle = segment.bins.back().last_cycle;
+      trends.back().to = segment.last();
+      trends.back().p_value = std::min(trends.back().p_value, p_value);
+    } else if (line.slope != 0) {
+      trends.push_back({segment.bins.front().first_cycle, segment.bins.back().last_cycle,
+                        segment.first(), segment.last(), p_value});
     }
-    if (k + 1 < ends.size()) {
-      const std::size_t start = end + GapOf(bins);
-      const Bins next = bins.subspan(start, ends[k + 1].first - start);
-      const double before = Stated(line, segment.back().cycle, segment);
-      const double after = Stated(LineThrough(next), next.front().cycle, next);
-      if (std::abs(after - before) >= kSmallestStep * std::abs(before)) {
-        const std::size_t cycle = bins[end].first_cycle;
-        description.steps.push_back({cycle, cycle, before, after, p_value});
-      }
-    }
-    begin = end + GapOf(bins);
+    before = &segment;
   }
+  if (description.changed()) description.settled_at = SettledAt(segments);
   return description;
 }
 
@@ -264,7 +270,7 @@ constexpr std::array kQuantities = {
 /// Returns one over the square of an error, within what sums of a million million neither overflow
 /// nor lose.
 double WeightOf(double error) {
-  constexpr double kLargest = 1e290;
+  constexpr double kLargest = 1e145;
   return std::clamp(1 / error / error, 1 / kLargest, kLargest);
 }
 
@@ -277,8 +283,9 @@ std::string RelativeChange(double from, double to) {
 }
 
 /// Returns "0.352 → 0.600" or "250 → 400 µm".
-std::string FromTo(double from, double to, const std::string& unit) {
-  const double largest = std::max(std::abs(from), std::abs(to));
+std::string FromTo(const std::vector<double>& values, const std::string& unit) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
   const report::ScaledUnit scaled = report::UnitFor(unit, largest);
   constexpr int kMost = 9;
   const int decimals =
@@ -286,8 +293,32 @@ std::string FromTo(double from, double to, const std::string& unit) {
           ? std::clamp(2 - static_cast<int>(std::floor(std::log10(largest / scaled.factor))), 0,
                        kMost)
           : 0;
-  return fmt::format("{:.{}f} → {:.{}f}{}{}", from / scaled.factor, decimals, to / scaled.factor,
-                     decimals, scaled.name.empty() ? "" : " ", scaled.name);
+  std::vector<std::string> texts;
+  for (const double value : values) {
+    texts.push_back(fmt::format("{:.{}f}", value / scaled.factor, decimals));
+  }
+  return fmt::format("{}{}{}", fmt::join(texts, " → "), scaled.name.empty() ? "" : " ",
+                     scaled.name);
+}
+
+/// Returns the first value and the last, and between them the one that is farthest beyond both, if
+/// that is by more than half of what they differ.
+std::vector<double> Milestones(const CourseDescription& course) {
+  const auto [low, high] = std::minmax(course.first, course.last);
+  double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.first));
+  std::optional<double> extreme;
+  for (const auto* changes : {&course.trends, &course.steps}) {
+    for (const Change& change : *changes) {
+      for (const double value : {change.from, change.to}) {
+        const double beyond = std::max(value - high, low - value);
+        if (beyond <= farthest) continue;
+        farthest = beyond;
+        extreme = value;
+      }
+    }
+  }
+  if (!extreme) return {course.first, course.last};
+  return {course.first, *extreme, course.last};
 }
 
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
@@ -381,13 +412,14 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const std::string first = report::Quantity(course.first, evolution.unit, 3);
     if (!course.changed() && evolution.course.bins().size() < kFewRows) {
       const bool is_one = first == report::Quantity(course.last, evolution.unit, 3);
-      text += is_one ? first : FromTo(course.first, course.last, evolution.unit);
+      text += is_one ? first : FromTo({course.first, course.last}, evolution.unit);
       text += ", in too few rows to test";
     } else if (!course.changed()) {
       // The first and the last cycle differ by scatter only, so one value stands for both.
       text += first + " throughout, but for scatter";
     } else {
-      text += in_percent ? change : FromTo(course.first, course.last, evolution.unit);
+      const std::vector<double> values = Milestones(course);
+      text += in_percent && values.size() == 2 ? change : FromTo(values, evolution.unit);
     }
     if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
   }
@@ -406,7 +438,7 @@ std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions,
     statements.push_back(
         {std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
          fmt::format("{}: {}, {}{}, {}", evolution.quantity->name, when,
-                     FromTo(from, to, evolution.unit), change.empty() ? "" : " (" + change + ")",
+                     FromTo({from, to}, evolution.unit), change.empty() ? "" : " (" + change + ")",
                      report::ChanceText(p_value, 1))});
   };
   for (const Evolution& evolution : evolutions) {

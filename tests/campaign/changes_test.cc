@@ -126,6 +126,35 @@ TEST(Describe, SaysWhereARunInHasSettled) {
   EXPECT_FALSE(Describe(CourseOf(1000, 5, Level))->settled_at);
 }
 
+// A law of segments misses a curve by more than the scatter, the less of this the more.
+TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
+  for (const double noise : {0.0, 0.1, 1.0, 3.0}) {
+    for (const std::size_t cycles : {100U, 300U, 3000U}) {
+      const double count = static_cast<double>(cycles);
+      const CourseDescription run_in = *Describe(CourseOf(
+          cycles, 3,
+          [&](std::size_t cycle) {
+            return kLevel * (1.5 - 0.5 * std::exp(-10 * static_cast<double>(cycle) / count));
+          },
+          0.0, noise));
+      ASSERT_THAT(run_in.trends, Not(IsEmpty())) << noise << ' ' << cycles;
+      EXPECT_GT(run_in.trends.front().to, 1.3 * kLevel);
+      EXPECT_TRUE(run_in.settled_at || noise > 1);
+      const CourseDescription bump = *Describe(CourseOf(
+          cycles, 3,
+          [&](std::size_t cycle) {
+            return kLevel *
+                   (1 + 0.5 * std::sin(std::numbers::pi * static_cast<double>(cycle) / count));
+          },
+          0.0, noise));
+      ASSERT_THAT(bump.trends, SizeIs(2)) << noise << ' ' << cycles;
+      EXPECT_NEAR(bump.trends[0].to, 1.5 * kLevel, 0.1 * kLevel);
+      EXPECT_NEAR(bump.trends[1].from, 1.5 * kLevel, 0.1 * kLevel);
+      EXPECT_THAT(bump.steps, IsEmpty());
+    }
+  }
+}
+
 TEST(Describe, DoesNotMindOneCycleThatIsOff) {
   for (const std::size_t off : {2U, 50U, 98U}) {
     EXPECT_FALSE(Describe(CourseOf(100, 9,

@@ -46,6 +46,16 @@ TEST(Headline, SaysTheTestInOneLine) {
   EXPECT_EQ(Headline({}), "");
 }
 
+TEST(Headline, SaysWhatIsFarBeyondFirstAndLast) {
+  EXPECT_EQ(Headline(std::vector<Evolution>{
+                Of("slip_force", "N",
+                   {.first = 60.5,
+                    .last = 60.1,
+                    .steps = {},
+                    .trends = {{1, 150, 60.2, 90.2, 1e-20}, {151, 300, 90.2, 60.3, 1e-20}}})}),
+            "Tc 60.5 → 90.2 → 60.1 N");
+}
+
 TEST(Headline, NeverFallsByMoreThanAHundredPercent) {
   const std::vector<Evolution> turned = {
       Of("sigma", "N/m", {.first = 2.0, .last = -3.0, .steps = {{9, 9, 2.0, -3.0, 1e-9}}})};

@@ -50,8 +50,8 @@ class Course {
   double last_ = 0.0;
 };
 
-/// A change of a quantity: a trend along a straight segment of its time history, 1 % or more, or a
-/// step from one to the next, 2 % or more.
+/// A change of a quantity: a trend along straight segments of its time history that go the same
+/// way, 1 % or more each, or a step from one to the next, 2 % or more.
 struct Change {
   std::size_t first_cycle = 0;  ///< first cycle; a step has the one after it in both
   std::size_t last_cycle = 0;
@@ -66,7 +66,7 @@ struct CourseDescription {
   double first = 0.0;  ///< value of the first cycle, as the table has it
   double last = 0.0;   ///< value of the last cycle
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
-  /// ends; empty where it changed by no more than its scatter, or until the last tenth of the test.
+  /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
   std::vector<Change> steps = {};
   std::vector<Change> trends = {};
@@ -75,9 +75,10 @@ struct CourseDescription {
 };
 
 /// Divides a time history into straight segments: in two where the F test of two lines against one
-/// rejects the one with a chance below 1 %, corrected for the number of places and for the
-/// residuals' lag-one correlation; each part likewise, up to eight segments. Steps are between
-/// segments, trends along one by Student's test of its slope. No value is stated that no cycle had.
+/// rejects the one with a chance below 1 %, corrected for the number of places; each part likewise,
+/// up to eight segments. The noise that this is judged by is that of neighbouring values, whatever
+/// the lines miss, but no less than 0.1 % of the largest value. Steps are between segments, trends
+/// along one by Student's test of its slope. No value is stated that no cycle had.
 /// @returns nothing for a time history without a value
 std::optional<CourseDescription> Describe(const Course& course);
 
@@ -130,8 +131,9 @@ struct DissipatedEnergy {
 };
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
-/// µm"; the friction coefficient, or without a load the slip force, or the half gap where that is
-/// open, then stiffness and contact radius.
+/// µm", and "60.5 → 90.2 → 60.1" where it was between far beyond both; the friction coefficient, or
+/// without a load the slip force, or the half gap where that is open, then stiffness and contact
+/// radius.
 std::string Headline(std::span<const Evolution> evolutions);
 
 /// Returns a sentence for each step and trend with the quantity's name, of more than `most` the
