@@ -383,16 +383,23 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
   const bool is_open = fit.HasFlag("not_closed");
   if (is_open && !of_a_step.empty()) {
     std::vector<double> neighbours(of_a_step.begin(), of_a_step.end());
-    total += static_cast<double>(cycles) * steps * boost::math::statistics::median(neighbours);
+    of_last = steps * boost::math::statistics::median(neighbours);
     ++replaced;
   } else if (is_open || !fit["energy"]) {
+    of_last = 0.0;
     ++left_out;
   } else {
-    total += static_cast<double>(cycles) * *fit["energy"];
+    of_last = *fit["energy"];
     ++measured;
     if (of_a_step.size() == kNeighbours) of_a_step.pop_front();
     of_a_step.push_back(*fit["energy"] / steps);
   }
+  Finish(fit.number + together - 1);
+}
+
+void DissipatedEnergy::Finish(std::size_t cycles) {
+  total += static_cast<double>(cycles - counted) * of_last;
+  counted = cycles;
 }
 
 std::string Headline(std::span<const Evolution> evolutions) {

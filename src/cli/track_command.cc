@@ -292,8 +292,7 @@ class TrackRun {
   TrackRun(const TrackCommandOptions& options, const CLI::App& command)
       : options_(options),
         command_(command),
-        test_{.output = options.output,
-              .energy = {.cycles = options.track.together * options.track.every}} {}
+        test_{.output = options.output, .energy = {.together = options.track.together}} {}
 
   /// @throws InputError naming the place in a file; rows that are finished are kept
   TrackedTest Track() {
@@ -321,6 +320,7 @@ class TrackRun {
           options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
           test_.gate.gate));
     }
+    test_.energy.Finish(test_.cycles);
     campaign::Describe(test_.evolutions);
     return std::move(test_);
   }

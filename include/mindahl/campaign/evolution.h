@@ -119,15 +119,21 @@ void Describe(std::vector<Evolution>& evolutions);
 /// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
 /// between samples, so that the parts of a cycle count for it together; before any was measured
 /// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
+/// A fit stands for the cycles since the last one too, the last also for those after it.
 struct DissipatedEnergy {
-  std::size_t cycles = 1;  ///< cycles that a fit stands for
-  double total = 0.0;
-  std::size_t measured = 0;        ///< fits with an energy of their own, glitches interpolated
-  std::size_t replaced = 0;        ///< fits given the energy per sample of the measured ones before
-  std::size_t left_out = 0;        ///< fits with no energy known, or none dissipated
+  std::size_t together = 1;  ///< cycles of one fit
+  double total = 0.0;        ///< up to the end of the last fit's cycles, or of all once finished
+  std::size_t measured = 0;  ///< fits with an energy of their own, glitches interpolated
+  std::size_t replaced = 0;  ///< fits given the energy per sample of the measured ones before
+  std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
   std::deque<double> of_a_step{};  ///< energies [J] of the last that were measured
+  std::size_t counted = 0;         ///< cycles that are in the total
+  double of_last = 0.0;            ///< energy [J] of a cycle of the last fit
 
   void Add(const CycleFit& fit);
+  /// Adds the cycles after the last fit.
+  /// @param cycles  of the test
+  void Finish(std::size_t cycles);
 };
 
 /// Returns the whole test in one line: "μ 0.352 → 0.600, settled at cycle 480; σ +60 %; a 250 → 400
