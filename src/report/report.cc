@@ -132,9 +132,11 @@ std::string ImpossibleContact(const Report& report) {
   return fmt::format("μ is {:.3g}: look at {}", friction, unit);
 }
 
-/// Returns a question where half gaps of several files differ as loads would make them.
+/// Returns a question where half gaps of several files differ as loads would make them, and one law
+/// does not describe them: in partial slip they differ by the amplitudes too.
 std::string DifferentLoads(const Report& report) {
   if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
+  if (report.fit.adequacy.verdict != identification::AdequacyVerdict::kInadequate) return "";
   std::vector<double> half_gaps;
   half_gaps.reserve(report.fit.records.size());
   for (const identification::RecordFit& record : report.fit.records) {

@@ -189,6 +189,9 @@ TEST(Answer, AsksForTheLoadsOfFilesWhoseHalfGapsDiffer) {
   input.fit.records[0].facts = Facts(10.0);
   input.fit.records[1].facts = Facts(60.0);
   input.next = testing::MadeStep("--terms viscous");
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kAdequate;
+  EXPECT_EQ(LineOf(input, "check"), "") << "of a partial and a full slip";
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
   EXPECT_THAT(LineOf(input, "check"), HasSubstr("different loads? --normal-load N1,N2"));
   EXPECT_THAT(LineOf(input, "check"), HasSubstr("mindahl batch"));
   EXPECT_EQ(LineOf(input, "next"), "");
