@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text.h"
-#include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/terms.h"
 #include "report/json.h"
 #include "report/statements.h"
@@ -342,22 +341,6 @@ class Writer {
   std::vector<const Finding*> said_;
 };
 
-/// Lists the models that were compared, the best first.
-void AddComparison(const Report& report, std::vector<Line>& lines) {
-  std::vector<identification::ModelScore> scores = report.compared;
-  std::erase_if(scores, [](const auto& score) { return !score.converged; });
-  std::ranges::sort(scores, {}, &identification::ModelScore::delta_aicc);
-  for (const auto& score : scores) {
-    std::string text = fmt::format("{}{}: ΔAICc {:.4g}, rms {}", score.model->name,
-                                   score.rig ? " behind a rig" : "", score.delta_aicc,
-                                   Quantity(score.rms, report.units.response, 4));
-    if (score.held_out_rms) {
-      text += fmt::format(", held-out {}", Quantity(*score.held_out_rms, report.units.response, 4));
-    }
-    lines.push_back({"compared", std::move(text)});
-  }
-}
-
 }  // namespace
 
 std::string MisfitStatement(const Report& report) {
@@ -418,7 +401,6 @@ std::vector<Line> DetailLines(const Report& report) {
     lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", code,
                                                std::min(100.0, 100 * cause.explains))});
   }
-  AddComparison(report, lines);
   for (const Finding& finding : fit.findings) {
     if (finding.severity != identification::Severity::kNote || IsSaidByALine(finding.code))
       continue;
@@ -470,6 +452,10 @@ std::string LinesText(const std::vector<Line>& lines) {
 std::string ToText(const Report& report, Detail detail) {
   RequireFitted(report, "a text");
   std::string text = LinesText(AnswerLines(report));
+  if (!report.compared.empty()) {
+    text += fmt::format("\nmodels compared, rms in {}:\n{}", report.units.response,
+                        TableText(ComparedModels(report)));
+  }
   if (detail == Detail::kAll) text += '\n' + LinesText(DetailLines(report));
   return text;
 }

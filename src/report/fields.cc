@@ -403,6 +403,11 @@ const std::vector<Field>& Fields() {
        [](R report) {
          return ListOf(AddedTerms(report), [](const auto* term) -> Json { return term->name; });
        }},
+      {"compared", "",
+       "by `--compare`, the best first: `model`, `rig`, `delta_aicc`, `rms` and `held_out_rms` in "
+       "the "
+       "force's unit",
+       ComparedModels, "there are no cycles to hold out, or a fit without them failed"},
       {"next", "",
        "`text`, `options`, `misfit_before`, `misfit_after` over the half gap, of what was tried",
        Next, "nothing that was tried helps by a tenth"},
@@ -455,6 +460,19 @@ std::vector<std::string> ValuesUnder(const Report& report, std::string_view sect
                                                            : CellText(value)));
   }
   return values;
+}
+
+Json ComparedModels(const Report& report) {
+  std::vector<identification::ModelScore> scores = report.compared;
+  std::erase_if(scores, [](const auto& score) { return !score.converged; });
+  std::ranges::sort(scores, {}, &identification::ModelScore::delta_aicc);
+  return ListOf(scores, [](const auto& score) -> Json {
+    return {{"model", score.model->name},
+            {"rig", score.rig},
+            {"delta_aicc", score.delta_aicc},
+            {"rms", score.rms},
+            {"held_out_rms", NumberOrNull(score.held_out_rms)}};
+  });
 }
 
 std::vector<LeftOut> DescribeLeftOut(const Report& report) {

@@ -85,6 +85,9 @@ const std::vector<Field>& Fields();
 /// their units; none of what is null or has members.
 std::vector<std::string> ValuesUnder(const Report& report, std::string_view section);
 
+/// Returns a row for each model that was compared and converged, the best first.
+Json ComparedModels(const Report& report);
+
 /// Returns the samples of each record that do not count.
 std::vector<LeftOut> DescribeLeftOut(const Report& report);
 

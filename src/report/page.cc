@@ -231,7 +231,10 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                       .element = "p"},
                      figure.panels[1]),
           IntervalsHtml(report), NextHtml(report, provenance),
-          SectionHtml("Answer", LinesHtml("", AnswerLines(report))),
+          SectionHtml("Answer", LinesHtml("", AnswerLines(report)) +
+                                    TableHtml(fmt::format("models compared, rms in {}",
+                                                          report.units.response),
+                                              ComparedModels(report))),
           SectionHtml("Details", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
 }
 

@@ -1,6 +1,8 @@
 #include <sstream>
 
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/model_comparison.h"
+#include "report/json.h"
 #include "report/made_report.h"
 #include "report/statements.h"
 #include "support/prelude.h"
@@ -141,6 +143,21 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
   input.fit.findings = {{.code = "slip_force_bounded_below", .parameters = {"slip_force"}}};
   EXPECT_THAT(LineOf(input, "friction"),
               StartsWith("μ > 0.784, Tc > 39.2 N: the loop does not come near slip"));
+}
+
+TEST(Answer, ListsTheModelsThatWereCompared) {
+  ReportInput input = MadeInput();
+  const auto* const dahl = models::FindFrictionModel("dahl");
+  input.compared = {
+      {.model = dahl, .rig = true, .converged = true, .rms = 0.5, .delta_aicc = 70.0},
+      {.model = dahl},
+      {.model = input.fit.model, .converged = true, .rms = 0.4, .held_out_rms = 0.45}};
+  const std::string text = Answer(input);
+  EXPECT_THAT(text, HasSubstr("\n  mindlin-dahl  no       0  0.4      0.45\n"
+                              "  dahl          yes     70  0.5        -\n"));
+  const Json rows = ComparedModels(MakeReport(input));
+  ASSERT_THAT(rows, SizeIs(2));
+  EXPECT_EQ(rows[0]["held_out_rms"], 0.45);
 }
 
 TEST(Answer, ShowsNoValueAtALimitOfTheSearch) {

@@ -22,12 +22,13 @@ std::string StatedUnit(const std::string& path) {
   for (const report::Field& field : report::Fields()) {
     if (field.path == path) return std::string(field.unit);
   }
-  // Members of cycles and of the other law.
+  // Members of cycles, of the other law and of models that are compared.
   static const std::map<std::string, std::string> kOfMembers = {
-      {"amplitude", "m"}, {"peak_force", "N"}, {"half_gap", "N"},
-      {"energy", "J"},    {"sigma", "N/m"},    {"slip_force", "N"}};
+      {"amplitude", "m"}, {"peak_force", "N"}, {"half_gap", "N"}, {"energy", "J"},
+      {"sigma", "N/m"},   {"slip_force", "N"}, {"rms", "N"},      {"held_out_rms", "N"}};
   const auto member = kOfMembers.find(path.substr(path.rfind('.') + 1));
-  const bool is_member = path.starts_with("measured.") || path.starts_with("law.");
+  const bool is_member =
+      path.starts_with("measured.") || path.starts_with("law.") || path.starts_with("compared");
   return !is_member || member == kOfMembers.end() ? "" : member->second;
 }
 
