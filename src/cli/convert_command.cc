@@ -182,17 +182,18 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   const OptionGroup contact(command, "The contact");
   contact.Add("fit", options->fit,
               "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
-  contact.Add("--sigma", options->sigma, "tangential stiffness [N/m]", "N/M");
+  contact.AddQuantity("--sigma", options->sigma, "tangential stiffness [N/m]", "N/M", "N/m");
   contact.Add("--alpha", options->alpha, "shape exponent [-], default 1/3", "ALPHA");
-  contact.Add("--slip-force", options->slip_force, "slip force Tc [N]", "N");
+  contact.AddQuantity("--slip-force", options->slip_force, "slip force Tc [N]", "N", "N");
   contact
       .Add("--from", options->from,
            "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "
            "fit's, "
            "else masing")
       ->check(OneOf({"masing", "dahl"}));
-  contact.Add("--amplitude", options->amplitude,
-              "amplitude X of the contact's steady loop [m], without the rig's travel", "M");
+  contact.AddQuantity("--amplitude", options->amplitude,
+                      "amplitude X of the contact's steady loop [m], without the rig's travel", "M",
+                      "m");
   const OptionGroup result(command, "What it becomes");
   result.Add("--to", options->to, "law or program")
       ->required()
@@ -203,10 +204,12 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->check(WholeNumber(1, kMostElements));
   result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
-  result.Add("--normal-load", options->normal.normal_load,
-             "normal load [N] for --to lammps, liggghts and yade: friction\ncoefficient Tc/N", "N");
-  result.Add("--contact-radius", options->normal.contact_radius,
-             "contact radius [m] for --to lammps: the stiffness follows it", "M");
+  result.AddQuantity("--normal-load", options->normal.normal_load,
+                     "normal load [N] for --to lammps, liggghts and yade: friction\n"
+                     "coefficient Tc/N",
+                     "N", "N");
+  result.AddQuantity("--contact-radius", options->normal.contact_radius,
+                     "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
   result.Add("--viscous", options->normal.viscous,
              "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
   const OptionGroup outputs(command, "Output");

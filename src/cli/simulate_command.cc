@@ -134,7 +134,7 @@ void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   group.AddChoice("--waveform", request.excitation.waveform, std::move(waveforms),
                   "imposed displacement");
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
-  group.Add("--amplitude", request.amplitude, "amplitude [m]", "M");
+  group.AddQuantity("--amplitude", request.amplitude, "amplitude [m]", "M", "m");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
   group
       .AddShown("--samples-per-cycle", request.excitation.samples_per_cycle,
@@ -179,8 +179,9 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddDriveOptions(command, *options);
 
   const OptionGroup noise(command, "Noise");
-  noise.Add("--noise-force", options->force_noise, "standard deviation [N]", "N");
-  noise.Add("--noise-displacement", options->displacement_noise, "standard deviation [m]", "M");
+  noise.AddQuantity("--noise-force", options->force_noise, "standard deviation [N]", "N", "N");
+  noise.AddQuantity("--noise-displacement", options->displacement_noise, "standard deviation [m]",
+                    "M", "m");
   noise
       .AddShown("--seed", options->excitation.seed, "seed of the noise and of the random waveform")
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));

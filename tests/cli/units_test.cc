@@ -50,6 +50,21 @@ TEST_F(Units, OfATableOfCyclesAreThoseOfItsHeader) {
   }
 }
 
+TEST_F(Units, FollowAQuantityOfAnOption) {
+  EXPECT_EQ(Done("convert --to lammps --sigma 48N/um --slip-force 15N --amplitude 1um "
+                 "--normal-load 0.05kN --contact-radius 0.25mm")
+                .out,
+            Done("convert --to lammps --sigma 48e6 --slip-force 15 --amplitude 1e-6 "
+                 "--normal-load 50 --contact-radius 0.25e-3")
+                .out);
+  EXPECT_EQ(Done("simulate --sigma 48N/um --slip-force 15N --amplitude 1um --noise-force 1mN "
+                 "--noise-displacement 1nm")
+                .out,
+            Done("simulate --sigma 48e6 --slip-force 15 --amplitude 1e-6 --noise-force 1e-3 "
+                 "--noise-displacement 1e-9")
+                .out);
+}
+
 TEST_F(Units, OfAConversionAreThoseOfItsParameters) {
   for (const char* target : {"dahl", "iwan", "lugre", "lammps", "urdf"}) {
     const auto convert = [&](const UnitScale& scale) {
