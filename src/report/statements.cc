@@ -54,7 +54,7 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
   if (estimate.status == ParameterStatus::kAtLowerBound) {
     return estimate.upper95 ? Shown::kUpperLimit : Shown::kNothing;
   }
-  if (estimate.status == ParameterStatus::kAtUpperBound) {
+  if (estimate.status == ParameterStatus::kAtUpperBound && !estimate.upper95) {
     return estimate.lower95 ? Shown::kLowerLimit : Shown::kNothing;
   }
   return Shown::kValue;

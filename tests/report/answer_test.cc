@@ -145,6 +145,17 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
               StartsWith("μ > 0.784, Tc > 39.2 N: the loop does not come near slip"));
 }
 
+TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  auto& slip_force = input.fit.parameters[2];
+  slip_force.status = ParameterStatus::kAtUpperBound;
+  slip_force.identifiability = Identifiability::kEffective;
+  slip_force.upper95 = slip_force.value;
+  EXPECT_THAT(LineOf(input, "friction"),
+              HasSubstr("μ 0.8000 (0.7840 … 0.8000), Tc 40.00 N (39.20 … 40.00)"));
+}
+
 TEST(Answer, ListsTheModelsThatWereCompared) {
   ReportInput input = MadeInput();
   const auto* const dahl = models::FindFrictionModel("dahl");
