@@ -14,6 +14,7 @@
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/test_part.h"
 #include "mindahl/request/fit_request.h"
 
@@ -163,6 +164,24 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
     options.initial_state = models::InitialState::kSteady;
   }
   return left_out;
+}
+
+/// Turns the force of records whose sign is not that of the first, unless a sign is given.
+void AlignForceSigns(const loop::PreparationOptions& options, std::span<const std::string> names,
+                     std::vector<RecordFile>& records, std::vector<std::string>& notes) {
+  if (options.force_sense || records.size() < 2) return;
+  std::optional<int> first;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const loop::RecordView record(records[r].record);
+    const int sign = loop::Prepare({&record, 1}, options).force_sense;
+    if (sign == first.value_or(sign)) {
+      first = sign;
+      continue;
+    }
+    for (double& force : records[r].record.force) force = -force;
+    notes.push_back(fmt::format("{}: the force is turned, as its sign is not that of {}", names[r],
+                                names.front()));
+  }
 }
 
 void RequireLoadsOfRecords(const FitRequest& request) {
@@ -411,6 +430,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
   std::vector<report::LeftOut> left_out = KeepTests(request, names, inputs, options);
+  AlignForceSigns(options.preparation, names, inputs, notes);
   std::vector<Record> records;
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);

@@ -66,6 +66,16 @@ TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
   EXPECT_THAT(RefusalOf({turning}, request), EndsWith("give a smaller gate, in N m"));
 }
 
+TEST(FitRecords, TurnsTheForceOfAFileWhoseSignIsTheOther) {
+  io::RecordFile opposite = LoopFile();
+  for (double& force : opposite.record.force) force = -force;
+  FitRequest request;
+  request.files = {"a.csv", "b.csv"};
+  const report::Report made = FitRecords(request, {LoopFile(), opposite});
+  EXPECT_NEAR(made.fit.law.slip_force, 40.0, 0.5);
+  EXPECT_THAT(made.notes, Contains(StartsWith("b.csv: the force is turned")));
+}
+
 TEST(FitRecords, RefusesAForceBesideATorque) {
   io::RecordFile torque = LoopFile();
   torque.is_torsional = true;
