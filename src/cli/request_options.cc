@@ -5,7 +5,6 @@
 
 #include "cli/command.h"
 #include "core/from_chars.h"
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "mindahl/core/units.h"
 #include "mindahl/identification/term_selection.h"
@@ -246,9 +245,8 @@ void ReadSelection(std::string_view what, std::string_view range, const std::str
   } else if (what == "load") {
     request.fit.preparation.load_window = ParseInterval(range, option, "LO:HI in newtons", "N");
   } else {
-    throw InputError(fmt::format(
-        "{}: {} must be one of them", option,
-        UnknownAmong(what, std::vector<std::string>{"cycles", "samples", "time", "load"})));
+    RequireOneOf("--select", what,
+                 std::vector<std::string_view>{"cycles", "samples", "time", "load"});
   }
 }
 

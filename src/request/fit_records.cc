@@ -396,8 +396,18 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
   columns.covariates = MakeFitOptions(request).covariates;
   std::vector<RecordFile> inputs;
   for (const std::string& file : request.files) {
-    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns));
-    KeepTimeWindow(request, file, input);
+    try {
+      inputs.push_back(io::ReadRecord(file, columns));
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      for (const std::string& name : NamedTerms(request)) {
+        if (text.find(fmt::format("--covariate {}:", name)) == std::string::npos) continue;
+        throw InputError(
+            fmt::format("--terms: '{}' is no term, so it is taken for a column: {}", name, text));
+      }
+      throw;
+    }
+    KeepTimeWindow(request, file, inputs.back());
   }
   return inputs;
 }
