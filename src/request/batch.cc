@@ -110,29 +110,22 @@ Json TableRows(std::span<const BatchEntry> entries) {
   return rows;
 }
 
-double RootMeanSquare(std::span<const double> values) {
-  double squares = 0.0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 /// Compares the scatter of repeats of a test with their stated errors.
 /// @param errors  by which they should scatter, > 0; none where they state none
-/// @param common  errors that they have in common, as of a model that misses the same in all: these
-///   neither scatter nor average out
 Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& errors,
-                const std::vector<double>& common, std::string_view unit) {
+                std::string_view unit) {
   const auto count = static_cast<double>(values.size());
   const double mean = boost::math::statistics::mean(values);
   const double deviation = std::sqrt(boost::math::statistics::sample_variance(values));
   std::optional<double> stated;
-  std::optional<double> in_common;
   std::optional<double> p_value;
   std::string says = "without stated errors";
   if (!errors.empty()) {
+    double squares = 0.0;
     double weights = 0.0;
     double weighted = 0.0;
     for (std::size_t k = 0; k < values.size(); ++k) {
+      squares += errors[k] * errors[k];
       weights += 1 / (errors[k] * errors[k]);
       weighted += values[k] / (errors[k] * errors[k]);
     }
@@ -142,20 +135,16 @@ Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& er
       const double off = (values[k] - weighted / weights) / errors[k];
       chi_squared += off * off;
     }
-    stated = RootMeanSquare(errors);
-    in_common = RootMeanSquare(common);
+    stated = std::sqrt(squares / count);
     p_value = PValueOfChiSquared(chi_squared, count - 1);
     constexpr double kChance = 0.01;
     says = fmt::format("{}, {}", *p_value < kChance ? "more than the errors" : "as the errors say",
                        report::ChanceText(*p_value, 2));
   }
-  const double own = std::max(deviation, stated.value_or(0.0)) / std::sqrt(count);
   return {{"files", values.size()},
           {"mean", mean},
-          {"mean_error", std::hypot(own, in_common.value_or(0.0))},
           {"standard_deviation", deviation},
           {"stated_error", NumberOrNull(stated)},
-          {"common_error", NumberOrNull(in_common)},
           {"p_value", NumberOrNull(p_value)},
           {"unit", unit},
           {"says", says}};
@@ -166,7 +155,6 @@ Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& er
 Json RepeatsOf(std::span<const BatchEntry> fits, const Json& rows, const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;  // by which repeats scatter
-  std::vector<double> common;  // of an interval that is wider than by its own error
   for (std::size_t k = 0; k < fits.size(); ++k) {
     const BatchEntry& fit = fits[k];
     const auto number = [&](std::string_view name, const char* suffix) {
@@ -194,9 +182,8 @@ Json RepeatsOf(std::span<const BatchEntry> fits, const Json& rows, const Repeate
     if (!(error > 0)) continue;
     values.push_back(*value);
     errors.push_back(error);
-    common.push_back(std::sqrt(std::max(0.0, whole * whole - error * error)));
   }
-  return values.size() < 2 ? Json() : RepeatsRow(values, errors, common, quantity.unit);
+  return values.size() < 2 ? Json() : RepeatsRow(values, errors, quantity.unit);
 }
 
 /// Returns what repeats of a test say of each quantity.
