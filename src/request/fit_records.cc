@@ -307,7 +307,8 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   constexpr std::size_t kMostTried = 3;
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
   if (!fit.converged || !before || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
-      !options.terms.empty() || !options.covariates.empty()) {
+      fit.FindFinding("force_at_limit") != nullptr || !options.terms.empty() ||
+      !options.covariates.empty()) {
     return std::nullopt;
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
