@@ -1,6 +1,5 @@
 #include "core/probability.h"
 
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -13,7 +12,6 @@ namespace {
 
 /// Boost would evaluate in long double, at several times the cost, to round the last digit well.
 using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
-using Binomial = boost::math::binomial_distribution<double, InDouble>;
 using ChiSquared = boost::math::chi_squared_distribution<double, InDouble>;
 using FisherF = boost::math::fisher_f_distribution<double, InDouble>;
 using StudentsT = boost::math::students_t_distribution<double, InDouble>;
@@ -59,14 +57,6 @@ double FQuantile(double numerator_degrees, double degrees_of_freedom, double cha
 
 double PValueOfChiSquared(double x, double degrees_of_freedom) {
   return Above(ChiSquared(degrees_of_freedom), x);
-}
-
-double BinomialAtMost(double count, double trials, double probability) {
-  return boost::math::cdf(Binomial(trials, probability), count);
-}
-
-double BinomialAbove(double count, double trials, double probability) {
-  return Above(Binomial(trials, probability), count);
 }
 
 }  // namespace mindahl

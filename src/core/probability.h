@@ -24,9 +24,4 @@ double FQuantile(double numerator_degrees, double degrees_of_freedom, double cha
 /// P(χ²(k) > x)
 double PValueOfChiSquared(double x, double degrees_of_freedom);
 
-/// P(at most `count` of `trials`, each with that probability)
-double BinomialAtMost(double count, double trials, double probability);
-/// P(more than `count` of `trials`, each with that probability)
-double BinomialAbove(double count, double trials, double probability);
-
 }  // namespace mindahl

@@ -12,12 +12,6 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-TEST(Probability, BinomialTailsCountTheirOwnEndBelowAndNotAbove) {
-  // Three trials of 1/4: 27, 27, 9 and 1 of 64 ways.
-  EXPECT_NEAR(BinomialAtMost(1, 3, 0.25), 54.0 / 64, kRounding);
-  EXPECT_NEAR(BinomialAbove(1, 3, 0.25), 10.0 / 64, kRounding);
-}
-
 TEST(Probability, FOfTwoDegreesIsAPower) {
   // P(F(2, n) > f) = (1 + 2f/n)^(−n/2).
   EXPECT_NEAR(PValueOfF(3, 2, 10), std::pow(1.6, -5), kRounding);
