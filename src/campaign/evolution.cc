@@ -294,6 +294,7 @@ std::string FromTo(const std::vector<double>& values, const std::string& unit) {
                        kMost)
           : 0;
   std::vector<std::string> texts;
+  texts.reserve(values.size());
   for (const double value : values) {
     texts.push_back(fmt::format("{:.{}f}", value / scaled.factor, decimals));
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -49,8 +50,8 @@ std::optional<std::array<int, 3>> TakeThree(std::string_view& text, char sign) {
       rest.remove_prefix(1);
     }
     if (rest.empty() || !IsDigit(rest.front())) return std::nullopt;
-    const char* const end = rest.data() + rest.size();
-    const auto [stop, error] = FromChars(rest.data(), end, number);
+    const char* const end = std::to_address(rest.end());
+    const auto [stop, error] = FromChars(std::to_address(rest.begin()), end, number);
     if (error != std::errc()) return std::nullopt;
     rest = {stop, end};
   }

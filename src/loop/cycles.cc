@@ -19,7 +19,7 @@ std::vector<std::size_t> TurningPoints(std::span<const double> displacement,
   points.assign(reversals.begin(), reversals.end());
   if (points.empty()) return points;
   const auto [lowest, highest] = ExtremesOf(displacement);
-  const double tolerance = CycleRules::at_extreme * (highest - lowest);
+  const double tolerance = CycleRules::kAtExtreme * (highest - lowest);
   const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
     const bool upper = displacement[end] > displacement[neighbour];
     return upper ? highest - displacement[end] <= tolerance
@@ -86,8 +86,8 @@ std::vector<Stroke> MainStrokes(const RecordView& record, std::span<const std::s
     strokes.push_back(StrokeOf(record, points[k], points[k + 1]));
     widest = std::max(widest, strokes.back().range());
   }
-  std::erase_if(strokes,
-                [&](const Stroke& stroke) { return stroke.range() < CycleRules::steady * widest; });
+  std::erase_if(
+      strokes, [&](const Stroke& stroke) { return stroke.range() < CycleRules::kSteady * widest; });
   return strokes;
 }
 
@@ -169,7 +169,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 
   if (!reversals.empty() && measures.amplitude > 0) {
     measures.cycles = static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 +
-                                               CycleRules::at_extreme);
+                                               CycleRules::kAtExtreme);
   }
   return measures;
 }
@@ -180,9 +180,9 @@ int ForceSense(const RecordView& record, std::span<const std::size_t> reversals)
   const double rectangle =
       (displacement.greatest - displacement.least) * (force.greatest - force.least);
   const std::vector<double> energies = CycleEnergies(record, reversals);
-  if (!energies.empty() && std::abs(Mean(energies)) > CycleRules::thin * rectangle &&
+  if (!energies.empty() && std::abs(Mean(energies)) > CycleRules::kThin * rectangle &&
       std::abs(Mean(energies)) >
-          CycleRules::deviations * NoiseOfMeanEnergy(record, energies.size())) {
+          CycleRules::kDeviations * NoiseOfMeanEnergy(record, energies.size())) {
     return SignOf(Mean(energies));
   }
   const double mean_displacement = Mean(record.displacement);

@@ -138,7 +138,7 @@ CycleFacts MeasureCycle(const RecordView& record, std::span<const std::size_t> p
   facts.peak_force = PeakForce(cycle);
   facts.energy = CycleEnergy(record, points[0], points[2]);
   facts.energy_ratio = EnergyRatio(facts.energy, facts.amplitude, facts.peak_force);
-  facts.returns = std::abs(way) <= CycleRules::returns * 2 * facts.amplitude;
+  facts.returns = std::abs(way) <= CycleRules::kReturns * 2 * facts.amplitude;
   MeasureGap(cycle, facts);
   if (facts.half_gap && facts.peak_force > 0) MeasureWidth(cycle, facts);
   return facts;
@@ -277,7 +277,7 @@ LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> 
   std::vector<Cycle> steady;
   std::vector<CycleFacts> steady_facts;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
-    facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::steady * widest;
+    facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::kSteady * widest;
     if (!facts.cycles[k].steady) continue;
     steady.push_back(cycles[k]);
     steady_facts.push_back(facts.cycles[k]);
@@ -303,12 +303,12 @@ LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> 
 }  // namespace
 
 bool Slides(const LoopFacts& facts) {
-  const bool has_gap = facts.half_gap && *facts.half_gap > SlidingRules::gap * facts.peak_force;
+  const bool has_gap = facts.half_gap && *facts.half_gap > SlidingRules::kGap * facts.peak_force;
   if (!facts.closed || !has_gap) return false;
   // A spring parallel to the contact raises T*, and neither the energy nor the gap.
   const double even = facts.energy_per_cycle / (4 * facts.amplitude * *facts.half_gap);
-  return facts.energy_ratio >= SlidingRules::energy_ratio ||
-         std::abs(even - 1) < SlidingRules::uneven;
+  return facts.energy_ratio >= SlidingRules::kEnergyRatio ||
+         std::abs(even - 1) < SlidingRules::kUneven;
 }
 
 bool RanAway(const LoopFacts& facts, double slip_force) {
@@ -321,7 +321,7 @@ bool RanAway(const LoopFacts& facts, double slip_force) {
 bool ReachesSlip(const LoopFacts& facts) {
   if (!facts.closed || !facts.sliding_amplitude || !(*facts.sliding_amplitude > 0)) return false;
   const double rectangle = 4 * facts.peak_force * *facts.sliding_amplitude;
-  return facts.energy_per_cycle >= SlidingRules::full * rectangle;
+  return facts.energy_per_cycle >= SlidingRules::kFull * rectangle;
 }
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,

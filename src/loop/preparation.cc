@@ -31,7 +31,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
-  const bool is_coarse = prepared.encoder_step > CycleRules::coarse * (highest / 2 - lowest / 2);
+  const bool is_coarse = prepared.encoder_step > CycleRules::kCoarse * (highest / 2 - lowest / 2);
   return prepared.gate_choice.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
 }
 

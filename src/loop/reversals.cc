@@ -104,9 +104,9 @@ double MainDuration(std::span<const Excursion> excursions) {
 /// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
 double ReachOfNoise(std::span<const double> displacement, double full_range) {
   const double noise = EstimateDisplacementNoise(displacement);
-  if (noise > ReversalRules::rough * full_range) return 0.0;
+  if (noise > ReversalRules::kRough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
-  return ReversalRules::beyond * 2 * noise *
+  return ReversalRules::kBeyond * 2 * noise *
          std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
 }
 
@@ -114,7 +114,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range) {
 bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
   return excursion.duration() <= kLongest &&
-         LargestStep(displacement, excursion) >= ReversalRules::jump * excursion.range;
+         LargestStep(displacement, excursion) >= ReversalRules::kJump * excursion.range;
 }
 
 /// Looks at excursions one by one; empty where none is brief, so that there is no noise.
@@ -129,7 +129,7 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
   std::vector<JudgedExcursion> judged;
   judged.reserve(excursions.size());
   for (const Excursion& excursion : excursions) {
-    judged.push_back({excursion, lasts_at_most(excursion, ReversalRules::brief)});
+    judged.push_back({excursion, lasts_at_most(excursion, ReversalRules::kBrief)});
   }
   if (std::ranges::none_of(judged, &JudgedExcursion::is_brief)) return {};
   const double reach = ReachOfNoise(displacement, excursions.back().range);
@@ -138,7 +138,7 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
     const bool is_brief_inside = one.is_brief && one.reversals != 1;
     if (one.range <= reach) {
       one.look = is_brief_inside ? Look::kNoise : Look::kUnclear;
-    } else if (lasts_at_most(one, ReversalRules::sudden) && Jumps(displacement, one)) {
+    } else if (lasts_at_most(one, ReversalRules::kSudden) && Jumps(displacement, one)) {
       one.look = one.reversals == 1 ? Look::kUnclear : Look::kNoise;
     } else if (is_brief_inside) {
       one.look = Look::kOdd;
@@ -150,7 +150,7 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
   for (JudgedExcursion& one : std::views::reverse(judged)) {
     if (one.look == Look::kOdd) ++wider;
     const bool ends = one.reversals == 1 && one.is_brief && one.look == Look::kDrive;
-    if (ends && wider >= ReversalRules::many) one.look = Look::kUnclear;
+    if (ends && wider >= ReversalRules::kMany) one.look = Look::kUnclear;
   }
   return judged;
 }
@@ -184,7 +184,7 @@ Plateau WidestPlateau(Excursions excursions) {
     fewest = std::min(fewest, exceptions);
   }
   const double allowed =
-      static_cast<double>(fewest) + ReversalRules::exceptions * static_cast<double>(noise);
+      static_cast<double>(fewest) + ReversalRules::kExceptions * static_cast<double>(noise);
   Plateau widest;
   for (const Plateau& plateau : plateaus) {
     const bool is_good = static_cast<double>(plateau.exceptions) <= allowed;
@@ -201,14 +201,14 @@ Plateau AboveSmoothDisturbances(Excursions excursions) {
   std::size_t count = 0;
   for (std::size_t i = 0; i + 1 < excursions.size() && excursions[i].is_brief; ++i) {
     const double range = excursions[i].range;
-    if (i == 0 || range > ReversalRules::clear * excursions[i - 1].range) {
+    if (i == 0 || range > ReversalRules::kClear * excursions[i - 1].range) {
       least = range;
       count = 0;
     }
     ++count;
     const double upper = excursions[i + 1].range;
-    if (count >= ReversalRules::many && range >= ReversalRules::spread * least &&
-        upper >= ReversalRules::far * range) {
+    if (count >= ReversalRules::kMany && range >= ReversalRules::kSpread * least &&
+        upper >= ReversalRules::kFar * range) {
       widest = {.lower = range, .upper = upper, .below = i + 1};
     }
   }
@@ -234,9 +234,9 @@ ReversalGate ChooseByLooks(std::span<const double> displacement,
   const Plateau smooth = AboveSmoothDisturbances(judged);
   if (smooth.below > chosen.below) return Under(excursions, smooth.gate(), chosen.gate());
   if (chosen.below == 0) return Under(excursions, 0.0);
-  if (chosen.upper >= ReversalRules::clear * chosen.lower) return Under(excursions, chosen.gate());
+  if (chosen.upper >= ReversalRules::kClear * chosen.lower) return Under(excursions, chosen.gate());
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
-  return static_cast<double>(chosen.below) < ReversalRules::outnumber * kept
+  return static_cast<double>(chosen.below) < ReversalRules::kOutnumber * kept
              ? Under(excursions, 0.0, chosen.gate())
              : Under(excursions, chosen.gate(), 0.0);
 }
@@ -248,7 +248,7 @@ ReversalGate ChooseReversalGate(std::span<const double> displacement) {
   if (excursions.size() < 2) return Under(excursions, 0.0);
   const ReversalGate chosen = ChooseByLooks(displacement, excursions);
   // An encoder that counts to and fro is at rest, however long that takes it.
-  const double flicker = ReversalRules::counts * EncoderStep(displacement);
+  const double flicker = ReversalRules::kCounts * EncoderStep(displacement);
   const bool flickers = excursions.front().range <= flicker;
   const bool is_stroke = flicker >= excursions.back().range / 2;
   return flickers && !is_stroke && flicker > chosen.gate ? Under(excursions, flicker) : chosen;

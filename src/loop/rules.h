@@ -7,34 +7,34 @@ namespace mindahl::loop {
 /// Sets when an excursion of the displacement looks like noise, and when a gate is certain.
 struct ReversalRules {
   /// [of the main strokes' duration] Longest noise; a nested loop of few samples is not shorter.
-  static constexpr double brief = 1.0 / 3;
+  static constexpr double kBrief = 1.0 / 3;
   /// [of the main strokes' duration] Longest jump of the gauge beyond the white noise: an inner
   /// loop that the drive makes on its way may last longer.
-  static constexpr double sudden = 1.0 / 8;
+  static constexpr double kSudden = 1.0 / 8;
   /// [of the excursion's range] Least fraction in one step between samples of a jump: a drive that
   /// turns twice takes more samples to do so.
-  static constexpr double jump = 0.4;
+  static constexpr double kJump = 0.4;
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
-  static constexpr double beyond = 1.25;
+  static constexpr double kBeyond = 1.25;
   /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less
   /// than the two that a motion makes.
-  static constexpr double counts = 1.5;
+  static constexpr double kCounts = 1.5;
   /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
-  static constexpr double rough = 0.05;
+  static constexpr double kRough = 0.05;
   /// [of the excursions that look like noise] Largest fraction classified otherwise.
-  static constexpr double exceptions = 0.05;
+  static constexpr double kExceptions = 0.05;
   /// [-] Ratio of a plateau's ends below which it is narrow.
-  static constexpr double clear = 2.5;
+  static constexpr double kClear = 2.5;
   /// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
   /// drive: of random walks, whose excursions are of all ranges, it is not.
-  static constexpr double outnumber = 20.0;
+  static constexpr double kOutnumber = 20.0;
   /// Smooth disturbances are distinguished from nested loops by their number,
-  static constexpr std::size_t many = 8;
+  static constexpr std::size_t kMany = 8;
   /// [-] the ratio of their ranges, which lie as densely as those of noise,
-  static constexpr double spread = 10.0;
+  static constexpr double kSpread = 10.0;
   /// [-] The third mark is the ratio of the plateau's ends above them.
-  static constexpr double far = 10.0;
+  static constexpr double kFar = 10.0;
 };
 
 /// Sets the limits beyond which a sample is a glitch.
@@ -63,76 +63,76 @@ struct GlitchRules {
 /// Sets the limits within which a normal load is a series of constant ones.
 struct LoadStepRules {
   /// [of the load] Largest deviation of a constant load, which a fit hardly sees.
-  static constexpr double constant = 0.01;
+  static constexpr double kConstant = 0.01;
   /// [standard deviations of the readings' white noise] The same by noise: of 10⁵ readings the
   /// widest is 4.4 off.
-  static constexpr double noise = 5.0;
+  static constexpr double kNoise = 5.0;
   /// [of the smaller] Least difference of loads with a step between; a smaller one may be a drift.
-  static constexpr double step = 0.05;
+  static constexpr double kStep = 0.05;
   /// [of the step next to it] Largest range of a constant load: the top of a wave is not flat.
-  static constexpr double flat = 0.1;
+  static constexpr double kFlat = 0.1;
   /// [of the samples] Least fraction under a constant load: a wave is at its tops for less.
-  static constexpr double share = 0.6;
+  static constexpr double kShare = 0.6;
   /// [turning points] After the second, from which a piece begins, a constant load has a cycle.
-  static constexpr std::size_t turns = 4;
+  static constexpr std::size_t kTurns = 4;
 };
 
 /// Sets the limits by which cycles are counted and compared.
 struct CycleRules {
   /// [of the range] Farthest from an extreme that an end of a record is a turning point; [cycles]
   /// the most that one which counts is short of a whole one.
-  static constexpr double at_extreme = 0.02;
+  static constexpr double kAtExtreme = 0.02;
   /// [of the widest cycle's amplitude] Least amplitude of a cycle that is one of the widest.
-  static constexpr double steady = 0.95;
+  static constexpr double kSteady = 0.95;
   /// [of its width] Farthest that a cycle ends from where it began: then it loses what a closed one
   /// does, but for twice that fraction.
-  static constexpr double returns = 0.05;
+  static constexpr double kReturns = 0.05;
   /// [energy of the rectangle round the loop, 4XT*] Least energy that decides the force's sign.
-  static constexpr double thin = 0.01;
+  static constexpr double kThin = 0.01;
   /// [standard deviations of what noise makes of it] The same: one record in 3.5 million.
-  static constexpr double deviations = 5.0;
+  static constexpr double kDeviations = 5.0;
   /// [of half the range] Least step of an encoder that is a noise: the rounding of a file, or of a
   /// fine encoder, is not worth it.
-  static constexpr double coarse = 1e-3;
+  static constexpr double kCoarse = 1e-3;
 };
 
 /// Sets the limits beyond which a measured loop slides over most of its stroke.
 struct SlidingRules {
   /// [W/(4XT*)] Least energy ratio: Mindlin's contact has it at twice its gross-slip displacement,
   /// beyond which the gap at mid-stroke is that of the slip force.
-  static constexpr double energy_ratio = 0.6;
+  static constexpr double kEnergyRatio = 0.6;
   /// [T*] Least half gap; less is no plateau: the strokes were not separated.
-  static constexpr double gap = 0.5;
+  static constexpr double kGap = 0.5;
   /// [-] Largest distance of the energy from that of a gap that is the same over the stroke.
-  static constexpr double uneven = 0.1;
+  static constexpr double kUneven = 0.1;
   /// [4·T*·sliding amplitude] Least energy of a loop that reaches its slip force.
-  static constexpr double full = 0.85;
+  static constexpr double kFull = 0.85;
 };
 
 /// Sets the limits by which the ends of a record are not part of its test.
 struct TestPartRules {
   /// [of the widest of them] Strokes of one amplitude differ by less.
-  static constexpr double alike = 0.9;
+  static constexpr double kAlike = 0.9;
   /// [strokes] Fewer are not repeated: a record of one and a half cycles has three.
-  static constexpr std::size_t fewest = 4;
+  static constexpr std::size_t kFewest = 4;
   /// [of the time from the first to the last of them] Least part that the strokes fill: the widest
   /// swings of a random motion are far apart.
-  static constexpr double filled = 0.8;
+  static constexpr double kFilled = 0.8;
   /// [of the excursion's range] Least fraction in one step between samples of a jump, which noise
   /// and an encoder's last digit make.
-  static constexpr double jump = 0.4;
+  static constexpr double kJump = 0.4;
   /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
   /// growing amplitude and a nested loop are inside.
-  static constexpr double travel = 0.25;
+  static constexpr double kTravel = 0.25;
   /// [of all strokes] Fewer strokes outside may be the swings of a broken specimen.
-  static constexpr double small_part = 0.125;
+  static constexpr double kSmallPart = 0.125;
   /// [excursions] So many of the widest may be travel, spikes and a broken specimen's fall.
-  static constexpr std::size_t classes = 64;
+  static constexpr std::size_t kClasses = 64;
   /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
-  static constexpr double rest = 0.01;
+  static constexpr double kRest = 0.01;
   /// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a
   /// sine is within `rest` of its extreme for 0.05 of a stroke to either side.
-  static constexpr double longest_dwell = 0.5;
+  static constexpr double kLongestDwell = 0.5;
 };
 
 }  // namespace mindahl::loop

@@ -63,7 +63,7 @@ class LoadSteps {
     const ConstantLoad piece = PieceOf(*longest);
     const auto samples = static_cast<double>(piece.last - piece.first);
     const bool is_whole = piece.first == 0 && piece.last == load_.size();
-    if (is_whole || samples < LoadStepRules::share * static_cast<double>(load_.size()))
+    if (is_whole || samples < LoadStepRules::kShare * static_cast<double>(load_.size()))
       return std::nullopt;
     return piece;
   }
@@ -74,7 +74,7 @@ class LoadSteps {
     return {.first = first, .last = run.last, .normal_load = run.load};
   }
   [[nodiscard]] double Tolerance(double load) const {
-    return std::max(LoadStepRules::constant * load, LoadStepRules::noise * noise_);
+    return std::max(LoadStepRules::kConstant * load, LoadStepRules::kNoise * noise_);
   }
   [[nodiscard]] std::vector<std::size_t>::const_iterator NextTurn(std::size_t sample) const {
     return std::ranges::lower_bound(reversals_, sample);
@@ -107,7 +107,7 @@ class LoadSteps {
     }
     const auto [low, high] =
         std::ranges::minmax(std::span(load_).subspan(run.first, run.last - run.first));
-    run.spread = std::max(high - low - 2 * LoadStepRules::noise * noise_, 0.0);
+    run.spread = std::max(high - low - 2 * LoadStepRules::kNoise * noise_, 0.0);
   }
 
   [[nodiscard]] std::vector<LoadRun> ConstantRuns() const {
@@ -117,7 +117,7 @@ class LoadSteps {
       i = run.last;
       Settle(run);
       const auto turns = static_cast<std::size_t>(NextTurn(run.last) - NextTurn(run.first));
-      if (run.load > 0 && turns >= LoadStepRules::turns) runs.push_back(run);
+      if (run.load > 0 && turns >= LoadStepRules::kTurns) runs.push_back(run);
     }
     return runs;
   }
@@ -128,10 +128,11 @@ class LoadSteps {
       samples += runs[r].last - runs[r].first;
       const double step = std::abs(runs[r].load - runs[r - 1].load);
       const double smaller = std::min(runs[r].load, runs[r - 1].load);
-      if (!(step > std::max(LoadStepRules::step * smaller, 4 * Tolerance(smaller)))) return false;
-      if (std::max(runs[r].spread, runs[r - 1].spread) > LoadStepRules::flat * step) return false;
+      if (!(step > std::max(LoadStepRules::kStep * smaller, 4 * Tolerance(smaller)))) return false;
+      if (std::max(runs[r].spread, runs[r - 1].spread) > LoadStepRules::kFlat * step) return false;
     }
-    return static_cast<double>(samples) >= LoadStepRules::share * static_cast<double>(load_.size());
+    return static_cast<double>(samples) >=
+           LoadStepRules::kShare * static_cast<double>(load_.size());
   }
 
   double noise_;

@@ -38,7 +38,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
   std::size_t count = 0;
   double lasting = 0.0;  // [samples]
   for (const Excursion& excursion : excursions) {
-    if (LargestStep(displacement, excursion) >= TestPartRules::jump * excursion.range) continue;
+    if (LargestStep(displacement, excursion) >= TestPartRules::kJump * excursion.range) continue;
     count += excursion.reversals;
     lasting += static_cast<double>(excursion.duration() * excursion.reversals);
     strokes.first = std::min(strokes.first, excursion.first);
@@ -48,9 +48,9 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
     strokes.lowest = std::min(strokes.lowest, low);
     strokes.highest = std::max(strokes.highest, high);
   }
-  if (count < TestPartRules::fewest) return std::nullopt;
+  if (count < TestPartRules::kFewest) return std::nullopt;
   const auto span = static_cast<double>(strokes.last - strokes.first);
-  if (lasting < TestPartRules::filled * span) return std::nullopt;
+  if (lasting < TestPartRules::kFilled * span) return std::nullopt;
   return strokes;
 }
 
@@ -58,11 +58,11 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
 std::optional<RepeatedStrokes> FindRepeatedStrokes(std::span<const double> displacement) {
   const std::vector<Excursion> excursions = FindExcursions(displacement);
   std::size_t last = excursions.size();
-  for (std::size_t tried = 0; last > 0 && tried < TestPartRules::classes; ++tried) {
+  for (std::size_t tried = 0; last > 0 && tried < TestPartRules::kClasses; ++tried) {
     const double widest = excursions[last - 1].range;
     if (!(widest > 0)) return std::nullopt;
     const auto first =
-        std::ranges::lower_bound(excursions, TestPartRules::alike * widest, {}, &Excursion::range);
+        std::ranges::lower_bound(excursions, TestPartRules::kAlike * widest, {}, &Excursion::range);
     const auto begin = static_cast<std::size_t>(first - excursions.begin());
     const std::span<const Excursion> alike = std::span(excursions).subspan(begin, last - begin);
     if (auto strokes = StrokesOf(displacement, alike)) return strokes;
@@ -105,8 +105,8 @@ Part Outside(std::span<const double> displacement, const Points& points,
     if (std::abs(displacement[*next] - displacement[*point]) > strokes.range / 2) ++as_wide;
   }
   const auto small_part =
-      static_cast<std::size_t>(TestPartRules::small_part * static_cast<double>(count));
-  outside.is_travel = as_wide < std::max(TestPartRules::fewest, small_part);
+      static_cast<std::size_t>(TestPartRules::kSmallPart * static_cast<double>(count));
+  outside.is_travel = as_wide < std::max(TestPartRules::kFewest, small_part);
   return outside;
 }
 
@@ -172,7 +172,7 @@ class TestSearch {
     const std::size_t from = test_.first;
     const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement);
     if (!strokes) return;
-    const double travel = TestPartRules::travel * strokes->range;
+    const double travel = TestPartRules::kTravel * strokes->range;
     std::vector<std::size_t> points = FindReversals(displacement, travel);
     points.insert(points.begin(), 0);
     points.push_back(displacement.size() - 1);
@@ -194,9 +194,9 @@ class TestSearch {
     const double usual = UsualStroke(displacement, gate);
     if (!(usual > 0)) return;
     const auto [least, greatest] = std::ranges::minmax(displacement);
-    const double reach = std::max(TestPartRules::rest * (greatest / 2 - least / 2), gate);
+    const double reach = std::max(TestPartRules::kRest * (greatest / 2 - least / 2), gate);
     const auto is_rest = [&](std::size_t samples) {
-      return samples > 1 && static_cast<double>(samples) > TestPartRules::longest_dwell * usual;
+      return samples > 1 && static_cast<double>(samples) > TestPartRules::kLongestDwell * usual;
     };
     // One sample stays, from which the motion begins and at which it ends.
     const std::size_t before = Resting(displacement, reach);

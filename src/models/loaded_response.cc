@@ -161,7 +161,8 @@ void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const Loa
          at_rest, with_derivatives_, [&](std::size_t i, const Tangent& force) {
            t[i] = force.value();
            for (const ResponseParameter by : {kRate, kShape, kUnloaded}) {
-             if (!gradient[by].empty()) gradient[by][i] = force.derivatives()[by];
+             const auto column = static_cast<std::size_t>(by);
+             if (!gradient[column].empty()) gradient[column][i] = force.derivatives()[by];
            }
          });
 }
