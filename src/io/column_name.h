@@ -23,8 +23,9 @@ struct NameEvidence {
   std::string_view word = {};  ///< the best; "" where none is known
   Role role = Role::kOther;
   int rank = 0;
-  bool is_angular = false;  // of an angle or a torque
-  bool is_lesser = false;   ///< commanded, raw or a statistic
+  bool is_angular = false;      // of an angle or a torque
+  bool is_coefficient = false;  // of friction
+  bool is_lesser = false;       ///< commanded, raw or a statistic
   std::size_t other_words = 0;
 
   /// True if it is a word of the role.

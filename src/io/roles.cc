@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <set>
 #include <span>
 #include <utility>
@@ -130,6 +131,7 @@ class RoleAssigner {
                              });
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, may_be_time ? 100 : 1);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement, 100);
+    RequireForce();
     RequireOneKind();
     return std::move(roles_);
   }
@@ -286,8 +288,43 @@ class RoleAssigner {
     }
   }
 
+  /// Refuses a coefficient of friction, one by its name or else by its numbers, as the force.
+  [[noreturn]] void ThrowCoefficient(std::size_t column) const {
+    const bool is_named = names_[column].name.evidence.is_coefficient;
+    Refuse(
+        "{}:{}: {} {}: choose the force with --force, or multiply by the normal load, where that "
+        "is 50 N by --force '#{}*50 [N]'{}",
+        names_.Header(), column + 1, names_.Label(column),
+        is_named
+            ? "is a coefficient of friction and no force"
+            : "without a unit and with all values below 2 looks like a coefficient of friction",
+        column + 1,
+        is_named ? "" : fmt::format("; if it is a force, say so by --force '{} [N]'", column + 1));
+  }
+
+  /// Refuses a coefficient of friction as the force, also a friction without a unit and below 2
+  /// beside a load in newton. Whoever gives it a unit is believed.
+  void RequireForce() {
+    const Expression& force = roles_[Role::kForce];
+    const std::size_t column = ColumnOf(Role::kForce);
+    const ColumnNames::Column& of = names_[column];
+    if (!force.unit.empty() || force.is_scaled || of.dimension) return;
+    const auto is_load = [&](std::size_t other) {
+      return names_[other].dimension == Dimension::kForce;
+    };
+    const bool is_low = std::ranges::none_of(names_.table().columns[column].values,
+                                             [](double value) { return std::abs(value) >= 2; });
+    const bool may_be =
+        of.name.evidence.word == "friction" && of.unit.empty() && is_low &&
+        std::ranges::any_of(std::views::iota(std::size_t{0}, names_.size()), is_load);
+    if (of.name.evidence.is_coefficient || may_be) ThrowCoefficient(column);
+  }
+
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
+    for (std::size_t column = 0; column < names_.size() && role == Role::kForce; ++column) {
+      if (names_[column].name.evidence.is_coefficient) ThrowCoefficient(column);
+    }
     for (std::size_t column = 0; column < names_.size(); ++column) {
       if (EvidenceFor(names_[column], role) <= 0 || names_[column].is_numeric) continue;
       const TableColumn& of = names_.table().columns[column];

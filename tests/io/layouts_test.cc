@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "reading.h"
 
 // Files as instruments and programs write them, each with a row or two that were written by hand.
@@ -140,6 +142,29 @@ TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
                         "register whose bit 1024 is the sign of the force"));
   EXPECT_EQ(Read("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n", Choose("", "Load")).force.index, 2U)
       << "whoever names a column is believed";
+}
+
+TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
+  const std::string rows = ",Load [N]\n0,0.1,50\n1,0.3,50\n-1,-0.3,50\n1,0.3,50\n";
+  const std::string remedy =
+      ": choose the force with --force, or multiply by the normal load, where that is 50 N by "
+      "--force '#2*50 [N]'";
+  for (const char* name : {"Coefficient of friction", "mu", "μ [-]", "COF", "Reibwert", "摩擦系数",
+                           "Coeficiente de fricción"}) {
+    const std::string text = "x [mm]," + (name + rows);
+    EXPECT_EQ(Refusal(text, Choose("1", "2")),
+              fmt::format("loop.csv:1:2: '{}' (column 2) is a coefficient of friction and no force",
+                          name) +
+                  remedy);
+    EXPECT_EQ(Read(text, Choose("1", "#2*50 [N]")).record.force.front(), 5.0);
+    EXPECT_EQ(Read(text, Choose("1", "2 [N]")).record.force.front(), 0.1);
+    EXPECT_EQ(Read(text).force.index, 3U);
+  }
+  EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("'mu' (column 2) is a coeff"));
+  EXPECT_EQ(Refusal("x [mm],Friction" + rows),
+            "loop.csv:1:2: 'Friction' (column 2) without a unit and with all values below 2 looks "
+            "like a coefficient of friction" +
+                remedy + "; if it is a force, say so by --force '2 [N]'");
 }
 
 TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
