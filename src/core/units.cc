@@ -71,10 +71,22 @@ constexpr std::array kUnits = {
     Entry{kPressure, "kgf/cm2", 98066.5, 1, "kgf/cm²"},
 };
 
-/// "µ" has two code points, U+00B5 and U+03BC; both become "u".
-std::string WithAsciiMicro(std::string_view symbol) {
-  for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
-    if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
+/// "µ", which has two code points, and a power of ten, "10^-6 m", as the prefix that they are.
+std::string WithAsciiPrefix(std::string_view symbol) {
+  for (const auto& [written, prefix] :
+       std::initializer_list<std::array<std::string_view, 2>>{{"\u00b5", "u"},
+                                                              {"\u03bc", "u"},
+                                                              {"1e-6 ", "u"},
+                                                              {"10^-6 ", "u"},
+                                                              {"10⁻⁶ ", "u"},
+                                                              {"1e-3 ", "m"},
+                                                              {"10^-3 ", "m"},
+                                                              {"10⁻³ ", "m"},
+                                                              {"1e3 ", "k"},
+                                                              {"10^3 ", "k"},
+                                                              {"10³ ", "k"}}) {
+    if (!symbol.starts_with(written)) continue;
+    return std::string(prefix).append(Trimmed(symbol.substr(written.size())));
   }
   return std::string(symbol);
 }
@@ -93,7 +105,7 @@ std::optional<double> InBaseOf(double value, std::string_view symbol, std::strin
 
 std::optional<Unit> FindUnit(std::string_view symbol) {
   if (symbol.empty()) return std::nullopt;
-  const std::string ascii = WithAsciiMicro(symbol);
+  const std::string ascii = WithAsciiPrefix(symbol);
   const std::string lower = LowerCase(symbol);
   const auto is_it = [&](const Entry& entry) {
     if (entry.symbol == ascii) return true;

@@ -126,8 +126,20 @@ NameEvidence EvidenceOf(std::string_view name) {
 
 bool IsKnown(std::string_view symbol) { return FindUnit(symbol) || Lists(kOtherUnits, symbol); }
 
-/// True for a text in brackets that can only be meant as a unit, though none that is known.
+/// True for a text in brackets that can only be meant as a unit, though none that is known:
+/// "furlong", "N x10" and "1e-5 m", but neither "23.8 N" nor "in contact".
 bool MayBeUnit(std::string_view text) {
+  const auto is_unit = [](std::string_view word) {
+    const auto of = DimensionOf(word);
+    return word != "in" && (MayHaveRole(of, Role::kDisplacement) || MayHaveRole(of, Role::kForce));
+  };
+  const std::size_t last = text.find_last_of(" *");
+  const bool is_quantity =
+      text.substr(0, last).find_first_not_of("0123456789., ±+-") == std::string_view::npos;
+  if (last != std::string_view::npos && !is_quantity &&
+      (is_unit(text.substr(0, text.find_first_of(" ,*"))) || is_unit(text.substr(last + 1)))) {
+    return true;
+  }
   constexpr std::size_t kLongest = 12;
   const bool begins = !text.empty() && (IsLetter(text.front()) || text.front() == '%');
   return begins && text.size() <= kLongest && text.find(' ') == std::string_view::npos &&

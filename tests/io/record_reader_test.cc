@@ -68,6 +68,9 @@ x [mm],F (kN)¶1.5,2.5¶ | mm | 1.5e-3
 x[um],F(kN)¶1.5,2.5¶ | um | 1.5e-6
 x [µm],F [kN]¶1.5,2.5¶ | um | 1.5e-6
 x [μm],F [kN]¶1.5,2.5¶ | um | 1.5e-6
+x (μ m),F [10^3 N]¶1.5,2.5¶ | um | 1.5e-6
+x (1e-6 m),F [kN]¶1.5,2.5¶ | um | 1.5e-6
+x [10⁻³ m],F [kN]¶1.5,2.5¶ | mm | 1.5e-3
 disp_mm,force_kN¶1.5,2.5¶ | mm | 1.5e-3
 disp mm,force kN¶1.5,2.5¶ | mm | 1.5e-3
 "Position, nm","Force, kN"¶1.5,2.5¶ | nm | 1.5e-9
@@ -133,6 +136,12 @@ x,F¶1,2¶ | [furlong] | - | : the displacement unit 'furlong' is not known: mus
 ¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
    force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit with
    --force '3 [N]'
+t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'N x10' of 'F (N x10)' (column 3) is not known
+   for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit
+   with --force '3 [N]'
+x (1e-5 m),F [N]¶1,2¶ | - | - | :1:1: the unit '1e-5 m' of 'x (1e-5 m)' (column 1) is not known
+   for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   --displacement '1 [m]'
 x [m],p [bar]¶1,2¶ | - | p | :1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force:
    choose another column; pressure times area is an additional force, for which there is
    --covariate
