@@ -120,6 +120,7 @@ class Reading {
   void FindNamesIn(Row comment);
   void FindInterval();
   void MakeColumns();
+  [[nodiscard]] std::string GroupedIn(std::size_t column) const;
   [[noreturn]] void ThrowNoHeader(const std::string& file) const;
 
   Layout layout_;
@@ -186,12 +187,43 @@ void Reading::MakeColumns() {
   layout_.mostly_numbers.resize(columns.size());
   for (std::size_t k = 0; k < names_.size(); ++k) columns[k].name = names_[k];
   for (std::size_t k = 0; k < units_.size(); ++k) columns[k].unit = units_[k];
+  for (std::size_t k = 0; k < columns.size(); ++k) columns[k].grouped = GroupedIn(k);
   // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
   for (std::size_t k = 1; k < columns.size(); ++k) {
     const bool may_be = layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
     std::string& unit = columns[k - 1].unit;
     if (may_be && unit.empty() && LooksLikeUnit(columns[k].name)) unit = columns[k].name;
   }
+}
+
+/// Returns what is said of a column whose marks seem to separate thousands: all of them have three
+/// digits behind them, and the other numbers are whole and below 1000.
+std::string Reading::GroupedIn(std::size_t column) const {
+  const auto are_digits = [](std::string_view text, std::size_t most) {
+    return text.size() <= most && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  std::string said;
+  bool has_whole = false;
+  for (const Row& row : std::span(rows_).subspan(data_)) {
+    if (column >= row.cells.size() || row.kinds[column] != Cell::Kind::kNumber) continue;
+    std::string_view number = row.cells[column];
+    if (number.starts_with('-')) number.remove_prefix(1);
+    const std::size_t mark = std::min(number.find_first_of(".,"), number.size());
+    if (!are_digits(number.substr(0, mark), 3)) return "";
+    if (mark == number.size()) {
+      has_whole = has_whole || number != "0";
+    } else if (const auto group = number.substr(mark + 1);
+               group.size() != 3 || !are_digits(group, 3) || number.starts_with('0')) {
+      return "";
+    } else if (said.empty()) {
+      said = fmt::format(
+          "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have "
+          "three digits behind them and the other numbers are whole: write it without; if it is a "
+          "decimal mark, multiply the column by 1, as in ",
+          layout_.header.file, row.line, column + 1, row.cells[column]);
+    }
+  }
+  return has_whole ? said : "";
 }
 
 std::size_t Reading::FirstDataRow() const {

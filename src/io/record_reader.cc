@@ -138,6 +138,10 @@ ChosenColumn RecordBuilder::Choose(const ColumnNames& names, Role role, Expressi
     RequireNoSignBit(names, added);
   }
   const std::vector<TableColumn>& columns = names.table().columns;
+  if (const std::size_t first = added.first_column(); is_plain && !columns[first].grouped.empty()) {
+    Refuse("{}{} '#{}*1 [{}]'", columns[first].grouped, RulesOf(role).option, first + 1,
+           added.unit.symbol);
+  }
   for (const Expression::Term& term : added.sum.terms) {
     if (columns[term.column].values.empty()) static_cast<void>(names.table().Numbers(term.column));
     if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);

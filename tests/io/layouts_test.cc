@@ -186,6 +186,29 @@ TEST(Layouts, ThatAreNoneAreRefusedWithARemedy) {
   EXPECT_THAT(Refusal("PK\x03\x04workbook"), HasSubstr("save its sheet as CSV"));
 }
 
+TEST(Thousands, ThatAreMarkedAreRefusedUnlessMultiplied) {
+  for (const char mark : {'.', ','}) {
+    const std::string text = Replaced("x [nm];F [mN];a\n0;-0;1\n-994;16;1\n-1_025;17_040;2\n", "_",
+                                      std::string(1, mark));
+    EXPECT_EQ(Refusal(text),
+              fmt::format("loop.csv:4:1: '-1{}025' has a mark that separates thousands, as all "
+                          "marks of the column have three digits behind them and the other numbers "
+                          "are whole: write it without; if it is a decimal mark, multiply the "
+                          "column by 1, as in --displacement '#1*1 [nm]'",
+                          mark));
+    EXPECT_THAT(Refusal(text, Choose("#1*1 [nm]")), HasSubstr("as in --force '#2*1 [mN]'"));
+    EXPECT_EQ(Read(text, Choose("#1*1 [m]", "#2*1 [N]")).record.force.back(), 17.04);
+  }
+  for (const auto& [one, two] : {std::pair("1", "0.125"),
+                                 {"1.5", "2"},
+                                 {"1.125", "2.500"},
+                                 {"1000", "2.125"},
+                                 {"0", "1.125"}}) {
+    const std::string text = fmt::format("x [m];F [N]\n1;{}\n2;{}\n", one, two);
+    EXPECT_EQ(Read(text).record.force, (Numbers{std::stod(one), std::stod(two)})) << text;
+  }
+}
+
 TEST(MissingCells, AreLeftOutUpToOneInAHundred) {
   std::string text = "x,F,other\n";
   for (int row = 0; row < 200; ++row) {

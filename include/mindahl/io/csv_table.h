@@ -44,6 +44,8 @@ struct TableColumn {
   std::string fault = {};
   std::string missing = {};
   std::size_t fault_row = 0;
+  /// The same of the first cell with a mark that seems to separate thousands.
+  std::string grouped = {};
 };
 
 /// A delimited text of columns. Positions in messages are `file:line:column`, with the 1-based
