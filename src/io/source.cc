@@ -96,6 +96,14 @@ std::string EncodingOf(std::string_view head) {
   // European letters may look like a few characters of these by chance.
   const auto is_kanji = [](char of) { return ByteOf(of) >= 0x81 && ByteOf(of) <= 0x9F; };
   if (std::ranges::count_if(head, is_kanji) >= 2 && IsIn(text, "CP932")) return "CP932";
+  // Small Cyrillic letters follow each other; European ones with accents do not, and Chinese
+  // characters have as many other bytes.
+  const auto is_small = [](char of) { return ByteOf(of) >= 0xE0; };
+  const auto is_other = [](char of) { return ByteOf(of) >= 0x80 && ByteOf(of) < 0xE0; };
+  const bool has_word = std::ranges::search_n(head, 3, true, {}, is_small).size() > 0;
+  if (has_word && std::ranges::count_if(head, is_small) > std::ranges::count_if(head, is_other)) {
+    return "WINDOWS-1251";
+  }
   const auto is_of_pair = [](char of, bool) { return ByteOf(of) >= 0xA1; };
   const bool has_two = std::search_n(head.begin(), head.end(), 4, true, is_of_pair) != head.end();
   return has_two && IsIn(text, "GB2312") ? "GB18030" : "WINDOWS-1252";

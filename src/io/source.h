@@ -35,7 +35,8 @@ std::string ForMessage(std::string_view text);
 /// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
 /// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
 /// UTF-8, Shift-JIS by two bytes or more from 0x81 to 0x9F, GB18030 by two characters of GB2312 in
-/// a row; the rest is Windows-1252, of which Latin-1 is a part.
+/// a row, Windows-1251 by a word of Cyrillic letters; the rest is Windows-1252, of which Latin-1 is
+/// a part.
 std::string EncodingOf(std::string_view head);
 
 /// An iconv_t, closed with it.
