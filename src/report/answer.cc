@@ -161,15 +161,26 @@ class Writer {
   }
 
   /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
-  /// their units stand in the line above.
+  /// their units stand in the line above. A unit in letters that were perhaps not understood, and
+  /// the encoding of a file of which a unit is assumed, are said in full always.
   void AddReading() {
-    const std::vector<std::string>& notes = report_.notes;
-    if (notes.size() == 1) return Add("read as", notes.front());
-    const bool has_units = std::ranges::any_of(
-        notes, [](const std::string& note) { return note.find("no unit") != std::string::npos; });
+    std::vector<std::string> notes = report_.notes;
+    const auto names_no_unit = [](const std::string& note) {
+      return note.find("no unit") != std::string::npos;
+    };
+    const bool has_units = std::ranges::any_of(notes, names_no_unit);
+    std::erase_if(notes, [&](const std::string& note) {
+      const bool is_foreign = std::ranges::any_of(note, [](char of) { return (of & 0x80) != 0; });
+      const bool is_encoding = has_units && note.find("is not UTF-8") != std::string::npos;
+      const bool is_said = is_encoding || (is_foreign && names_no_unit(note));
+      if (is_said) Add("read as", note);
+      return is_said;
+    });
     if (notes.empty()) return;
+    if (notes.size() == 1) return Add("read as", notes.front());
+    const bool has_more = std::ranges::any_of(notes, names_no_unit);
     Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
-                               has_units ? ", units among them" : ""));
+                               has_more ? ", units among them" : ""));
   }
 
   void AddFriction() {

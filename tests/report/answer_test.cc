@@ -328,6 +328,11 @@ TEST(Answer, SaysWhatWasAssumedOfTheFile) {
   input.notes.emplace_back("loop.csv: force 'F' names no unit: taken as N");
   EXPECT_EQ(LineOf(input, "read as"), "2 assumptions, units among them: --details");
   EXPECT_THAT(Details(input), HasSubstr("names no unit: taken as N"));
+  input.notes.emplace_back("loop.csv: displacement 'Déplacement' names no unit: taken as m");
+  input.notes.emplace_back("loop.csv: is not UTF-8 and was read as Latin-1");
+  EXPECT_THAT(Answer(input), HasSubstr("'Déplacement' names no unit: taken as m"));
+  EXPECT_THAT(Answer(input), HasSubstr("was read as Latin-1"));
+  EXPECT_THAT(Answer(input), HasSubstr("2 assumptions, units among them: --details"));
 }
 
 TEST(Sentence, AsksForSamplesOnlyWhereNoiseIsAllThatIsLeft) {
