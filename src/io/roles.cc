@@ -122,6 +122,7 @@ class RoleAssigner {
       taken[names_.Chosen(covariate, Role::kOther)] = true;
     }
     TakeFound(Role::kNormalLoad, taken);
+    TakeLoad(taken);
     TakeLeft();
     // A word is enough for a displacement that only grows, but for the X of a report where another
     // column may be meant; a force needs its unit.
@@ -168,6 +169,23 @@ class RoleAssigner {
     if (unit.empty()) return;
     Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
            unit, RulesOf(role).name);
+  }
+
+  /// Takes a "load" as the normal one beside what is a friction force by its name.
+  void TakeLoad(const std::vector<bool>& taken) {
+    if (!IsMissing(Role::kNormalLoad) || IsMissing(Role::kForce)) return;
+    const NameEvidence& force = names_[ColumnOf(Role::kForce)].name.evidence;
+    if (!force.names(Role::kForce) || force.rank > 0) return;
+    for (std::size_t column = 0; column < taken.size(); ++column) {
+      const ColumnNames::Column& of = names_[column];
+      const NameEvidence& load = of.name.evidence;
+      const bool is_load = load.names(Role::kForce) && load.rank == 2 && !load.is_angular;
+      const bool is_of_unit = of.unit.empty() || of.dimension == Dimension::kForce;
+      if (taken[column] || !of.is_numeric || !is_load || load.other_words > 0 || !is_of_unit) {
+        continue;
+      }
+      return Take(column, Role::kNormalLoad);
+    }
   }
 
   /// Adds to a stamp of whole seconds, "header.stamp.sec", the column of its nanoseconds.

@@ -41,12 +41,12 @@ inline constexpr std::array kWords = {
             "tangential force|friction force|lateral force|shear force|frictional force|"
             "tangentialkraft|reibkraft|reibungskraft|querkraft|force tangentielle|"
             "effort tangentiel|force de frottement|fuerza de fricción|fuerza tangencial|"
-            "forza di attrito|forza tangenziale|força de atrito|força tangencial|摩擦力|切向力"},
+            "forza di attrito|forza tangenziale|força de atrito|força "
+            "tangencial|摩擦力|切向力|接線力|せん断力"},
     WordRow{Role::kForce, 0, true, "friction torque|reibmoment"},
     WordRow{Role::kForce, 1, false,
-            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重|ロードセル"},
-    WordRow{Role::kForce, 2, false,
-            "load|loadcell|last|charge|carga|carico|weight|gewicht|载荷|荷载"},
+            "force|friction|*kraft|effort|fuerza|forza|força|forca|力|荷重|loadcell|ロードセル"},
+    WordRow{Role::kForce, 2, false, "load|last|charge|carga|carico|weight|gewicht|载荷|荷载"},
     WordRow{Role::kForce, 2, true,
             "torque|moment|*drehmoment|couple|coppia|par|tau|τ|扭矩|力矩|トルク"},
     WordRow{Role::kForce, 3, false, "ft|f t|fh|fx|fy|fr|rf|fs"},
@@ -61,9 +61,10 @@ inline constexpr std::array kWords = {
         "fecha|hora|heure"},
     WordRow{Role::kTime, 2, false, "x value"},
     WordRow{Role::kNormalLoad, 0, false,
-            "normal load|normal force|*normalkraft|charge normale|force normale|effort normal|"
+            "normal load|normal force|*normalkraft|*anpresskraft|*anpreßkraft|charge normale|force "
+            "normale|effort normal|"
             "fuerza normal|carga normal|forza normale|carico normale|força normal|法向力|"
-            "正压力|垂直荷重"},
+            "法向载荷|法向荷载|正压力|垂直力|垂直荷重|押付力|押付け力"},
     WordRow{Role::kNormalLoad, 1, false, "normal|n load|normallast"},
     WordRow{Role::kNormalLoad, 2, false, "fn|f n|N"},
     WordRow{

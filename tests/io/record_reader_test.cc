@@ -33,6 +33,14 @@ tangential displacement / mm,displacement / mm,Ft,fn | 1 | 3 | 0 | 4
 δ,f,a,b | 1 | 2 | 0 | 0
 Zeit,Weg,Kraft,Normalkraft | 2 | 3 | 1 | 4
 Temps (s),Effort (N),Déplacement (mm),Charge normale (N) | 3 | 2 | 1 | 4
+时间,位移(um),切向力(N),法向载荷(N) | 2 | 3 | 1 | 4
+时间,位移(um),摩擦力(N),载荷(N) | 2 | 3 | 1 | 4
+Tempo,Spostamento (um),Forza di attrito (N),Carico (N) | 2 | 3 | 1 | 4
+Zeit,Auslenkung (um),Querkraft (N),Anpresskraft (N) | 2 | 3 | 1 | 4
+時間,すべり量(um),摩擦力(N),垂直力(N) | 2 | 3 | 1 | 4
+時間,変位(um),接線力(N),押付力(N) | 2 | 3 | 1 | 4
+Tempo,Spostamento (um),Carico (N),a | 2 | 3 | 1 | 0
+Time,Stroke,Friction force,Load cell | 2 | 3 | 1 | 0
 )headers";
 
 TEST(RecordReader, RecognizesEachQuantityByItsHeader) {
