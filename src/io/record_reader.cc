@@ -352,13 +352,24 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
     Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
            table.file, table.rows(), other.file, other.rows());
   }
+  const auto is_covered = [&](double time) {
+    return of_other.front() <= time && time <= of_other.back();
+  };
+  // Columns with fewer numbers are none of numbers.
+  if (by_time && 2 * std::ranges::count_if(times, is_covered) < std::ssize(times)) {
+    Refuse(
+        "--with: the times of {} run from {} to {} s and those of {} from {} to {} s: less than "
+        "half of the rows have a time in both: give files of one clock, or cut the first to the "
+        "times of the other",
+        table.file, times.front(), times.back(), other.file, of_other.front(), of_other.back());
+  }
   for (const TableColumn& column : other.columns) {
     TableColumn& added = table.columns.emplace_back(column);
     if (!by_time || added.values.empty()) continue;
     added.values.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const auto above = std::ranges::lower_bound(of_other, times[row]);
-      if (above == of_other.end() || !(of_other.front() <= times[row])) {
+      if (!is_covered(times[row])) {
         // Times of the first file that the other does not cover are no fault.
         if (added.missing.empty()) {
           added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,

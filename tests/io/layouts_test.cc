@@ -282,6 +282,10 @@ TEST(WithAnotherFile, JoinsColumnsRowByRowOrByTime) {
               HasSubstr("b.txt has 3 rows and"));
   columns.with = directory.Write("timed.txt", "t [ms],F [N]\n0,10\n2000,30\n").string();
   EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2\n2,3\n", columns).record.force, (Numbers{10, 20, 30}));
+  const auto later = directory.Write("c.txt", "t [s],x [mm]\n1.5,1\n2.5,2\n3.5,3\n");
+  EXPECT_THAT(MessageOf<InputError>([&] { ReadRecord(later, columns); }),
+              AllOf(HasSubstr("c.txt run from 1.5 to 3.5 s and those of"),
+                    HasSubstr("timed.txt from 0 to 2 s: less than half of the rows have a time")));
 }
 
 }  // namespace
