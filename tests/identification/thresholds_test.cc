@@ -99,6 +99,7 @@ bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
   constexpr std::size_t kSamplesAStroke = 50;
   FitResult result = Made();
   result.records[0].residual.resize(2 * kSamplesAStroke);
+  result.records[0].counts.resize(2 * kSamplesAStroke, 1);
   result.records[0].reversals.resize(1);
   result.residuals.rms = misfit * result.PeakForce();
   result.residuals.durbin_watson =
@@ -106,12 +107,17 @@ bool IsSlow(const Thresholds& thresholds, double strokes, double misfit = 0.2) {
   return AreUnlikeNoise(result, thresholds);
 }
 
-/// Many residuals that are a fifth of the force, and alternate by such a correlation.
+/// Many residuals that are a fifth of the force, and differ in sign as normal ones do that
+/// alternate by such a correlation.
 bool Alternates(const Thresholds& thresholds, double correlation) {
   FitResult result = Made();
-  result.residuals.samples = 10'000;
+  std::vector<double>& residual = result.records[0].residual;
+  const double changes = 0.5 + std::asin(correlation) / std::numbers::pi;
+  for (int i = 0; i < 10'000; ++i) {
+    residual.push_back(std::fmod(std::floor(i * changes), 2) > 0 ? 1.0 : -1.0);
+  }
+  result.records[0].counts.assign(residual.size(), 1);
   result.residuals.rms = 0.2 * result.PeakForce();
-  result.residuals.durbin_watson = 2 + 2 * correlation;
   return AreUnlikeNoise(result, thresholds);
 }
 

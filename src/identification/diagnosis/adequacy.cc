@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,10 +44,22 @@ double NoiseVariance(const FitResult& result) {
   return comes_back ? (1 - repeats) * result.rms * result.rms : WhiteVariance(result);
 }
 
-/// True if residuals alternate from sample to sample, and not by chance.
-bool Alternate(const ResidualStatistics& residuals, const Thresholds& thresholds) {
-  const double by_chance = 4 / std::sqrt(static_cast<double>(residuals.samples));
-  return residuals.durbin_watson / 2 - 1 > std::max(thresholds.alternates, by_chance);
+/// True if residuals alternate from sample to sample, and not by chance: of normal ones that
+/// correlate by ρ neighbours differ in sign with a chance of ½ − asin(ρ)/π, whatever spikes there
+/// are among them.
+bool Alternate(const FitResult& result, const Thresholds& thresholds) {
+  double changes = 0.0;
+  double pairs = 0.0;
+  for (const RecordFit& record : result.records) {
+    for (std::size_t i = 1; i < record.residual.size(); ++i) {
+      if (record.counts[i - 1] == 0 || record.counts[i] == 0) continue;
+      ++pairs;
+      if (record.residual[i - 1] * record.residual[i] < 0) ++changes;
+    }
+  }
+  constexpr double kDeviations = 4.0;  // each of 1/(2√n)
+  return changes > pairs / 2 + std::max(std::asin(thresholds.alternates) / std::numbers::pi * pairs,
+                                        kDeviations / 2 * std::sqrt(pairs));
 }
 
 }  // namespace
@@ -85,7 +98,7 @@ double MissedForce(const FitResult& result, const Thresholds& thresholds) {
   // The rms includes the readings that a robust loss weighs down.
   const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (is_noise || result.outliers > 0) return explained;
-  if (Alternate(result.residuals, thresholds)) return std::max(explained, result.rms);
+  if (Alternate(result, thresholds)) return std::max(explained, result.rms);
   const double not_white = result.rms * result.rms - WhiteVariance(result);
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
@@ -115,7 +128,7 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
   const bool is_small =
       result.outliers > 0 || !(size > 0) || !(result.residuals.rms > thresholds.poor_misfit * size);
   if (is_small) return false;
-  if (Alternate(result.residuals, thresholds)) return true;
+  if (Alternate(result, thresholds)) return true;
   // The residuals correlate by 1 − DW/2 from one sample to the next, and so decay at this rate.
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   const double forgotten = -std::log(correlation);

@@ -293,14 +293,15 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
 
 std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
   constexpr double kOften = 0.05;  // of the samples
+  constexpr auto kLeast = 4.0;     // samples
   constexpr double kNoise = 1e-4;  // of the range: what is computed repeats its slip force
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> force = record.record.force;
     const auto [lowest, highest] = std::ranges::minmax(force);
     const auto count = static_cast<double>(force.size());
     for (const double limit : {highest, lowest}) {
-      const double share = static_cast<double>(std::ranges::count(force, limit)) / count;
-      if (share < kOften) continue;
+      const auto at_limit = static_cast<double>(std::ranges::count(force, limit));
+      if (at_limit < std::max(kLeast, kOften * count)) continue;
       std::vector<double> others(force.begin(), force.end());
       std::erase(others, lowest);
       std::erase(others, highest);
@@ -310,7 +311,7 @@ std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
       if (!is_noisy || 2 * distinct.size() < others.size()) continue;
       return Finding{.code = "force_at_limit",
                      .parameters = {"alpha", "slip_force"},
-                     .numbers = {{"limit", limit}, {"share", share}}};
+                     .numbers = {{"limit", limit}, {"share", at_limit / count}}};
     }
   }
   return std::nullopt;
