@@ -118,6 +118,7 @@ bool Alternates(const Thresholds& thresholds, double correlation) {
   }
   result.records[0].counts.assign(residual.size(), 1);
   result.residuals.rms = 0.2 * result.PeakForce();
+  result.residuals.durbin_watson = 2.0;
   return AreUnlikeNoise(result, thresholds);
 }
 
