@@ -3,10 +3,10 @@
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <random>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
+#include "support/histories.h"
 #include "support/prelude.h"
 
 namespace mindahl::contact::accuracy_test {
@@ -20,28 +20,23 @@ void ExpectWithin(double bound, double value, const Real& exact, const char* nam
   EXPECT_LE(static_cast<double>(error), bound) << name << " = " << value;
 }
 
-class Draw {
- public:
-  double Log(double low, double high) { return low * std::pow(high / low, Share()); }
-  double Share() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
-
- private:
-  std::mt19937_64 generator_{20170652};
-};
-
 TEST(ContactAccuracy, HoldsItsBoundsFromAtomicToTectonic) {
   constexpr double kOnce = 1.0;       // [ε]: rounded once
   constexpr double kOfRounded = 2.0;  // from two rounded moduli, added
-  Draw draw;
+  Generator generator(20170652);
+  const auto draw = [&](double low, double high) { return LogUniform(generator, low, high); };
+  const auto draw_body = [&](double radius) {
+    return Body{draw(1e3, 1e13), Uniform(generator, -0.999, 0.499), radius};
+  };
   for (int i = 0; i < 5000; ++i) {
-    const double load = draw.Log(1e-15, 1e15);
-    const double radius = draw.Log(1e-10, 1e6);
-    const double modulus = draw.Log(1e3, 1e13);
-    const double a = draw.Log(1e-12, 1e5);
-    const double compliance = draw.Log(1e-14, 1e-2);
-    const double slip_force = draw.Log(1e-15, 1e12);
-    const Body body_1{modulus, -0.999 + 1.498 * draw.Share(), radius};
-    const Body body_2{draw.Log(1e3, 1e13), -0.999 + 1.498 * draw.Share(), radius};
+    const double load = draw(1e-15, 1e15);
+    const double radius = draw(1e-10, 1e6);
+    const double modulus = draw(1e3, 1e13);
+    const double a = draw(1e-12, 1e5);
+    const double compliance = draw(1e-14, 1e-2);
+    const double slip_force = draw(1e-15, 1e12);
+    const Body body_1 = draw_body(radius);
+    const Body body_2 = draw_body(radius);
     const auto shear = [](const Body& body) {
       return Real(Real(body.youngs_modulus) / (2 * (1 + Real(body.poisson_ratio))));
     };

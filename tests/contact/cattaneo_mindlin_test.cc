@@ -35,7 +35,7 @@ std::vector<double> FractionsOfALimit() {
 constexpr double kVirginForceUlps = 6.0;      // eleven roundings
 constexpr double kUnloadingForceUlps = 18.0;  // one force up to T*, twice one up to T*
 
-TEST(MindlinAccuracy, VirginForceKeepsItsDigitsAtBothEnds) {
+TEST(MindlinAccuracy, VirginForceIsOddAndKeepsItsDigitsAtBothEnds) {
   std::vector<double> fractions = FractionsOfALimit();
   fractions.insert(fractions.end(), {1.0 + kEpsilon, 1.2, 1e12});
   for (const MindlinContact& contact : kContacts) {
@@ -45,6 +45,8 @@ TEST(MindlinAccuracy, VirginForceKeepsItsDigitsAtBothEnds) {
                             printed::Contact(contact).VirginForce(Real(displacement))),
                 kVirginForceUlps)
           << fraction;
+      EXPECT_EQ(MindlinVirginForce(contact, -displacement),
+                -MindlinVirginForce(contact, displacement));
     }
   }
 }
@@ -79,17 +81,9 @@ TEST(MindlinLoop, HoldsTheSlipForceOnThePlateauOfGrossSlip) {
   EXPECT_GT(MindlinUnloadingForce(contact, 1.01 * onset, amplitude), -contact.slip_force);
 }
 
-TEST(MindlinVirginCurve, IsOddInTheDisplacement) {
-  const MindlinContact& contact = kLaboratory;
-  for (const double ratio : {0.0, 1e-12, 0.3, 0.9, 1.0}) {
-    const double displacement = 1.3 * ratio * GrossSlipDisplacement(contact);
-    EXPECT_EQ(MindlinVirginForce(contact, -displacement),
-              -MindlinVirginForce(contact, displacement));
-  }
-}
-
 TEST(MindlinVirginCurve, HasAFiniteForceAtTheSmallestAndLargestDisplacement) {
   const MindlinContact& contact = kLaboratory;
+  EXPECT_EQ(MindlinVirginForce(contact, 0.0), 0.0);
   EXPECT_GE(MindlinVirginForce(contact, std::numeric_limits<double>::denorm_min()), 0.0);
   EXPECT_EQ(MindlinVirginForce(contact, std::numeric_limits<double>::max()), contact.slip_force);
   EXPECT_EQ(MindlinUnloadingForce(contact, -std::numeric_limits<double>::max(),

@@ -17,11 +17,13 @@ constexpr double kNormalLoad = 150.0;
 constexpr double kFriction = 0.4;
 
 /// Knowledge of everything but what the loop or Hertz gives.
-KnownContact KnowBodies() {
+KnownContact Known(const Body& first, const Body& second) {
   return {.normal_load = kNormalLoad,
-          .body_1 = {kSteel.youngs_modulus, kSteel.poisson_ratio, kSteel.radius},
-          .body_2 = {kAluminium.youngs_modulus, kAluminium.poisson_ratio, kAluminium.radius}};
+          .body_1 = {first.youngs_modulus, first.poisson_ratio, first.radius},
+          .body_2 = {second.youngs_modulus, second.poisson_ratio, second.radius}};
 }
+
+KnownContact KnowBodies() { return Known(kSteel, kAluminium); }
 
 /// A contact by the functions of hertz.h and cattaneo_mindlin.h, one after the other.
 struct ExactContact {
@@ -70,16 +72,6 @@ void ExpectValue(const std::optional<UncertainValue>& quantity, double value,
                  double tolerance = kRounding) {
   ASSERT_TRUE(quantity.has_value());
   EXPECT_NEAR(quantity->value / value, 1.0, tolerance);
-}
-
-TEST(MapMindlinToDahl, GivesThePaperItsParametersForTheUnroundedRadius) {
-  const models::BranchLaw dahl = MapMindlinToDahl({.contact_radius = 2.673548e-3,
-                                                   .tangential_compliance = 4.42e-11,
-                                                   .slip_force = GrossSlipForce(0.3, 100.0)});
-  EXPECT_NEAR(dahl.tangential_stiffness, 4.839e8,
-              0.0005e8);  // half a unit of the last printed digit
-  EXPECT_EQ(dahl.shape_exponent, 1.0 / 3.0);
-  EXPECT_DOUBLE_EQ(dahl.slip_force, 30.0);
 }
 
 TEST(IdentifyContact, ReturnsTheContactOfTheLoopAndHowFarItsStiffnessIsFromHertz) {
@@ -173,12 +165,6 @@ TEST(IdentifyContact, KeepsGivenRadiusSeparateFromHertzRadius) {
 // A root found to the last bits of ln E, which is 25 here.
 constexpr double kRoot = 100 * kEpsilon;
 const Body kGlassSeat{70e9, 0.22, -0.2};
-
-KnownContact Known(const Body& first, const Body& second) {
-  return {.normal_load = kNormalLoad,
-          .body_1 = {first.youngs_modulus, first.poisson_ratio, first.radius},
-          .body_2 = {second.youngs_modulus, second.poisson_ratio, second.radius}};
-}
 
 std::optional<UncertainValue> OfSphere(Quantity quantity, const ExactContact& truth,
                                        const KnownContact& known) {
@@ -509,17 +495,10 @@ TEST(MissingInputs, NameEachConstantOfEachBodyThatIsNotKnown) {
               ElementsAre("the normal load", "the contact radius or " + compliance));
 }
 
-const KnownBody kSteelSphere{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
-const KnownBody kSteelPlane{.youngs_modulus = 210e9,
-                            .poisson_ratio = 0.3,
-                            .radius = std::numeric_limits<double>::infinity()};
-
-KnownContact SteelContact() {
-  return {.normal_load = 50, .body_1 = kSteelSphere, .body_2 = kSteelPlane};
-}
+KnownContact SphereOnPlane() { return Known({210e9, 0.3, 0.05}, {210e9, 0.3, kInfinity}); }
 
 TEST(Doubts, AreNoneOfAnOrdinaryContact) {
-  EXPECT_THAT(DoubtsAbout(SteelContact(), 0.3), IsEmpty());
+  EXPECT_THAT(DoubtsAbout(SphereOnPlane(), 0.3), IsEmpty());
   EXPECT_THAT(DoubtsAbout({.contact_radius = 2e-4, .tangential_compliance = 4e-11}, 1.2),
               IsEmpty());
   EXPECT_THAT(DoubtsAbout({}, std::nullopt), IsEmpty());
@@ -543,7 +522,7 @@ TEST(Doubts, AreOfAComplianceThatIsAModulus) {
 }
 
 TEST(Doubts, AreOfAContactAsLargeAsTheSmallerOfItsBodies) {
-  KnownContact known = SteelContact();
+  KnownContact known = SphereOnPlane();
   known.normal_load = 50e9;
   EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("is more than a third")))
       << "by Hertz's radius";
