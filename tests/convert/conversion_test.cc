@@ -183,27 +183,21 @@ TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
   EXPECT_NEAR(parameters[4].value / parameters[3].value, 4.0, 1e-14 * 4);
 }
 
-TEST(InputLines, OfLammpsNeedANormalLoad) {
-  const Conversion conversion = Converted(Target("lammps"));
-  EXPECT_THROW(InputLines(conversion, Target("lammps")), InputError);
-  EXPECT_EQ(InputLines(conversion, Target("lammps"), {.normal_load = 100.0}).size(), 2U);
+TEST(InputLines, OfDiscreteElementCodesNeedANormalLoad) {
+  for (const auto& [name, lines] : {std::pair{"lammps", 2U}, {"yade", 2U}, {"liggghts", 5U}}) {
+    const Conversion conversion = Converted(Target(name));
+    EXPECT_THROW(InputLines(conversion, Target(name)), InputError) << name;
+    EXPECT_EQ(InputLines(conversion, Target(name), {.normal_load = 100.0}).size(), lines) << name;
+  }
+  EXPECT_THROW(Validate({.contact_radius = 1e-4}, Target("liggghts")), InputError);
 }
 
-TEST(InputLines, OfYadeHaveTheAngleOfFriction) {
-  const Conversion conversion = Converted(Target("yade"));
+TEST(Parameters, OfYadeHaveTheAngleOfFriction) {
   const std::vector<Parameter> parameters =
-      ParametersOf(conversion, Target("yade"), {.normal_load = 100.0});
+      ParametersOf(Converted(Target("yade")), Target("yade"), {.normal_load = 100.0});
   ASSERT_EQ(parameters.size(), 4U);
   EXPECT_EQ(parameters[0].name, "ks");
   EXPECT_NEAR(std::tan(parameters[3].value), parameters[1].value / 100.0, 1e-15);
-  EXPECT_EQ(InputLines(conversion, Target("yade"), {.normal_load = 100.0}).size(), 2U);
-}
-
-TEST(InputLines, OfLiggghtsAreItsPairStyleAndItsProperties) {
-  const Conversion conversion = Converted(Target("liggghts"));
-  EXPECT_THROW(InputLines(conversion, Target("liggghts")), InputError);
-  EXPECT_EQ(InputLines(conversion, Target("liggghts"), {.normal_load = 100.0}).size(), 5U);
-  EXPECT_THROW(Validate({.contact_radius = 1e-4}, Target("liggghts")), InputError);
 }
 
 TEST(InputLines, OfJointsHaveTheirDamping) {
