@@ -19,17 +19,6 @@ BranchLaw LawOf(double alpha) {
   return {.tangential_stiffness = kStiffness, .shape_exponent = alpha, .slip_force = kSlipForce};
 }
 
-LoadingPath PathOf(std::span<const double> displacement, const InitialContact& initial) {
-  return testing::PathOf(Masing(), displacement, initial);
-}
-
-std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement,
-                            const InitialContact& initial, const SeriesSpring& rig = {}) {
-  std::vector<double> force(displacement.size());
-  EvaluateForce(Masing(), law, PathOf(displacement, initial), displacement, force, rig);
-  return force;
-}
-
 /// Springs of one stiffness behind sliders with limits f(1 + a) and −f(1 − a), which are all that
 /// they know. Slip displacements are the middles of equal shares of the backbone's slope, whose
 /// inverse is x = δc·(1 − s^{(1−α)/α}), s the share that still sticks.
@@ -93,7 +82,7 @@ TEST(Asymmetry, IsThatOfElementsOfUnequalLimitsOnAnyHistory) {
           (1 + std::abs(asymmetry)) * kStiffness * gross_slip / static_cast<double>(kElements);
       for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const std::vector<double> walk = RandomWalk(2.2 * gross_slip, 40, seed);
-        const std::vector<double> force = ForceOn(law, walk, {.asymmetry = asymmetry});
+        const std::vector<double> force = Respond(Masing(), law, walk, {.asymmetry = asymmetry});
         Sliders sliders(law, asymmetry, kElements);
         for (std::size_t i = 0; i < walk.size(); ++i) {
           ASSERT_NEAR(force[i], sliders.MoveTo(walk[i]), of_elements)
@@ -111,12 +100,12 @@ TEST(Asymmetry, IsAnOffsetOfTheForceOnceTheContactHasSlippedAsAWhole) {
   // Past slip in one sense, every element is at its limit, and goes on as a symmetric one would.
   std::vector<double> history = {2 * gross_slip};
   for (const double more : RandomWalk(1.5 * gross_slip, 20, 5)) history.push_back(more);
-  const std::vector<double> force = ForceOn(law, history, {.asymmetry = kAsymmetry});
-  const std::vector<double> symmetric = ForceOn(law, history, {});
+  const std::vector<double> force = Respond(Masing(), law, history, {.asymmetry = kAsymmetry});
+  const std::vector<double> symmetric = Respond(Masing(), law, history, {});
   const InitialContact steady{.state = InitialState::kSteady, .asymmetry = kAsymmetry};
-  const std::vector<double> cycled = ForceOn(law, history, steady);
+  const std::vector<double> cycled = Respond(Masing(), law, history, steady);
   const std::vector<double> cycled_symmetric =
-      ForceOn(law, history, {.state = InitialState::kSteady});
+      Respond(Masing(), law, history, {.state = InitialState::kSteady});
   for (std::size_t i = 0; i < history.size(); ++i) {
     EXPECT_NEAR(force[i] - symmetric[i], kAsymmetry * kSlipForce, kRounding * kSlipForce);
     EXPECT_NEAR(cycled[i] - cycled_symmetric[i], kAsymmetry * kSlipForce, kRounding * kSlipForce);
@@ -129,7 +118,7 @@ TEST(Asymmetry, BehindARigIsThatOfTheContactsOwnDisplacement) {
   constexpr SeriesSpring kRig{.stiffness = 0.8 * kStiffness};
   constexpr double kSteep = 1e-12;  // of Tc: x is rounded, and T follows it with slope σ and k
   const std::vector<double> walk = RandomWalk(4 * GrossSlipDisplacement(law), 30, 8);
-  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = 0.3}, kRig);
+  const std::vector<double> force = Respond(Masing(), law, walk, {.asymmetry = 0.3}, kRig);
   std::vector<double> contact(walk.size());
   for (std::size_t i = 0; i < walk.size(); ++i) contact[i] = walk[i] - force[i] / kRig.stiffness;
   const LoadingPath path = MakeLoadingPath(contact, loop::FindReversals(walk, 0.0),
@@ -153,7 +142,7 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
         const NormalizedLaw law{.rate = 1.5, .shape_exponent = alpha, .spring_travel = travel};
         const std::vector<double> walk = RandomWalk(1.8, 30, 21);
         const auto evaluate = [&](double asymmetry, std::span<double> derivative) {
-          const LoadingPath path = PathOf(walk, {.state = state, .asymmetry = asymmetry});
+          const LoadingPath path = PathOf(Masing(), walk, {.state = state, .asymmetry = asymmetry});
           std::vector<double> t(walk.size());
           NormalizedGradient gradient;
           gradient[kAsymmetry] = derivative;
@@ -180,7 +169,7 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
 TEST(Asymmetry, IsRefusedBeyondOneAndOfALawWithoutMemory) {
   const std::vector<double> way = {0.0, 1.0};
   for (const double wrong : {1.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(PathOf(way, {.asymmetry = wrong}), InvalidArgument);
+    EXPECT_THROW(PathOf(Masing(), way, {.asymmetry = wrong}), InvalidArgument);
   }
   EXPECT_THROW(MakeLoadingPath(way, {}, Memory::kNone, {.asymmetry = 0.1}), InvalidArgument);
 }

@@ -11,23 +11,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A handful of roundings in the test's own closed form.
 constexpr double kClosedForm = 1e-15;
 
-TEST(BranchLaw, WithAThirdIsMindlin) {
-  // Johnson 7.42 in the paper's symbols: T = μN[1 − (1 − 16aδ/(3μN·G*))^{3/2}].
-  const double a = 0.0027, compliance = 4.42e-11, slip_force = 30.0;
-  const BranchLaw law{8 * a / compliance, 1.0 / 3.0, slip_force};
-  const double slip = 3 * slip_force * compliance / (16 * a);
-  EXPECT_NEAR(GrossSlipDisplacement(law), slip, kClosedForm * slip);
-  for (const double share : {0.1, 0.5, 0.9}) {
-    const double mindlin = slip_force * (1 - std::pow(1 - share, 1.5));
-    EXPECT_NEAR(BackboneForce(law, share * slip), mindlin, 4 * kClosedForm * slip_force);
-    EXPECT_NEAR(std::cbrt(BackboneRemaining(law, share * slip)), std::sqrt(1 - share),
-                4 * kClosedForm);  // c/a, eq. 5
-  }
-}
-
 TEST(BranchLaw, WithOneIsExponential) {
   const BranchLaw law{2.0, 1.0, 3.0};
   const double remaining = std::exp(-0.8);
+  EXPECT_NEAR(BackboneRemaining(law, 1.2), remaining, kClosedForm);
   EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * (1 - remaining), 3 * kClosedForm);
   EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 * remaining, 2 * kClosedForm);
   EXPECT_NEAR(BackboneWork(law, 1.2), 3.0 * (1.2 - 1.5 * (1 - remaining)), 9 * kClosedForm);

@@ -56,16 +56,6 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-std::vector<double> Respond(const FrictionModel& model, const BranchLaw& law,
-                            const History& displacement, const ContactStateOptions& options) {
-  std::vector<double> force(displacement.size());
-  EvaluateForce(
-      model, law,
-      PathOf(model, displacement, {.unloaded_displacement = options.unloaded_displacement}),
-      displacement, force, options.rig);
-  return force;
-}
-
 /// Inward, then outward again, step by step, past every extreme exactly.
 History Spiral(std::size_t reversals) {
   History history(reversals);
@@ -95,7 +85,8 @@ History DrawHistory(Generator& generator) {
 /// Moves along the history and demands the forces of its path, from Move and from Peek alike.
 void ExpectAgreement(const FrictionModel& model, const BranchLaw& law, const History& history,
                      const ContactStateOptions& options) {
-  const std::vector<double> expected = Respond(model, law, history, options);
+  const std::vector<double> expected = testing::Respond(
+      model, law, history, {.unloaded_displacement = options.unloaded_displacement}, options.rig);
   ContactState contact(model, law, options);
   Generator generator(3);
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -139,7 +130,7 @@ TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
           const History history = {
               0.0,   0.0,    x, x,       std::nextafter(x, 0.0), -x, 0.0, std::nextafter(x, 2 * x),
               x / 2, -2 * x, x, 0.25 * x};
-          const std::vector<double> expected = Respond(model, law, history, {});
+          const std::vector<double> expected = testing::Respond(model, law, history);
           std::feclearexcept(kTrapped);
           ContactState contact(model, law);
           std::vector<double> force;
@@ -215,7 +206,7 @@ TEST(ContactState, ACopyGoesItsOwnWay) {
       contact.Move(displacement);
       ASSERT_EQ(trial.Force(), trial_force);
     }
-    ASSERT_EQ(contact.Force(), Respond(Model("mindlin"), law, history, {}).back());
+    ASSERT_EQ(contact.Force(), testing::Respond(Model("mindlin"), law, history).back());
   }
 }
 
@@ -223,7 +214,7 @@ TEST(ContactState, GoesOnFromTheMemoryOfAnother) {
   Generator generator(7);
   const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
   for (const char* model : {"mindlin-dahl", "dahl", "jenkins"}) {
-    for (const double rig : {3.0, std::numeric_limits<double>::infinity()}) {
+    for (const double rig : {3.0, kInfinity}) {
       const ContactStateOptions options{.unloaded_displacement = 0.1, .rig = {.stiffness = rig}};
       ContactState contact(Model(model), law, options);
       for (const double displacement : DrawHistory(generator)) contact.Move(displacement);

@@ -16,22 +16,16 @@ namespace {
 
 constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
 
-std::string Raised() {
-  const int raised = std::fetestexcept(kTrapped);
-  std::string names;
-  if ((raised & FE_INVALID) != 0) names += " invalid";
-  if ((raised & FE_OVERFLOW) != 0) names += " overflow";
-  if ((raised & FE_DIVBYZERO) != 0) names += " division by zero";
-  return names;
-}
-
 /// The flags that `call` raises, by name; empty when none.
 template <typename Call>
 std::string RaisedBy(Call call) {
   std::feclearexcept(kTrapped);
   call();
-  std::string names = Raised();
-  std::feclearexcept(kTrapped);
+  const int raised = std::fetestexcept(kTrapped);
+  std::string names;
+  if ((raised & FE_INVALID) != 0) names += " invalid";
+  if ((raised & FE_OVERFLOW) != 0) names += " overflow";
+  if ((raised & FE_DIVBYZERO) != 0) names += " division by zero";
   return names;
 }
 

@@ -17,14 +17,6 @@ using Real = boost::multiprecision::cpp_bin_float_50;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-std::vector<double> RespondWithRig(const FrictionModel& model, const BranchLaw& law,
-                                   const SeriesSpring& rig, const History& displacement,
-                                   const InitialContact& initial = {}) {
-  std::vector<double> force(displacement.size());
-  EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force, rig);
-  return force;
-}
-
 /// δ = x + T/k_r
 History WithRig(const History& contact, const std::vector<double>& force, const SeriesSpring& rig) {
   History displacement(contact.size());
@@ -116,7 +108,7 @@ TEST(Rig, LeavesTheForceThatTheContactHasAtItsOwnDisplacement) {
                                        i % 3 == 0 ? Uniform(generator, -1, 1) : 0.0};
       const std::vector<double> expected = Respond(model, law, contact, initial);
       const History displacement = WithRig(contact, expected, rig);
-      const std::vector<double> force = RespondWithRig(model, law, rig, displacement, initial);
+      const std::vector<double> force = Respond(model, law, displacement, initial, rig);
       for (std::size_t k = 0; k < force.size(); ++k) {
         ASSERT_LE(std::abs(force[k]), law.slip_force);
         worst.Add(std::abs(force[k] - expected[k]), [&] {
@@ -134,9 +126,9 @@ TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
   for (const FrictionModel& model : FrictionModels()) {
     const History history = testing::RandomHistory(generator);
     const BranchLaw law{1.0, 0.4, 1.0};
-    EXPECT_EQ(RespondWithRig(model, law, {}, history), Respond(model, law, history));
+    EXPECT_EQ(Respond(model, law, history, {}, {}), Respond(model, law, history));
     // And a very stiff one is none to rounding: 5e-14·Tc of either.
-    const auto stiff = RespondWithRig(model, law, {1e200}, history);
+    const auto stiff = Respond(model, law, history, {}, {1e200});
     const auto rigid = Respond(model, law, history);
     for (std::size_t i = 0; i < stiff.size(); ++i) EXPECT_NEAR(stiff[i], rigid[i], 1e-13);
   }
@@ -147,11 +139,11 @@ TEST(Rig, IsRefusedWhereItMeansNothing) {
   const BranchLaw law{1.0, 0.5, 1.0};
   for (const double stiffness : {0.0, -1.0, -std::numeric_limits<double>::infinity(),
                                  std::numeric_limits<double>::quiet_NaN(), 1e-101}) {
-    EXPECT_THROW(RespondWithRig(Model("mindlin-dahl"), law, {stiffness}, history), InvalidArgument)
+    EXPECT_THROW(Respond(Model("mindlin-dahl"), law, history, {}, {stiffness}), InvalidArgument)
         << stiffness;
   }
   // Dahl's law is 2^α steeper from slip to slip.
-  EXPECT_THROW(RespondWithRig(Model("dahl"), {1.0, 400.0, 1.0}, {1e-70}, {1e75, 9e74}),
+  EXPECT_THROW(Respond(Model("dahl"), {1.0, 400.0, 1.0}, {{1e75, 9e74}}, {}, {1e-70}),
                InvalidArgument);
 }
 

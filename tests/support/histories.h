@@ -103,9 +103,10 @@ inline models::LoadingPath PathOf(const models::FrictionModel& model,
 /// Force [N] at every sample.
 inline std::vector<double> Respond(const models::FrictionModel& model, const models::BranchLaw& law,
                                    std::span<const double> displacement,
-                                   const models::InitialContact& initial = {}) {
+                                   const models::InitialContact& initial = {},
+                                   const models::SeriesSpring& rig = {}) {
   std::vector<double> force(displacement.size());
-  models::EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force);
+  models::EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force, rig);
   return force;
 }
 
