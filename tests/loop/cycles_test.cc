@@ -160,18 +160,15 @@ TEST(MeasureLoop, CountsCompleteCycles) {
   EXPECT_EQ(cycles(0.2, 0.0), 0U);
 }
 
-TEST(MeasureLoop, MonotoneLoadingHasNoCycle) {
-  const LoopMeasures measures = MeasureLoop(Record{{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
-  EXPECT_EQ(measures.cycles, 0U);
-  EXPECT_DOUBLE_EQ(measures.amplitude, 1.5);
-  EXPECT_DOUBLE_EQ(measures.centre, 2.5);
-  EXPECT_DOUBLE_EQ(measures.peak_force, 2.5);
-}
-
-TEST(MeasureLoop, AConstantRecordHasNoAmplitude) {
-  const LoopMeasures measures = MeasureLoop(Record{{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
-  EXPECT_EQ(measures.amplitude, 0.0);
-  EXPECT_EQ(measures.cycles, 0U);
+TEST(MeasureLoop, MonotoneLoadingHasNoCycleAndRestNoAmplitude) {
+  const LoopMeasures monotone = MeasureLoop(Record{{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
+  EXPECT_EQ(monotone.cycles, 0U);
+  EXPECT_DOUBLE_EQ(monotone.amplitude, 1.5);
+  EXPECT_DOUBLE_EQ(monotone.centre, 2.5);
+  EXPECT_DOUBLE_EQ(monotone.peak_force, 2.5);
+  const LoopMeasures constant = MeasureLoop(Record{{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
+  EXPECT_EQ(constant.amplitude, 0.0);
+  EXPECT_EQ(constant.cycles, 0U);
 }
 
 TEST(ForceSense, OfElasticLineFollowsItsSlope) {

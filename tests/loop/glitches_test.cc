@@ -11,13 +11,6 @@
 namespace mindahl::loop::glitches_test {
 namespace {
 
-History Triangle(double cycles, double samples_per_cycle) {
-  History history = Sine(cycles, samples_per_cycle);
-  for (double& displacement : history)
-    displacement = 2 / std::numbers::pi * std::asin(displacement);
-  return history;
-}
-
 History Resting(const History& history, std::size_t samples) {
   const std::vector<std::size_t> turns = FindReversals(history, 0.0);
   History resting;
@@ -56,13 +49,13 @@ double Cycles(Generator& generator, std::size_t most) {
   return static_cast<double>(1 + generator() % most);
 }
 
-struct CleanKind {
-  const char* name;
-  std::function<Record(Generator&)> make;
-};
-
-const std::vector<CleanKind>& CleanKinds() {
-  static const std::vector<CleanKind> kinds = {
+TEST(FindGlitches, FindsNoneInCleanRecords) {
+  constexpr int kRecords = 200;
+  struct Kind {
+    const char* name;
+    std::function<Record(Generator&)> make;
+  };
+  const std::vector<Kind> kinds = {
       {"Sine",
        [](Generator& g) { return Respond(g, Sine(Cycles(g, 20), LogUniform(g, 20, 2000))); }},
       {"FewSamplesACycle",
@@ -126,12 +119,7 @@ const std::vector<CleanKind>& CleanKinds() {
          return record;
        }},
   };
-  return kinds;
-}
-
-TEST(FindGlitches, FindsNoneInCleanRecords) {
-  constexpr int kRecords = 200;
-  for (const CleanKind& kind : CleanKinds()) {
+  for (const Kind& kind : kinds) {
     Generator generator(1);
     for (int i = 0; i < kRecords; ++i) {
       ASSERT_TRUE(FindGlitches(kind.make(generator)).empty()) << kind.name << ' ' << i;
@@ -245,33 +233,24 @@ TEST(FindGlitches, MeasuredRecordsHaveHardlyAny) {
   EXPECT_LE(spikes, 20U);
 }
 
-/// Each rule at its value, and what comes out at half and at twice.
-struct Rule {
-  const char* name;
-  std::function<void(GlitchRules&, double)> scale;
-  std::function<bool(const GlitchRules&)> holds;
-};
-
 bool HasGlitch(const Record& record, const GlitchRules& rules) {
   return !FindAndInterpolate(record, rules).glitches.empty();
 }
 
 /// A triangle in steps of 1 and −1 with a force that follows it.
-Record Steps(std::size_t samples, std::size_t stroke = 100) {
+Record Steps(std::size_t samples) {
   Record record;
   for (std::size_t i = 0; i < samples; ++i) {
-    const auto at = static_cast<double>(i % (2 * stroke));
-    const auto turn = static_cast<double>(stroke);
-    record.displacement.push_back(7 + (at < turn ? at : 2 * turn - at));
+    const auto at = static_cast<double>(i % 200);
+    record.displacement.push_back(7 + (at < 100 ? at : 200 - at));
     record.force.push_back(5 + 2 * record.displacement.back());
   }
   return record;
 }
 
-bool HasSpike(const GlitchRules& rules, double height, std::size_t samples, std::size_t size,
-              std::size_t at) {
-  Record record = Steps(size);
-  for (std::size_t k = 0; k < samples; ++k) record.displacement[at + k] += height;
+bool HasSpike(const GlitchRules& rules, double height, std::size_t samples) {
+  Record record = Steps(90);
+  for (std::size_t k = 0; k < samples; ++k) record.displacement[40 + k] += height;
   return HasGlitch(record, rules);
 }
 
@@ -293,23 +272,26 @@ bool HasHeld(const GlitchRules& rules, std::size_t equal, double jump) {
   return HasGlitch(record, rules);
 }
 
-const std::vector<Rule>& Rules() {
+TEST(GlitchRules, HoldAtTheirValuesAndNeitherAtTwiceNorAtHalf) {
+  struct Rule {
+    const char* name;
+    std::function<void(GlitchRules&, double)> scale;
+    std::function<bool(const GlitchRules&)> holds;
+  };
   const auto scaled = [](auto member) {
     return [member](GlitchRules& rules, double factor) {
       using Value = std::remove_reference_t<decltype(rules.*member)>;
       rules.*member = static_cast<Value>(factor * static_cast<double>(rules.*member));
     };
   };
-  static const std::vector<Rule> list = {
+  const std::vector<Rule> list = {
       // Over the farther neighbour, which is a step higher.
       {"spike", scaled(&GlitchRules::spike),
        [](const GlitchRules& rules) {
-         return HasSpike(rules, 3.5 + 1, 1, 90, 40) && !HasSpike(rules, 2.5 + 1, 1, 90, 40);
+         return HasSpike(rules, 3.5 + 1, 1) && !HasSpike(rules, 2.5 + 1, 1);
        }},
       {"longest_spike", scaled(&GlitchRules::longest_spike),
-       [](const GlitchRules& rules) {
-         return HasSpike(rules, 50, 3, 90, 40) && !HasSpike(rules, 50, 4, 90, 40);
-       }},
+       [](const GlitchRules& rules) { return HasSpike(rules, 50, 3) && !HasSpike(rules, 50, 4); }},
       // The first of five square pulses of two samples, so many samples apart, is one of a kind
       // where two others are near.
       {"about", scaled(&GlitchRules::about),
@@ -351,11 +333,7 @@ const std::vector<Rule>& Rules() {
          return has(5) && !has(3);
        }},
   };
-  return list;
-}
-
-TEST(GlitchRules, HoldAtTheirValuesAndNeitherAtTwiceNorAtHalf) {
-  for (const Rule& rule : Rules()) {
+  for (const Rule& rule : list) {
     EXPECT_TRUE(rule.holds({})) << rule.name;
     for (const double factor : {0.5, 2.0}) {
       GlitchRules rules;

@@ -107,7 +107,7 @@ TEST(LoadSteps, LeaveOutALoadThatHasNoCycle) {
   EXPECT_EQ(pieces[1].normal_load, 100.0);
 }
 
-TEST(LoadSteps, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
+TEST(LoadSteps, AreNotSeenInALoadThatChangesSlowlyOrSwingsNorWhereTheyAreSmall) {
   const auto sine = [](double share, double period) {
     return [=](double cycle) {
       return 50 * (1 + share * std::sin(2 * std::numbers::pi * cycle / period));
@@ -125,25 +125,17 @@ TEST(LoadSteps, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
             .empty())
         << total;
   }
-  // A constant one, a square wave as fast as the motion, and none at all.
   EXPECT_TRUE(FindLoadSteps(WithNoise(Cycled(20, [](double) { return 50.0; }), 0.02)).empty());
-  EXPECT_TRUE(FindLoadSteps(Cycled(20, [](double cycle) {
-                return cycle - std::floor(cycle) < 0.5 ? 40.0 : 60.0;
-              })).empty());
+  const std::vector<std::pair<const char*, std::function<double(double)>>> loads = {
+      {"as fast as the motion", [](double cycle) { return std::fmod(cycle, 1) < 0.5 ? 40 : 60; }},
+      {"a small step", [](double cycle) { return cycle < 10 ? 50 : 52; }},
+      {"drifts", [](double cycle) { return (cycle < 10 ? 50 : 100) * (1 + 0.01 * cycle); }},
+      {"unloaded for half of the time", [](double cycle) { return cycle < 10 ? 0 : 50; }}};
+  for (const auto& [name, load] : loads)
+    EXPECT_TRUE(FindLoadSteps(Cycled(20, load)).empty()) << name;
   Record without = Cycled(3, Staircase);
   without.normal_load.clear();
   EXPECT_TRUE(FindLoadSteps(without).empty());
-}
-
-TEST(LoadSteps, AreNotSeenWhereTheyAreSmallOrTheLoadDriftsBetweenThem) {
-  EXPECT_TRUE(
-      FindLoadSteps(Cycled(20, [](double cycle) { return cycle < 10 ? 50.0 : 52.0; })).empty());
-  EXPECT_TRUE(FindLoadSteps(Cycled(20, [](double cycle) {
-                return (cycle < 10 ? 50.0 : 100.0) * (1 + 0.01 * cycle);
-              })).empty());
-  // And not where the contact is unloaded for half of the time.
-  EXPECT_TRUE(
-      FindLoadSteps(Cycled(20, [](double cycle) { return cycle < 10 ? 0.0 : 50.0; })).empty());
 }
 
 double RampUpAndDown(double cycle) {

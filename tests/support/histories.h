@@ -43,6 +43,15 @@ inline History Sine(double cycles, double samples_per_cycle, double phase = 0.0)
   return history;
 }
 
+/// Straight between the extremes of the sine with as many samples.
+inline History Triangle(double cycles, double samples_per_cycle) {
+  History history = Sine(cycles, samples_per_cycle);
+  for (double& displacement : history) {
+    displacement = 2 / std::numbers::pi * std::asin(displacement);
+  }
+  return history;
+}
+
 inline History WithNoise(Generator& generator, History history, double deviation) {
   for (double& displacement : history) displacement += deviation * Normal(generator);
   return history;
