@@ -32,14 +32,11 @@ TEST(HertzInput, RefusesSurfacesWithoutAContactCircle) {
   const std::string seat =
       " is invalid: must be > 0: a concave seat (negative radius) must be wider than the body in "
       "it";
-  EXPECT_EQ(MessageOf([] { EquivalentRadius(0.5, -0.25); }),
-            "relative curvature 1/R1 + 1/R2 [1/m] = -2" + seat);
-  EXPECT_EQ(MessageOf([] { EquivalentRadius(0.5, -0.5); }),
-            "relative curvature 1/R1 + 1/R2 [1/m] = 0" + seat);
-  EXPECT_EQ(MessageOf([] { EquivalentRadius(kPlane, -0.5); }),
-            "relative curvature 1/R1 + 1/R2 [1/m] = -2" + seat);
-  EXPECT_EQ(MessageOf([] { EquivalentRadius(-0.5, -0.5); }),
-            "relative curvature 1/R1 + 1/R2 [1/m] = -4" + seat);
+  for (const auto& [radius_1, radius_2, curvature] :
+       {std::tuple{0.5, -0.25, "-2"}, {0.5, -0.5, "0"}, {kPlane, -0.5, "-2"}, {-0.5, -0.5, "-4"}}) {
+    EXPECT_EQ(MessageOf([one = radius_1, two = radius_2] { EquivalentRadius(one, two); }),
+              std::string("relative curvature 1/R1 + 1/R2 [1/m] = ") + curvature + seat);
+  }
 }
 
 TEST(HertzInput, RefusesARadiusOfZero) {

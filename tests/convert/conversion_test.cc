@@ -139,14 +139,8 @@ TEST(Conversion, RefusesOptionsThatBreakARule) {
   EXPECT_THROW(To("bouc-wen", kMindlin, {.beta = 1.5}), InvalidArgument);
 }
 
-Conversion Converted(const TargetRow& target) {
-  return Convert({&Model("mindlin-dahl"), {.tangential_stiffness = 4e7, .slip_force = 40.0}},
-                 target, {.amplitude = 1.2e-6});
-}
-
 TEST(Parameters, OfMasingsLawAreItsOwn) {
-  const std::vector<Parameter> parameters =
-      ParametersOf(Converted(Target("masing")), Target("masing"));
+  const std::vector<Parameter> parameters = ParametersOf(To("masing", kMindlin), Target("masing"));
   ASSERT_EQ(parameters.size(), 3U);
   EXPECT_EQ(parameters[0].name, "sigma");
   EXPECT_EQ(parameters[0].value, 4e7);
@@ -154,7 +148,7 @@ TEST(Parameters, OfMasingsLawAreItsOwn) {
 }
 
 TEST(Parameters, HaveAFrictionCoefficientWhereTheLoadIsKnown) {
-  const Conversion conversion = Converted(Target("lammps"));
+  const Conversion conversion = To("lammps", kMindlin);
   EXPECT_EQ(ParametersOf(conversion, Target("lammps")).size(), 2U);
   const std::vector<Parameter> parameters =
       ParametersOf(conversion, Target("lammps"), {.normal_load = 100.0});
@@ -164,19 +158,15 @@ TEST(Parameters, HaveAFrictionCoefficientWhereTheLoadIsKnown) {
 }
 
 TEST(Parameters, OfAMujocoActuatorHaveItsKneeWhereStiffnessReachesCoulombsForce) {
-  const std::vector<Parameter> parameters =
-      ParametersOf(Converted(Target("mujoco")), Target("mujoco"));
+  const std::vector<Parameter> parameters = ParametersOf(To("mujoco", kMindlin), Target("mujoco"));
   ASSERT_GE(parameters.size(), 3U);
   EXPECT_EQ(parameters[2].name, "knee");
   EXPECT_EQ(parameters[2].value, parameters[1].value / parameters[0].value);
 }
 
 TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
-  const Conversion conversion =
-      Convert({&Model("mindlin-dahl"),
-               {.tangential_stiffness = 4e7, .shape_exponent = 1.0 / 3, .slip_force = 40.0}},
-              Target("bouc-wen"), {.amplitude = 1.2e-6, .beta = 0.2});
-  const std::vector<Parameter> parameters = ParametersOf(conversion, Target("bouc-wen"));
+  const std::vector<Parameter> parameters =
+      ParametersOf(To("bouc-wen", kMindlin, {.beta = 0.2}), Target("bouc-wen"));
   ASSERT_EQ(parameters.size(), 6U);
   EXPECT_EQ(parameters[3].name, "beta");
   EXPECT_EQ(parameters[4].name, "gamma");
@@ -185,7 +175,7 @@ TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
 
 TEST(InputLines, OfDiscreteElementCodesNeedANormalLoad) {
   for (const auto& [name, lines] : {std::pair{"lammps", 2U}, {"yade", 2U}, {"liggghts", 5U}}) {
-    const Conversion conversion = Converted(Target(name));
+    const Conversion conversion = To(name, kMindlin);
     EXPECT_THROW(InputLines(conversion, Target(name)), InputError) << name;
     EXPECT_EQ(InputLines(conversion, Target(name), {.normal_load = 100.0}).size(), lines) << name;
   }
@@ -194,7 +184,7 @@ TEST(InputLines, OfDiscreteElementCodesNeedANormalLoad) {
 
 TEST(Parameters, OfYadeHaveTheAngleOfFriction) {
   const std::vector<Parameter> parameters =
-      ParametersOf(Converted(Target("yade")), Target("yade"), {.normal_load = 100.0});
+      ParametersOf(To("yade", kMindlin), Target("yade"), {.normal_load = 100.0});
   ASSERT_EQ(parameters.size(), 4U);
   EXPECT_EQ(parameters[0].name, "ks");
   EXPECT_NEAR(std::tan(parameters[3].value), parameters[1].value / 100.0, 1e-15);
@@ -203,7 +193,7 @@ TEST(Parameters, OfYadeHaveTheAngleOfFriction) {
 TEST(InputLines, OfJointsHaveTheirDamping) {
   for (const char* name : {"lugre", "mujoco", "mujoco-joint", "urdf", "sdf"}) {
     const TargetRow& target = Target(name);
-    const Conversion conversion = Converted(target);
+    const Conversion conversion = To(target.name, kMindlin);
     EXPECT_NO_THROW(Validate({.viscous = 3.0}, target));
     EXPECT_THROW(Validate({.viscous = -3.0}, target), InvalidArgument);
     double viscous = 0.0;
@@ -218,7 +208,7 @@ TEST(InputLines, OfJointsHaveTheirDamping) {
 
 TEST(InputLines, BeginWithARemarkWhereTheTargetHasComments) {
   for (const TargetRow& target : Targets()) {
-    const Conversion conversion = Converted(target);
+    const Conversion conversion = To(target.name, kMindlin);
     const std::vector<std::string> plain =
         InputLines(conversion, target, {.normal_load = 100.0, .contact_radius = 1e-3});
     const std::vector<std::string> remarked = InputLines(

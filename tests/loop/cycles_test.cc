@@ -54,12 +54,8 @@ TEST(CycleEnergies, AreTheAreaOfTheLoop) {
   for (const double energy : energies) {
     EXPECT_NEAR(energy, Area(ellipse), kPolygon * Area(ellipse));
   }
-}
-
-TEST(CycleEnergies, IncludeTheCyclesAtTheEndsWhereTheRecordStartsAtAnExtreme) {
-  const Ellipse ellipse{.start = kPi / 2};
-  const Record record = MakeRecord(ellipse);
-  EXPECT_EQ(CycleEnergies(record, Reversals(record)).size(), 4U);
+  const Record from_an_extreme = MakeRecord({.start = kPi / 2});
+  EXPECT_EQ(CycleEnergies(from_an_extreme, Reversals(from_an_extreme)).size(), 4U);
 }
 
 TEST(CycleEnergies, DoNotChangeWithOffsets) {
@@ -236,12 +232,9 @@ TEST(ForceSense, FollowsTheEnergyThatExceedsFiveDeviationsOfItsNoise) {
   EXPECT_EQ(sign_under(1.2 * 0.939), -1);  // of the spring
 }
 
-TEST(ForceSense, WithoutClosedCycleFollowsTheCovariance) {
+TEST(ForceSense, WithoutClosedCycleFollowsTheCovarianceUnlessThereIsNone) {
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
-}
-
-TEST(ForceSense, OfConstantForceIsUnknown) {
   EXPECT_EQ(ForceSense(Record{{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
 }
 

@@ -75,9 +75,7 @@ TEST(SimplifiedLaw, SpringIsProportionalAndNotBounded) {
 TEST(SimplifiedLaw, CoulombOpposesTheMotionAndHoldsAtRest) {
   EXPECT_EQ(Respond("coulomb", {0, 0, 1e-300, 1e-300, 0, 0, -1, -0.5}),
             (std::vector<double>{0, 0, 3, 3, -3, -3, -3, 3}));
-}
-
-TEST(SimplifiedLaw, TravelFromReferencePositionToFirstSampleIsAMotion) {
+  // The travel from the reference position to the first sample is a motion.
   EXPECT_EQ(Respond("coulomb", {-1, -1}), (std::vector<double>{-3, -3}));
 }
 
