@@ -9,12 +9,9 @@ std::string RefusalOf(const Record& record) {
   return MessageOf([&] { Validate(record); });
 }
 
-TEST(Record, IsValidWithOrWithoutTheOptionalColumns) {
+TEST(Record, NamesColumnsOfDifferentLengthsButNeedsNotAll) {
   EXPECT_EQ(RefusalOf({{1, 2}, {3, 4}, {}, {}}), "");
   EXPECT_EQ(RefusalOf({{1, 2}, {3, 4}, {0, 1}, {5, 5}}), "");
-}
-
-TEST(Record, NamesColumnsOfDifferentLengths) {
   EXPECT_EQ(RefusalOf({{1, 2}, {3}, {}, {}}),
             "displacement has 2 values and force has 1: must be equal");
   EXPECT_EQ(RefusalOf({{1, 2}, {3, 4}, {0}, {}}),

@@ -282,6 +282,17 @@ TEST(MeasuredReversals, AreAsManyAsTheTestsWereRunWith) {
   }
 }
 
+/// Nineteen reversals, each so far [mm] from the one before.
+void ExpectNineteen(const History& position, double apart) {
+  const ReversalGate choice = ChooseReversalGate(position);
+  EXPECT_EQ(choice.count, 19U);
+  const Indices reversals = FindReversals(position, choice.gate);
+  EXPECT_EQ(reversals.size(), 19U);
+  for (std::size_t k = 1; k < reversals.size(); ++k) {
+    EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), apart);
+  }
+}
+
 TEST(MeasuredReversals, OfTheTribometerAreACycleApartDespiteDwells) {
   const auto rows = ReadMeasured("tribometer/test_data_2.txt", '\t');
   if (!rows) GTEST_SKIP() << "no measured record";
@@ -290,11 +301,7 @@ TEST(MeasuredReversals, OfTheTribometerAreACycleApartDespiteDwells) {
     if (row[0] >= 20 && row[0] <= 60) position.push_back(row[2]);
   }
   // 10 cycles of 4 s, ±115 µm, from rest at the lower end to rest there.
-  const Indices reversals = FindReversals(position, ChooseReversalGate(position).gate);
-  EXPECT_EQ(reversals.size(), 19U);
-  for (std::size_t k = 1; k < reversals.size(); ++k) {
-    EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 0.2);  // mm
-  }
+  ExpectNineteen(position, 0.2);
 }
 
 TEST(MeasuredReversals, OfSealsAreNineteenDespiteBackwardStepsOfTheLaser) {
@@ -305,13 +312,9 @@ TEST(MeasuredReversals, OfSealsAreNineteenDespiteBackwardStepsOfTheLaser) {
     const auto rows = ReadMeasured("seals/" + std::string(seal) + ".csv", '\t');
     if (!rows) GTEST_SKIP() << "no measured record";
     const History position = Column(*rows, 4);
-    const ReversalGate choice = ChooseReversalGate(position);
-    EXPECT_EQ(choice.count, 19U) << seal;  // 9.5 cycles, out from rest
-    EXPECT_TRUE(choice.certain) << seal;
-    const Indices reversals = FindReversals(position, choice.gate);
-    for (std::size_t k = 1; k < reversals.size(); ++k) {
-      EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 35.0);  // mm
-    }
+    EXPECT_TRUE(ChooseReversalGate(position).certain) << seal;
+    SCOPED_TRACE(seal);
+    ExpectNineteen(position, 35.0);  // 9.5 cycles, out from rest
   }
 }
 

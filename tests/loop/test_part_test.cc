@@ -62,6 +62,7 @@ TEST(TestPart, IsTheWholeOfARecordOfOneTest) {
   for (const double cycles : {0.75, 1.25, 2.0, 5.0, 20.4}) {
     EXPECT_TRUE(IsWhole(WithForce(Sine(cycles)))) << cycles;
   }
+  EXPECT_EQ(FindTestPart(Record()).last, 0U);
 }
 
 TEST(TestPart, KeepsAmplitudesThatGrowFallOrComeInTurn) {
@@ -170,8 +171,6 @@ TEST(TestPart, LeavesOutTheRampsOfALoad) {
   ASSERT_EQ(test.left_out.size(), 1U);
   EXPECT_EQ(test.left_out.front().reason, LeftOutReason::kLoadRamp);
 }
-
-TEST(TestPart, OfAnEmptyRecordIsEmpty) { EXPECT_EQ(FindTestPart(Record()).last, 0U); }
 
 }  // namespace
 }  // namespace mindahl::loop::test_part_test
