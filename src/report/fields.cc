@@ -405,8 +405,7 @@ const std::vector<Field>& Fields() {
        }},
       {"compared", "",
        "by `--compare`, the best first: `model`, `rig`, `delta_aicc`, `rms` and `held_out_rms` in "
-       "the "
-       "force's unit",
+       "the force's unit",
        ComparedModels, "there are no cycles to hold out, or a fit without them failed"},
       {"next", "",
        "`text`, `options`, `misfit_before`, `misfit_after` over the half gap, of what was tried",
