@@ -92,11 +92,13 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
 
 void CycleSplitter::SumUpTo(std::size_t end) {
   for (; summed_ < end; ++summed_) {
-    checksum_ = Stir(checksum_, kept_.lines[summed_]);
+    // The numbers of a row are a polynomial, so that only one word a row waits for the last one.
+    std::uint64_t row = kept_.lines[summed_];
     for (const auto column : loop::kRecordColumns) {
       if ((kept_.*column).empty()) continue;
-      checksum_ = Stir(checksum_, std::bit_cast<std::uint64_t>((kept_.*column)[summed_]));
+      row = row * 0xd1342543de82ef95U + std::bit_cast<std::uint64_t>((kept_.*column)[summed_]);
     }
+    checksum_ = Stir(checksum_, row);
   }
 }
 
