@@ -137,16 +137,17 @@ class Weighting {
                                        static_cast<double>(data_.counted) / degrees_);
     }
     // Weighted residuals have the variance of those where the loop is flattest.
-    double least = errors_.any() ? std::numeric_limits<double>::infinity() : 0.0;
-    for (std::size_t i = 0; errors_.any() && i < counts_.size(); ++i) {
+    const double of_force = std::max(noise.force, kRoundingRms);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
       if (counts_[i] != 0) least = std::min(least, from_displacement[i]);
     }
-    const double unit = std::max(std::sqrt(noise.force * noise.force + least), kRoundingRms);
+    const double unit = std::sqrt(of_force * of_force + least);
     std::vector<double> standardised;
     std::vector<double> share(errors_.any() ? residual.size() : 0);
     std::size_t k = 0;
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
-      const double own = noise.of_records.empty() ? unit : noise.of_records[r];
+      const double own = noise.of_records.empty() ? of_force : noise.of_records[r];
       for (const std::size_t end = k + data_.records[r].size(); k < end; ++k) {
         const double deviation = std::sqrt(own * own + from_displacement[k]);
         residual[k] /= deviation;
