@@ -30,6 +30,23 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
+/// Returns the rms of weighted residuals times the geometric mean of what weighs them.
+/// @param residuals  of every sample, without weights
+double LikelihoodRmsOf(const ScaledRecords& data, std::span<const double> residuals) {
+  double squares = 0.0;
+  double log_weights = 0.0;
+  std::size_t k = 0;
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+      if (record.counts[i] == 0) continue;
+      squares += std::pow(record.root_weight[i] * residuals[k], 2);
+      log_weights += std::log(record.root_weight[i]);
+    }
+  }
+  const auto count = static_cast<double>(data.counted);
+  return std::sqrt(squares / count) * std::exp(-log_weights / count);
+}
+
 /// The fitted response and residuals as the files have them, of every sample, and their rms.
 void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
   const Problem& problem = solved.best.problem;
@@ -39,8 +56,6 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   double squares = 0.0;
-  double weighted = 0.0;
-  double log_weights = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
@@ -60,17 +75,14 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
       const double residual = unit * residuals[k];
       fit.residual[sample] = residual;
       fitted[sample] = measured[sample] + residual;
+      if (record.counts[i] != 0) squares += residual * residual;
       ++sample;
-      if (record.counts[i] == 0) continue;
-      squares += residual * residual;
-      weighted += residual * residual * record.root_weight[i] * record.root_weight[i];
-      log_weights += std::log(record.root_weight[i]);
     }
   }
-  const auto count = static_cast<double>(data.counted);
-  result.rms = std::sqrt(squares / count);
-  if (!solved.displacement_errors.any() || attempt.options.loss != Loss::kNone) return;
-  result.likelihood_rms = std::sqrt(weighted / count) * std::exp(-log_weights / count);
+  result.rms = std::sqrt(squares / static_cast<double>(data.counted));
+  if (solved.displacement_errors.any() && attempt.options.loss == Loss::kNone) {
+    result.likelihood_rms = data.response_unit() * LikelihoodRmsOf(data, residuals);
+  }
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {
