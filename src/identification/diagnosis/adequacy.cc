@@ -192,7 +192,7 @@ Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         MissedForce(result, thresholds) > thresholds.failing_misfit * result.MisfitScale();
+         result.adequacy.misfit > thresholds.failing_misfit * result.MisfitScale();
 }
 
 FitResult WithoutInadequate(FitResult result) {

@@ -293,7 +293,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
 
 std::optional<Finding> FindForceAtLimit(const loop::PreparedRecords& records) {
   constexpr double kOften = 0.05;  // of the samples
-  constexpr auto kLeast = 4.0;     // samples
+  constexpr double kLeast = 4;     // samples
   constexpr double kNoise = 1e-4;  // of the range: what is computed repeats its slip force
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> force = record.record.force;
