@@ -27,8 +27,8 @@
 #include "mindahl/request/fit_request.h"
 #include "report/json.h"
 
-// What the commands are made of: how an option is added, the options that several commands have,
-// and where answers go.
+// This header declares what the sources of all commands use: functions that add options, the
+// options that several commands share, and functions that write answers.
 namespace mindahl::cli {
 
 using report::Json;

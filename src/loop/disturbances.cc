@@ -314,7 +314,7 @@ std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i, const GlitchRul
 bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
   bool found = false;
   for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
-    // As hardly one of a clean record does.
+    // Hardly any step of a clean record exceeds the one before it by this factor.
     if (!(channel.Step(i) > rules.spike * channel.Step(i - 1))) continue;
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;

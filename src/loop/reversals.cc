@@ -144,8 +144,8 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
       one.look = Look::kOdd;
     }
   }
-  // What would be a turn just before an end of the record is unclear where there are many
-  // disturbances that are as brief and wider: the record may as well end within one of those.
+  // An apparent reversal just before an end of the record is unclear where many disturbances are as
+  // brief and wider: the record may end within one of them.
   std::size_t wider = 0;
   for (JudgedExcursion& one : std::views::reverse(judged)) {
     if (one.look == Look::kOdd) ++wider;

@@ -248,7 +248,7 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
     of_other.model = models::FindFrictionModel("dahl");
     TermSelection other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
     if (other.fit.converged) asked = std::move(other);
-    // Where each law is better than the other one's fit, neither is.
+    // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
   }
   if (!chooses_terms) return asked;

@@ -114,7 +114,8 @@ TEST(DisplacementNoise, IsNoneInACleanRecord) {
 }
 
 TEST(DisplacementNoise, ThatIsAllNoiseLeavesIntervalsAWidth) {
-  // Of the force there is hardly any: the likeliest is none, and no weight may follow from that.
+  // The maximum-likelihood estimate of the force noise is zero here; weights must not be scaled by
+  // it.
   constexpr std::size_t kManyLoops = 12;
   const Record clean = testing::LoopOf(kLaw, Cycling(Wave::kSine, 0.6 * kReach, 3.5, 100));
   std::size_t covered = 0;
@@ -129,7 +130,7 @@ TEST(DisplacementNoise, ThatIsAllNoiseLeavesIntervalsAWidth) {
     EXPECT_GT(*sigma.upper95 / *sigma.lower95, 1.005) << i;
     covered += Covers(sigma, kLaw.tangential_stiffness) ? 1 : 0;
   }
-  // Of 12 intervals of 95 % all but two miss once in 400 times.
+  // More than three of twelve 95 % intervals miss the truth with a probability of 1 in 450.
   EXPECT_GE(covered, kManyLoops - 3);
 }
 

@@ -30,8 +30,8 @@ TEST(MappingValidation, LoopsOfEitherLawReturnTheContactAtEveryAmplitude) {
     EXPECT_EQ(row.undetermined, 0u);
   }
   EXPECT_EQ(cases, report.fits);
-  // Of 95 % intervals at most once in 10⁴ so many miss: np + 4√(npq), and √3 of that since the
-  // three of a fit err together.
+  // The number of 95 % intervals that miss the truth exceeds np + 4√(3npq) once in 30 000 runs; the
+  // factor 3 allows for the correlation of the three intervals of a fit.
   const auto count = static_cast<double>(intervals);
   EXPECT_GT(intervals, 100u);
   EXPECT_LE(count - static_cast<double>(covering),
