@@ -55,12 +55,13 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
   }
   others.start["sigma"] = law.tangential_stiffness;
   others.start["slip_force"] = law.slip_force;
+  others.start["alpha"] = law.shape_exponent;
   if (fit.Find("alpha")->status == ParameterStatus::kFixed) {
     others.start.erase("alpha");
     others.fixed["alpha"] = fit.law.shape_exponent;
-  } else {
-    others.start["alpha"] = law.shape_exponent;
   }
+  // Where one law is flat, the other may be so where their loops are the same.
+  if (fit.FindFinding("undetermined_combination") != nullptr) others.start.clear();
   return others;
 }
 

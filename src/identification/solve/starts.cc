@@ -17,19 +17,20 @@ namespace {
 struct StartRow {
   double shape;
   std::size_t count;
-  std::array<double, 10> reaches;  // σX/Tc
+  std::array<double, 11> reaches;  // σX/Tc
 };
 constexpr std::array kRows = {
-    StartRow{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
+    StartRow{1.0 / 3.0, 11, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 90., 150.}},
     StartRow{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
-    StartRow{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}}, StartRow{2.5, 4, {0.7, 3.0, 12., 60.}}};
+    StartRow{1.0, 6, {0.5, 1.5, 4.0, 12., 60., 120.}},
+    StartRow{2.5, 5, {0.7, 3.0, 12., 60., 120.}}};
 /// Starting points T*/Tc under an imposed force, which stays below slip.
 constexpr std::array<StartRow, 4> kMobilisedRows = {
     StartRow{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
     StartRow{0.0, 2, {0.5, 0.99}}, StartRow{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
     StartRow{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
 /// Starting points where α is held: all are of one row.
-constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
+constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 90., 150.};
 constexpr double kNear = 4.0;
 constexpr std::array kMobilised = {0.05, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.997};
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
@@ -247,7 +248,8 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
   };
   if (shape.fixed) {
     constexpr std::size_t kThirds = 3;
-    const auto& reaches = plane.is_forced() ? kMobilised : kReaches;
+    const auto reaches =
+        plane.is_forced() ? std::span<const double>(kMobilised) : std::span<const double>(kReaches);
     for (std::size_t i = 0; i < reaches.size(); ++i) {
       look_at(i * kThirds / reaches.size(), reaches[i], shape.theta);
     }
