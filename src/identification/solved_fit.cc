@@ -25,9 +25,9 @@ std::optional<RecordStates> GivenState(const Attempt& attempt) {
     return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
   });
   if (unloaded_is_given) return InitialState::kVirgin;
-  const bool any_reversal = std::ranges::any_of(
-      attempt.data.records, [](const ScaledRecord& record) { return !record.reversals.empty(); });
-  if (!any_reversal) return InitialState::kVirgin;
+  if (std::ranges::none_of(attempt.data.records, &ScaledRecord::Turns)) {
+    return InitialState::kVirgin;
+  }
   return std::nullopt;
 }
 
@@ -116,11 +116,13 @@ Candidate FitBestState(const Attempt& attempt) {
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
   const double clearly_worse = options.thresholds.hopeless;
-  const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
-  if (is_one && steady_cost > clearly_worse * virgin_cost) {
+  // Of several records, some may be of either; a start that is given has no cost.
+  const bool is_one = attempt.data.records.size() == 1;
+  const bool is_looked_at = is_one && options.start.empty();
+  if (is_looked_at && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
     if (virgin.solution.converged) return virgin;
-  } else if (is_one && virgin_cost > clearly_worse * steady_cost) {
+  } else if (is_looked_at && virgin_cost > clearly_worse * steady_cost) {
     descend(steady);
     if (steady.solution.converged) return steady;
   }

@@ -179,8 +179,7 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
   const Eigen::VectorXd& residual = at_fit_.residual;
   freed_ = LeftOver(at_fit_.jacobian, residual);
-  effective_samples_ =
-      EffectiveSamples(data_, {residual.data(), static_cast<std::size_t>(residual.size())});
+  effective_samples_ = EffectiveSamples(problem, theta, response_);
   choices_.clear();
   std::vector<Eigen::VectorXd> columns;
   for (const TermChoice& choice : choices) {

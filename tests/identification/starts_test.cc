@@ -42,6 +42,34 @@ TEST(Starts, OfARecordToldToBeVirginLeadToTheLeastMinimum) {
   }
 }
 
+TEST(Starts, OfStrokesAHundredTimesAsWideAsTheKneeLeadToTheContact) {
+  for (const double alpha : {0.7, 1.0}) {
+    const models::BranchLaw law{2500.0, alpha, 3.0};
+    Record record = MakeRecord(Cycling(Wave::kTriangle, 0.12, 3.0, 200), {});
+    record.force = Respond(Model("dahl"), law, record.displacement);
+    Generator generator(7);
+    record = WithForceNoise(record, 0.015, generator);
+    const FitResult fit = FitOne(record, testing::OfModel("dahl"));
+    EXPECT_LT(fit.residuals.rms, 0.017) << alpha;
+    EXPECT_NEAR(fit.law.shape_exponent, alpha, 0.1);
+  }
+}
+
+TEST(Starts, ThatAreGivenDoNotDecideOnTheInitialState) {
+  const Record record = NoisyLoop(3);
+  FitOptions options;
+  options.start = {{"sigma", kLaw.tangential_stiffness},
+                   {"alpha", kLaw.shape_exponent},
+                   {"slip_force", kLaw.slip_force}};
+  EXPECT_EQ(FitOne(record, options).initial_state, models::InitialState::kVirgin);
+}
+
+TEST(Starts, OfTheFirstBranchAloneAreThoseOfAVirginContact) {
+  FitOptions options;
+  options.preparation.samples = loop::CountRange{.first = 2, .last = 26};
+  EXPECT_EQ(FitOne(NoisyLoop(3), options).initial_state, models::InitialState::kVirgin);
+}
+
 // ---
 // A model with one term more contains the model without it.
 

@@ -115,7 +115,8 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response) {
   std::vector<double> residual(problem.size());
   EvaluateResidual(problem, theta, response, residual);
-  return EffectiveSamples(*problem.data, residual);
+  const auto least = static_cast<double>(problem.parameters.free().size() + 1);
+  return std::max(EffectiveSamples(*problem.data, residual), least);
 }
 
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,

@@ -54,7 +54,8 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
 /// other: those that count, over the variance inflation from autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
 
-/// Returns the same of a solution's residuals. Binds the response to the problem.
+/// Returns the same of a solution's residuals, no fewer than determine its free parameters. Binds
+/// the response to the problem.
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response);
 
 /// JᵀRJ of all records; where the displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of

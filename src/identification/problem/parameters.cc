@@ -167,7 +167,7 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
     case Presence::kOffsets:
       if (!options.offsets) {
         Hold(parameter, 0.0);
-      } else if (data.reversals.empty()) {
+      } else if (!data.Turns()) {
         HoldOrigin(data, options, parameter);
       }
       break;

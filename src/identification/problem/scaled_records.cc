@@ -253,6 +253,13 @@ double CovariateScale(std::string_view name, const loop::PreparedRecords& record
 
 }  // namespace
 
+std::size_t ScaledRecord::CountTurns() const {
+  std::size_t end = counts.size();
+  while (end > 0 && counts[end - 1] == 0) --end;
+  return static_cast<std::size_t>(
+      std::ranges::count_if(reversals, [&](std::size_t turn) { return turn + 1 < end; }));
+}
+
 ScaledRecord ScaledRecord::At(std::span<const std::size_t> samples) const {
   ScaledRecord some = *this;
   const auto take = [&](auto& column, const auto& all) {
@@ -417,6 +424,14 @@ void AddColumns(const FitOptions& options, const loop::PreparedRecords& records,
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
     add(name, scale);
     const std::size_t last = data.covariates.size() - 1;
+    const bool is_force = std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
+      return AreOneChannel(record.covariates[last], record.force);
+    });
+    if (is_force && !options.fixed.contains(NameOfCovariate(name))) {
+      throw InvalidArgument(fmt::format(
+          "the covariate '{}' is the channel of the force, a linear function of it: leave it out",
+          name));
+    }
     for (std::size_t other = 0; other < last; ++other) {
       if (!AreOneChannel(data, other, last)) continue;
       throw InvalidArgument(fmt::format(

@@ -49,6 +49,10 @@ struct ScaledRecord {
     return load_ratio.empty() ? load : load * load_ratio[i];
   }
 
+  /// Returns the number of turns before the last sample that counts: later ones make no history.
+  [[nodiscard]] std::size_t CountTurns() const;
+  [[nodiscard]] bool Turns() const { return CountTurns() > 0; }
+
   /// Returns the record with these of its samples, in all of its columns; `reversals` as they were.
   [[nodiscard]] ScaledRecord At(std::span<const std::size_t> samples) const;
 
