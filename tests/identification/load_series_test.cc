@@ -79,6 +79,12 @@ TEST(LoadSeriesFit, SeparatesRigFromContact) {
   EXPECT_NEAR(fit.rig.stiffness / kRigStiffness, 1, kTolerance);
 }
 
+TEST(LoadSeriesFit, IncludesTheExponentThatItHasInARig) {
+  const FitResult fit = Fit(SeriesInRig(1.0 / 3, 6e7), UnderLoads());
+  ASSERT_NE(fit.FindFinding("shape_or_rig"), nullptr);
+  EXPECT_NEAR(*fit.Find("load_exponent")->upper95, 1.0 / 3, 0.01);
+}
+
 TEST(LoadSeriesFit, TakesLoadsOfColumnsForTheSame) {
   std::vector<Record> records = Series(1.0 / 3);
   for (std::size_t r = 0; r < records.size(); ++r) {

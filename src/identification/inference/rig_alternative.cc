@@ -41,7 +41,8 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const Paramete
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
   return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-                        .law = sprung.problem.parameters.LawAt(solution.theta)};
+                        .law = sprung.problem.parameters.LawAt(solution.theta),
+                        .load_exponent = sprung.problem.parameters.LoadExponentAt(solution.theta)};
 }
 
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
@@ -51,6 +52,10 @@ ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thres
     return parameters;
   }
   Include(parameters[kShape], {.lower = kMindlinShapeExponent, .upper = kMindlinShapeExponent});
+  const auto exponent = std::ranges::find(parameters, "load_exponent", &ParameterEstimate::name);
+  if (exponent != parameters.end()) {
+    Include(*exponent, {.lower = rig.load_exponent, .upper = rig.load_exponent});
+  }
   for (const auto& [p, value] :
        {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
     ParameterEstimate& estimate = parameters[p];

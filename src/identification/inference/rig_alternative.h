@@ -14,6 +14,7 @@ namespace mindahl::identification {
 struct RigAlternative {
   double rig_stiffness = 0.0;  // [N/m]
   models::BranchLaw law;       // of the contact
+  double load_exponent = 1.0;
 };
 
 /// A rig makes a loop more angular, as a smaller α does: where Mindlin's exponent lies above the
@@ -23,9 +24,9 @@ struct RigAlternative {
 std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver);
 
-/// Includes in the intervals of σ, α and Tc those that they have in a compliant rig: the record
-/// does not distinguish the two. A contact far stiffer than the rig is Jenkins' element again: the
-/// same curve, no other α.
+/// Includes in the intervals of σ, α, Tc and the exponent of the load those that they have in a
+/// compliant rig: the record does not distinguish the two. A contact far stiffer than the rig is
+/// Jenkins' element again: the same curve, no other α.
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
                               ParameterEstimates parameters);
 
