@@ -138,7 +138,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   if (attempt.without_priors != nullptr) {
-    Append(result.findings, FindContradictedPrior(*attempt.without_priors, options));
+    Append(result.findings, FindContradictedPrior(*attempt.without_priors, result, options));
   }
   Append(result.findings, FindOpenSlipForce(result));
   if (is_judged && IsInadequate(result, thresholds)) {

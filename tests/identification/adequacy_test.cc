@@ -49,6 +49,24 @@ TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
   EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
 }
 
+/// A contact that is unloaded once more in its second cycle: what the law misses of that cycle is
+/// no noise of the others.
+TEST(Adequacy, OfAnEventInOneCycleIsDoubted) {
+  const History cycle = Cycling(Wave::kSine, kReach, 1, kCycle);
+  const std::vector<double> force =
+      Respond(Model("mindlin-dahl"), kLaw, Cycling(Wave::kSine, kReach, 4, kCycle));
+  Record record;
+  Generator generator(1);
+  const std::size_t samples = cycle.size() - 1;
+  for (const std::size_t from : {1U, 0U, 2U, 3U}) {
+    for (std::size_t i = 0; i < samples; ++i) {
+      record.displacement.push_back(cycle[i]);
+      record.force.push_back(force[from * samples + i] + kNoise * Normal(generator));
+    }
+  }
+  EXPECT_EQ(Fitted(record).adequacy.verdict, AdequacyVerdict::kDoubtful);
+}
+
 /// Dahl's own law from the unloaded contact, fitted by Masing's: what that misses is smooth, and
 /// with a handful of strokes it passes for autocorrelated noise.
 TEST(Adequacy, IsNotClaimedOfResidualsBeyondTheNoiseThatTheRecordHasWithoutAModel) {

@@ -102,6 +102,9 @@ TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
   FitOptions options;
   options.covariates = {"p", "volts"};
   EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'p' and 'volts' are one channel"));
+  record.covariates.back().values = record.force;
+  options.covariates = {"volts"};
+  EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'volts' is the channel of the force"));
 }
 
 TEST(Covariate, HasANameThatNeedsNoQuoting) {

@@ -70,6 +70,15 @@ TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
   }
 }
 
+TEST(Prior, OfARigThatTheRecordDoesNotHaveIsContradicted) {
+  FitOptions options = Options();
+  options.terms = {"rig_stiffness"};
+  options.priors["rig_stiffness"] = {kLaw.tangential_stiffness, 0.1 * kLaw.tangential_stiffness};
+  const FitResult fit = FitOne(TimedLoop(), options);
+  ASSERT_NE(fit.FindFinding("prior_contradicted"), nullptr);
+  EXPECT_GT(fit.Find("rig_stiffness")->value, 1.3 * kLaw.tangential_stiffness);
+}
+
 TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
   const Record record = TimedLoop();
   const auto refusal = [&](const FitOptions& with) { return RefusalOf({record}, with); };

@@ -65,7 +65,7 @@ bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
   alpha.standard_error = kError;
   FitOptions options = With(thresholds);
   options.priors["alpha"] = {alpha.value + distance * std::numbers::sqrt2 * kError, kError};
-  return FindContradictedPrior(result, options).has_value();
+  return FindContradictedPrior(result, result, options).has_value();
 }
 
 // --- tests and profiles on stages

@@ -31,17 +31,23 @@ double WhiteVariance(const FitResult& result) {
 namespace {
 
 /// Returns the variance [N² or m²] of the residuals that is noise whatever the model: where strokes
-/// of both directions come back, of what does not repeat with them; else what differs between
+/// of both directions come back, of what does not repeat with them, and of smooth residuals no more
+/// than most strokes have: what a single one shows is an event. Else what differs between
 /// neighbouring samples.
 double NoiseVariance(const FitResult& result) {
-  double repeats = 0.0;
+  constexpr double kSmooth = 1.0;  // Durbin and Watson's statistic: half correlated with the next
+  double share = 1.0;
   bool comes_back = false;
   for (const RecordFit& record : result.records) {
-    repeats = std::max(repeats, record.structure.repeatable_share);
-    const auto& [rising, falling] = record.structure.strokes;
+    const ResidualStructure& structure = record.structure;
+    share = std::min(share, 1 - structure.repeatable_share);
+    if (result.residuals.durbin_watson < kSmooth) {
+      share = std::min(share, structure.typical_share);
+    }
+    const auto& [rising, falling] = structure.strokes;
     comes_back = comes_back || (rising > 1 && falling > 1);
   }
-  return comes_back ? (1 - repeats) * result.rms * result.rms : WhiteVariance(result);
+  return comes_back ? share * result.rms * result.rms : WhiteVariance(result);
 }
 
 /// True if residuals alternate from sample to sample, and not by chance: of normal ones that

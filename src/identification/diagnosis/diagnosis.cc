@@ -115,15 +115,19 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result) {
   return findings;
 }
 
-std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitOptions& options) {
+std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitResult& result,
+                                             const FitOptions& options) {
   Finding finding{.code = "prior_contradicted"};
   double farthest = 0.0;
-  for (const ParameterEstimate& estimate : without.parameters) {
-    const auto given = options.priors.find(estimate.name);
-    if (given == options.priors.end() || !estimate.standard_error) continue;
+  for (const ParameterEstimate& with_prior : result.parameters) {
+    const auto given = options.priors.find(with_prior.name);
+    if (given == options.priors.end()) continue;
+    const ParameterEstimate* const own = without.Find(with_prior.name);
+    const bool is_open = own == nullptr || !own->standard_error;
+    const ParameterEstimate& estimate = is_open ? with_prior : *own;
     const auto& [prior, uncertainty] = given->second;
     const double value = estimate.value;
-    const double error = *estimate.standard_error;
+    const double error = is_open ? 0.0 : *own->standard_error;
     const Term* term = FindTerm(TermNameOf(estimate.name), without.response);
     const bool is_positive = term != nullptr && term->positive;
     const double distance =
@@ -191,7 +195,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
   bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    if (record.reversals.size() >= 2 || IsOneCycle(record, thresholds)) return std::nullopt;
+    if (record.CountTurns() >= 2 || IsOneCycle(record, thresholds)) return std::nullopt;
     const std::size_t offset = problem.parameters.PositionOfOrigin(r);
     is_assumed = is_assumed || problem.parameters[offset].assumed;
     if (problem.parameters[offset].assumed) continue;

@@ -91,7 +91,8 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
                                     const Thresholds& thresholds) {
   ResidualStructure structure;
   std::array<std::vector<BinMeans>, 2> means;
-  std::array<double, 2> squares{};
+  std::vector<double> mean_squares;  // of strokes
+  double squares = 0.0;
   double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
     const std::size_t side = stroke.direction > 0 ? 0 : 1;
@@ -105,7 +106,8 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
     if (count < 2) continue;  // left out, but for a reversal that it shares
     means[side].push_back(MeansOf(stroke, record, residual));
     ++structure.strokes[side];
-    squares[side] += own_squares;
+    mean_squares.push_back(own_squares / count);
+    squares += own_squares;
     samples += count;
   }
   double between = 0.0;  // Σ n·m̄², of parts
@@ -135,7 +137,10 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
       ++parts;
     }
   }
-  const double mean_square = (squares[0] + squares[1]) / samples;
+  const double mean_square = squares / samples;
+  if (mean_square > 0) {
+    structure.typical_share = std::min(loop::Median(mean_squares) / mean_square, 1.0);
+  }
   if (parts == 0 || !(within > 0) || !(mean_square > 0)) return structure;
   const double ratio = between / parts / (within / degrees_within);
   if (ratio >= FQuantile(parts, degrees_within, thresholds.rare_chance)) {
