@@ -103,10 +103,15 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
       towards < 0 ? std::max(of.lower, from - kFarthest) : std::min(of.upper, from + kFarthest);
   const double first =
       std::min({estimates.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
-  std::vector<double> last = estimates.Beside(parameter, towards * first);
+  std::vector<double> start = estimates.Beside(parameter, towards * first);
+  std::vector<double> inside = best.theta;
+  std::vector<double> last;
   const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
-    const double root = std::sqrt(held.At(from + towards * at, last) / estimates.critical());
+    const double root = std::sqrt(held.At(from + towards * at, start) / estimates.critical());
     last = held.solution().theta;
+    // A search that lost the valley is not gone on from.
+    if (root < 1) inside = last;
+    start = inside;
     return root;
   });
   // With α at its upper bound, the bound limits Tc and the data do not: the interval stays open.
