@@ -15,7 +15,7 @@
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
-#include "identification/inference/rig_alternative.h"
+#include "identification/inference/rivals.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solved_fit.h"
@@ -100,6 +100,37 @@ void ConsiderRig(const Attempt& attempt, const FittedProblem& fitted, FitResult&
        .numbers = {{"rig_stiffness", rig->rig_stiffness}, {"alpha", result.law.shape_exponent}}});
 }
 
+/// Includes the contact of the other initial state, where the record does not distinguish it.
+void ConsiderOtherState(const Rival& other, FitResult& result) {
+  const ParameterEstimates before = result.parameters;
+  result.parameters = IncludeRival(other, std::move(result.parameters));
+  const auto& [lower, upper] = std::pair(before[kSlipForce].lower95, before[kSlipForce].upper95);
+  const double slip_force = other.law.slip_force;
+  if (!lower || (slip_force >= *lower && !(slip_force > upper.value_or(slip_force)))) return;
+  const bool is_virgin = result.initial_state == models::InitialState::kVirgin;
+  result.findings.push_back({.code = "initial_state_undecided",
+                             .numbers = {{"slip_force", slip_force}},
+                             .kind = is_virgin ? "steady" : "virgin"});
+}
+
+/// Includes what the steps of a coarse force may hide: half of one, where no noise makes it dither.
+/// Branches whose α differ by 0.05 are no more than 1 % of Tc apart.
+void CoverSteps(const Attempt& attempt, FitResult& result) {
+  double step = 0.0;
+  for (const loop::PreparedRecord& record : attempt.prepared.records) {
+    step = std::max(step, loop::EncoderStep(record.record.force));
+  }
+  if (!(result.rms < step / 2)) return;
+  constexpr double kOfShape = 5.0;
+  const double share = step / 2 / result.PeakForce();
+  for (const std::size_t p : {kStiffness, kSlipForce, kShape}) {
+    ParameterEstimate& estimate = result.parameters[p];
+    const double half = p == kShape ? kOfShape * share : share * estimate.value;
+    Include(estimate,
+            {.lower = std::max(estimate.value - half, 0.0), .upper = estimate.value + half});
+  }
+}
+
 }  // namespace
 
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
@@ -121,6 +152,8 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   FillErrors(problem, estimates, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
+  if (solved.other_state) ConsiderOtherState(*solved.other_state, result);
+  if (!problem.data->is_forced()) CoverSteps(attempt, result);
   const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);
   if (is_judged) {
@@ -137,6 +170,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   }
   Append(result.findings, FindUntoldAsymmetry(result, thresholds));
   if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
+  Append(result.findings, FindContradictedNoise(result, options));
   if (attempt.without_priors != nullptr) {
     Append(result.findings, FindContradictedPrior(*attempt.without_priors, result, options));
   }

@@ -85,9 +85,14 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
   return best;
 }
 
+struct BestState {
+  Candidate candidate;
+  std::optional<Rival> other = {};  // of the other state, where it is nearly as likely
+};
+
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
 /// several records also some as virgin and some as steady, where all as one does not fit.
-Candidate FitBestState(const Attempt& attempt) {
+BestState FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   const auto make = [&](const RecordStates& state) {
     Candidate candidate(attempt.data, options, state);
@@ -107,7 +112,7 @@ Candidate FitBestState(const Attempt& attempt) {
     Candidate candidate = make(*given);
     find_starts(candidate);
     descend(candidate);
-    return candidate;
+    return {std::move(candidate)};
   }
   Candidate virgin = make(InitialState::kVirgin);
   Candidate steady = make(InitialState::kSteady);
@@ -121,10 +126,10 @@ Candidate FitBestState(const Attempt& attempt) {
   const bool is_looked_at = is_one && options.start.empty();
   if (is_looked_at && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
-    if (virgin.solution.converged) return virgin;
+    if (virgin.solution.converged) return {std::move(virgin)};
   } else if (is_looked_at && virgin_cost > clearly_worse * steady_cost) {
     descend(steady);
-    if (steady.solution.converged) return steady;
+    if (steady.solution.converged) return {std::move(steady)};
   }
   descend(virgin);
   descend(steady);
@@ -132,6 +137,7 @@ Candidate FitBestState(const Attempt& attempt) {
       virgin.solution.sum_of_squares < steady.solution.sum_of_squares ? virgin : steady;
   bool is_virgin = true;
   std::optional<Candidate> mixed;
+  std::optional<Rival> of_other;
   if (std::isfinite(better.solution.sum_of_squares)) {  // else neither was even started
     const Evidence evidence(
         attempt.data.counted,
@@ -140,13 +146,18 @@ Candidate FitBestState(const Attempt& attempt) {
       return evidence.Aicc(candidate.solution.sum_of_squares,
                            candidate.problem.parameters.free().size());
     };
-    is_virgin = criterion(virgin) < criterion(steady);
+    const double gain = criterion(steady) - criterion(virgin);
+    is_virgin = gain > 0;
+    const Candidate& other = is_virgin ? steady : virgin;
+    if (std::abs(gain) < options.thresholds.indistinguishable && other.solution.converged) {
+      of_other = RivalAt(other.problem.parameters, other.solution.theta);
+    }
     if (!is_one) {
       mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion);
     }
   }
-  if (mixed) return std::move(*mixed);
-  return std::move(is_virgin ? virgin : steady);
+  if (mixed) return {std::move(*mixed)};
+  return {std::move(is_virgin ? virgin : steady), of_other};
 }
 
 /// True if the noise of the records is not one, where it is not known.
@@ -218,7 +229,9 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   Solver& solver = attempt.solver;
   ScaledRecords& data = attempt.data;
-  SolvedFit solved(FitBestState(attempt), attempt);
+  BestState first = FitBestState(attempt);
+  SolvedFit solved(std::move(first.candidate), attempt);
+  solved.other_state = first.other;
   Candidate& best = solved.best;
   RequireToldAsymmetry(best.problem);
   const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
@@ -238,9 +251,10 @@ SolvedFit SolveFit(const Attempt& attempt) {
         ThinnedRecords weighted_thin(data);
         const Attempt weighted{options,       attempt.depth, attempt.prepared, attempt.drawn, data,
                                weighted_thin, solver};
-        Candidate again = FitBestState(weighted);
-        if (std::isfinite(again.solution.sum_of_squares)) {
-          best = std::move(again);
+        BestState again = FitBestState(weighted);
+        if (std::isfinite(again.candidate.solution.sum_of_squares)) {
+          best = std::move(again.candidate);
+          solved.other_state = again.other;
           fit_with_weights(data);
         }
       }

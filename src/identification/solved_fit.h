@@ -9,6 +9,7 @@
 
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
+#include "identification/inference/rivals.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
@@ -41,6 +42,8 @@ struct SolvedFit {
   DisplacementErrors displacement_errors;
   Noise noise = {};
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
+  /// Of the other initial state, where it is nearly as likely.
+  std::optional<Rival> other_state = {};
   /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
 

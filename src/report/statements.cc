@@ -186,6 +186,15 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"shape_or_rig",
      "a rig of {rig_stiffness:stiffness} with Mindlin's 1/3 fits as well as a rigid one: measure "
      "the rig, and give --rig-stiffness"},
+    {"initial_state_undecided.virgin",
+     "a contact that was at rest before the record fits as well, with Tc {slip_force:force}: give "
+     "--initial-state"},
+    {"initial_state_undecided",
+     "a contact that had moved before the record fits as well, with Tc {slip_force:force}: give "
+     "--initial-state"},
+    {"noise_contradicted",
+     "the residuals, {rms:force}, are far less than the noise of {given:force} that was given: "
+     "look at its unit"},
     {"prior_contradicted",
      "the prior lies {distance} standard deviations from what the record says"},
     // about the law and what it misses

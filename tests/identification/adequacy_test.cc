@@ -67,6 +67,18 @@ TEST(Adequacy, OfAnEventInOneCycleIsDoubted) {
   EXPECT_EQ(Fitted(record).adequacy.verdict, AdequacyVerdict::kDoubtful);
 }
 
+/// Two tests of forces 1 : 1.3 in one file: what grows with time makes most of the residuals.
+TEST(Adequacy, OfTwoTestsInOneFileIsDoubted) {
+  const History displacement = Cycling(Wave::kSine, kReach, 2, 100);
+  Record record = testing::LoopOf(kLaw, displacement);
+  const std::vector<double> force = record.force;
+  record.displacement.insert(record.displacement.end(), displacement.begin(), displacement.end());
+  for (const double value : force) record.force.push_back(1.3 * value);
+  Generator generator(1);
+  EXPECT_NE(Fitted(WithForceNoise(record, kNoise, generator)).adequacy.verdict,
+            AdequacyVerdict::kAdequate);
+}
+
 /// Dahl's own law from the unloaded contact, fitted by Masing's: what that misses is smooth, and
 /// with a handful of strokes it passes for autocorrelated noise.
 TEST(Adequacy, IsNotClaimedOfResidualsBeyondTheNoiseThatTheRecordHasWithoutAModel) {

@@ -62,6 +62,27 @@ TEST(EdgeRecords, WhiteNoiseForAForceIsInadequateWithoutACause) {
   }
 }
 
+TEST(EdgeRecords, CoarseStepsOfTheForceAreInTheIntervals) {
+  constexpr models::BranchLaw kJenkins{2e6, 0.0, 10.4};
+  constexpr double kStep = 1.0;
+  Record record = testing::LoopOf(kJenkins, Cycling(Wave::kTriangle, 20e-6, 4.0, 40));
+  for (double& force : record.force) force = kStep * std::round(force / kStep);
+  const FitResult fit = FitOne(record);
+  for (const auto& [name, truth] :
+       {std::pair("sigma", kJenkins.tangential_stiffness), std::pair("slip_force", 10.4)}) {
+    EXPECT_LE(*fit.Find(name)->lower95, truth) << name;
+    EXPECT_GE(*fit.Find(name)->upper95, truth) << name;
+  }
+}
+
+TEST(EdgeRecords, ANoiseThatTheResidualsBelieIsSaid) {
+  FitOptions options;
+  options.force_noise = 0.1 * testing::kLaw.slip_force;
+  EXPECT_NE(FitOne(testing::NoisyLoop(1), options).FindFinding("noise_contradicted"), nullptr);
+  options.force_noise = 0.01 * testing::kLaw.slip_force;
+  EXPECT_EQ(FitOne(testing::NoisyLoop(1), options).FindFinding("noise_contradicted"), nullptr);
+}
+
 TEST(EdgeRecords, AsManySamplesAsFreeParameters) {
   // σ, α and Tc: at the file's zeros the contact is unloaded.
   const Record record = MakeRecord({0.0, 0.0002828427124746, 0.0004}, {0, 20, 20});

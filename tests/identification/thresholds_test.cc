@@ -7,7 +7,7 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/rig_alternative.h"
+#include "identification/inference/rivals.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/models/steady_loop.h"
@@ -180,7 +180,7 @@ const std::vector<Row>& Cases() {
        [](const Thresholds& t) {
          const auto widens_alpha = [&](double ratio) {
            const ParameterEstimates before = Made().parameters;
-           return IncludeRig({1e6, {ratio * 1e6, 1.0 / 3, 1.0}}, t, before)[kShape].lower95 !=
+           return IncludeRig({1e6, {{ratio * 1e6, 1.0 / 3, 1.0}}}, t, before)[kShape].lower95 !=
                   before[kShape].lower95;
          };
          return widens_alpha(kBelow * 30) && !widens_alpha(kAbove * 30);

@@ -166,15 +166,18 @@ Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
   // The rms includes the readings that a robust loss weighs down.
   const bool exceeds_noise =
       result.outliers == 0 && square > thresholds.larger_rms * thresholds.larger_rms * noise;
-  if (exceeds_noise) {
+  // A term that noise seldom makes, and that makes most of the residuals, is none.
+  constexpr double kMost = 0.5;
+  const bool is_caused = !causes.empty() && causes.front().explains > kMost;
+  if (exceeds_noise || is_caused) {
     adequacy.p_value = std::min(adequacy.p_value, thresholds.rare_chance);
-    if (noise > 0) {
+    if (exceeds_noise && noise > 0) {
       adequacy.misfit_over_noise =
           std::max(adequacy.misfit_over_noise, std::sqrt(square / noise - 1));
     }
   }
   const bool is_doubtful = test.p_value < thresholds.doubt || is_limited || exceeds_noise ||
-                           AreUnlikeNoise(result, thresholds);
+                           is_caused || AreUnlikeNoise(result, thresholds);
   adequacy.verdict = is_doubtful ? AdequacyVerdict::kDoubtful : AdequacyVerdict::kAdequate;
   return adequacy;
 }
@@ -207,7 +210,8 @@ FitResult WithoutInadequate(FitResult result) {
   if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
     // Another account of a curve that is not there: also where it is but a note.
-    const bool is_of_the_curve = finding.code == "shape_or_rig";
+    const bool is_of_the_curve =
+        finding.code == "shape_or_rig" || finding.code == "initial_state_undecided";
     return is_of_the_curve ||
            (!finding.parameters.empty() && !finding.code.row().holds_without_model);
   });

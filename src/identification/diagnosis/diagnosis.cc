@@ -142,6 +142,17 @@ std::optional<Finding> FindContradictedPrior(const FitResult& without, const Fit
   return finding;
 }
 
+std::optional<Finding> FindContradictedNoise(const FitResult& result, const FitOptions& options) {
+  constexpr double kFarLess = 3.0;
+  constexpr double kEnough = 10.0;  // degrees of freedom
+  if (!options.force_noise || result.residuals.degrees_of_freedom < kEnough ||
+      kFarLess * result.rms > *options.force_noise) {
+    return std::nullopt;
+  }
+  return Finding{.code = "noise_contradicted",
+                 .numbers = {{"rms", result.rms}, {"given", *options.force_noise}}};
+}
+
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   struct Row {
     std::string_view name;

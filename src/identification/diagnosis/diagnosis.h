@@ -39,6 +39,10 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result);
 std::optional<Finding> FindContradictedPrior(const FitResult& without, const FitResult& result,
                                              const FitOptions& options);
 
+/// `noise_contradicted`: a noise of the force that was given, and of which the residuals are less
+/// than a third.
+std::optional<Finding> FindContradictedNoise(const FitResult& result, const FitOptions& options);
+
 /// Closed intervals too wide to call a parameter known, of those that no other finding calls
 /// unknown.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);

@@ -1,4 +1,4 @@
-#include "identification/inference/rig_alternative.h"
+#include "identification/inference/rivals.h"
 
 #include <cmath>
 #include <utility>
@@ -10,6 +10,28 @@
 namespace mindahl::identification {
 
 using contact::kMindlinShapeExponent;
+
+Rival RivalAt(const Parameters& parameters, std::span<const double> theta) {
+  return {parameters.LawAt(theta), parameters.LoadExponentAt(theta)};
+}
+
+ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameters) {
+  for (ParameterEstimate& estimate : parameters) {
+    const auto include = [&](double lower, double upper) {
+      Include(estimate, {.lower = lower, .upper = upper});
+    };
+    if (estimate.name == "alpha") include(rival.law.shape_exponent, rival.law.shape_exponent);
+    if (estimate.name == "load_exponent") include(rival.load_exponent, rival.load_exponent);
+    if (estimate.name != "sigma" && estimate.name != "slip_force") continue;
+    const double value =
+        estimate.name == "sigma" ? rival.law.tangential_stiffness : rival.law.slip_force;
+    const double ratio = value / estimate.value;
+    const bool is_closed = estimate.lower95 && estimate.upper95;
+    include(is_closed ? ratio * *estimate.lower95 : value,
+            is_closed ? ratio * *estimate.upper95 : value);
+  }
+  return parameters;
+}
 
 std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver) {
@@ -41,29 +63,14 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const Paramete
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
   return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-                        .law = sprung.problem.parameters.LawAt(solution.theta),
-                        .load_exponent = sprung.problem.parameters.LoadExponentAt(solution.theta)};
+                        .contact = RivalAt(sprung.problem.parameters, solution.theta)};
 }
 
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
                               ParameterEstimates parameters) {
-  const models::BranchLaw& law = rig.law;
-  if (law.tangential_stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) {
-    return parameters;
-  }
-  Include(parameters[kShape], {.lower = kMindlinShapeExponent, .upper = kMindlinShapeExponent});
-  const auto exponent = std::ranges::find(parameters, "load_exponent", &ParameterEstimate::name);
-  if (exponent != parameters.end()) {
-    Include(*exponent, {.lower = rig.load_exponent, .upper = rig.load_exponent});
-  }
-  for (const auto& [p, value] :
-       {std::pair(kStiffness, law.tangential_stiffness), std::pair(kSlipForce, law.slip_force)}) {
-    ParameterEstimate& estimate = parameters[p];
-    if (!estimate.lower95 || !estimate.upper95) continue;
-    const double ratio = value / estimate.value;
-    Include(estimate, {.lower = ratio * *estimate.lower95, .upper = ratio * *estimate.upper95});
-  }
-  return parameters;
+  const double stiffness = rig.contact.law.tangential_stiffness;
+  if (stiffness >= thresholds.rigid_beside_rig * rig.rig_stiffness) return parameters;
+  return IncludeRival(rig.contact, std::move(parameters));
 }
 
 }  // namespace mindahl::identification

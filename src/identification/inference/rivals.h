@@ -10,11 +10,23 @@
 
 namespace mindahl::identification {
 
+/// Holds a contact that the record does not exclude, though it is not the fitted one: in a rig, in
+/// another initial state, in another valley of the likelihood.
+struct Rival {
+  models::BranchLaw law;
+  double load_exponent = 1.0;
+};
+
+Rival RivalAt(const Parameters& parameters, std::span<const double> theta);
+
+/// Includes a rival in the intervals of σ, α, Tc and the exponent of the load: of σ and Tc the
+/// whole interval times the ratio of the values, of one that is open the value.
+ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameters);
+
 /// Holds α = 1/3 in a compliant rig.
 struct RigAlternative {
   double rig_stiffness = 0.0;  // [N/m]
-  models::BranchLaw law;       // of the contact
-  double load_exponent = 1.0;
+  Rival contact;
 };
 
 /// A rig makes a loop more angular, as a smaller α does: where Mindlin's exponent lies above the
@@ -24,9 +36,8 @@ struct RigAlternative {
 std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver);
 
-/// Includes in the intervals of σ, α, Tc and the exponent of the load those that they have in a
-/// compliant rig: the record does not distinguish the two. A contact far stiffer than the rig is
-/// Jenkins' element again: the same curve, no other α.
+/// Includes the contact in the rig. One far stiffer than the rig is Jenkins' element again: the
+/// same curve, no other α.
 ParameterEstimates IncludeRig(const RigAlternative& rig, const Thresholds& thresholds,
                               ParameterEstimates parameters);
 
