@@ -52,30 +52,22 @@ void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double>
 }
 
 LoadedContactState::LoadedContactState(const LoadDependentLaw& law, const InitialLoading& initial)
-    : law_(law), initial_(initial) {
+    : law_(law) {
   Validate(law);
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
   reference_slip_displacement_ = GrossSlipDisplacement(ReferenceLaw(law));
-  Reset();
-}
-
-void LoadedContactState::Reset() {
-  StartUnloaded(RimUnder(initial_.normal_load), initial_.unloaded_displacement, contact_);
-  normal_load_ = initial_.normal_load;
+  StartUnloaded(RimUnder(initial.normal_load), initial.unloaded_displacement, contact_);
+  normal_load_ = initial.normal_load;
 }
 
 double LoadedContactState::Move(double displacement, double normal_load) {
   RequireWithinReach("displacement [m]", displacement);
-  MoveTo(RimUnder(normal_load), displacement, contact_);
+  const LoadRim<double> rim = RimUnder(normal_load);
+  backbone::WithShape(law_.shape_exponent, [&](const auto& shape) {
+    MoveTo(rim, displacement, ShareOfWidth{shape, law_.shape_exponent}, contact_);
+  });
   normal_load_ = normal_load;
   return contact_.force;
-}
-
-double LoadedContactState::Peek(double displacement, double normal_load) const {
-  RequireWithinReach("displacement [m]", displacement);
-  ZonedContact<double> moved = contact_;
-  MoveTo(RimUnder(normal_load), displacement, moved);
-  return moved.force;
 }
 
 /// Returns Tc = μN, δc = δc(N_ref)·(N/N_ref)^{1−α}.
@@ -94,13 +86,6 @@ LoadRim<double> LoadedContactState::RimUnder(double normal_load) const {
                  "must keep the slip force finite and its displacement <= 1e307 m");
   }
   return rim;
-}
-
-void LoadedContactState::MoveTo(const LoadRim<double>& rim, double displacement,
-                                ZonedContact<double>& contact) const {
-  backbone::WithShape(law_.shape_exponent, [&](const auto& shape) {
-    models::MoveTo(rim, displacement, ShareOfWidth{shape, law_.shape_exponent}, contact);
-  });
 }
 
 }  // namespace mindahl::models

@@ -346,7 +346,7 @@ History Respond(const LoadDependentLaw& law, const History& displacement, const 
 }
 
 TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
-  // Bit for bit, and a trial step before every step foretells it.
+  // Bit for bit.
   Generator generator(1);
   for (const double alpha : kShapeExponents) {
     for (int i = 0; i < 1000; ++i) {
@@ -355,8 +355,6 @@ TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
       const History expected = Respond(UnitLaw(alpha), displacement, load);
       LoadedContactState contact(UnitLaw(alpha), {.normal_load = load.front()});
       for (std::size_t k = 0; k < displacement.size(); ++k) {
-        static_cast<void>(contact.Peek(Uniform(generator, -5, 5), Uniform(generator, 0, 6)));
-        ASSERT_EQ(contact.Peek(displacement[k], load[k]), expected[k]) << alpha << ' ' << i;
         ASSERT_EQ(contact.Move(displacement[k], load[k]), expected[k]) << alpha << ' ' << i;
         ASSERT_EQ(contact.Force(), expected[k]);
         ASSERT_EQ(contact.Displacement(), displacement[k]);
@@ -366,21 +364,15 @@ TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
   }
 }
 
-TEST(LoadedContactState, ACopyGoesItsOwnWayAndResetForgets) {
+TEST(LoadedContactState, ACopyGoesItsOwnWay) {
   const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
   LoadedContactState contact(law, {.normal_load = 2.0, .unloaded_displacement = 0.25});
   const double first = contact.Move(0.75, 3.0);
   LoadedContactState trial = contact;
   const double trial_force = trial.Move(-1.0, 1.0);
   EXPECT_EQ(contact.Force(), first);
-  EXPECT_EQ(contact.Peek(-1.0, 1.0), trial_force);
   trial = contact;
   EXPECT_EQ(trial.Move(-1.0, 1.0), trial_force);
-  contact.Reset();
-  EXPECT_EQ(contact.Force(), 0.0);
-  EXPECT_EQ(contact.Displacement(), 0.25);
-  EXPECT_EQ(contact.NormalLoad(), 2.0);
-  EXPECT_EQ(contact.Move(0.75, 3.0), first);
 }
 
 TEST(LoadedContactState, RemembersAsManyZonesAsTheLoopIsDeepNotAsItIsLong) {
@@ -417,7 +409,6 @@ TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
   const double force = contact.Force();
   const auto refusal = [&](double displacement, double load) {
     const std::string by_move = MessageOf([&] { contact.Move(displacement, load); });
-    EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.Peek(displacement, load)); }), by_move);
     EXPECT_EQ(contact.Force(), force);
     EXPECT_EQ(contact.Displacement(), 0.5);
     EXPECT_EQ(contact.NormalLoad(), 1.0);

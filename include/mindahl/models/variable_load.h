@@ -95,8 +95,7 @@ struct InitialLoading {
 /// load follow from this force.
 ///
 /// Exact for steps that are straight in (δ, δc(N)): variable_load.h and docs/theory.md §11 say what
-/// it solves. A state is a value. Copies go on by themselves, and an assignment to a state that is
-/// there reuses its memory.
+/// it solves. A state is a value: copies go on by themselves, so that one tries a step.
 class LoadedContactState {
  public:
   /// @throws InvalidArgument for an invalid law, load or displacement
@@ -115,9 +114,6 @@ class LoadedContactState {
   /// slip or a falling load covers it.
   double Move(double displacement, double normal_load);
 
-  /// Returns or throws what Move(δ, N) would, without moving; copies the zones.
-  [[nodiscard]] double Peek(double displacement, double normal_load) const;
-
   /// Returns T [N] after the last step.
   [[nodiscard]] double Force() const { return contact_.force; }
 
@@ -127,21 +123,13 @@ class LoadedContactState {
   /// Returns N [N].
   [[nodiscard]] double NormalLoad() const { return normal_load_; }
 
-  /// Returns to the contact before its first step; keeps the memory that was reserved.
-  void Reset();
-
-  /// Makes room for so many zones, after which Move allocates nothing before they are more.
-  void Reserve(std::size_t zones) { contact_.zones.reserve(zones); }
-
   /// Zones that are remembered.
   [[nodiscard]] std::size_t RememberedZones() const { return contact_.zones.size(); }
 
  private:
   [[nodiscard]] LoadRim<double> RimUnder(double normal_load) const;
-  void MoveTo(const LoadRim<double>& rim, double displacement, ZonedContact<double>& contact) const;
 
   LoadDependentLaw law_;
-  InitialLoading initial_;
   double reference_slip_displacement_;
   ZonedContact<double> contact_;
   double normal_load_ = 0.0;
