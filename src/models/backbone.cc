@@ -8,8 +8,7 @@ namespace {
 
 using Shape = GeneralShape<long double>;
 
-/// Both series converge as the larger of |βy|ᵏ and yᵏ/k!; to here they need fewer than kTerms
-/// terms.
+/// The series converges as the larger of |βy|ᵏ and yᵏ/k!; to here it needs fewer than kTerms terms.
 constexpr long double kSeriesLimit = 0.5L;
 constexpr int kTerms = 80;
 
@@ -19,13 +18,8 @@ constexpr int kTerms = 80;
 constexpr long double kNearlyElastic = 0.5L;
 constexpr long double kSoon = 4.0L;
 
-bool SeriesConverges(long double y, long double shape_exponent) {
-  return y <= kSeriesLimit && std::abs((1 - shape_exponent) * y) <= kSeriesLimit;
-}
-
-/// Returns Σ_{k>=first} (−1)ᵏ·pₖ·weight(k)·y^{k+1}.
-template <typename Weight>
-long double BackboneSeries(long double y, long double shape_exponent, int first, Weight weight) {
+/// Returns the energy by its series.
+long double LoopEnergySeries(long double y, long double shape_exponent) {
   const long double beta = 1 - shape_exponent;
   long double term = y;  // (−1)ᵏ pₖ y^{k+1}
   long double sum = 0;
@@ -33,14 +27,10 @@ long double BackboneSeries(long double y, long double shape_exponent, int first,
     // p₂ = α/2 exactly, without the rounding of 1 − β.
     const long double factor = k == 2 ? shape_exponent : 1 - (k - 1) * beta;
     term *= -y * factor / k;
-    if (k >= first) sum += term * weight(k);
+    if (k >= 2) sum += term * (4 - 8.0L / (k + 1));
     if (std::abs(term) <= std::numeric_limits<long double>::epsilon() * std::abs(sum)) break;
   }
   return sum;
-}
-
-bool IsMiddling(long double shape_exponent) {
-  return shape_exponent >= kNearlyElastic && shape_exponent <= kSoon;
 }
 
 /// y − φ(y), the slip over the elastic limit, to full precision for α → 0: with 1 − y below the
@@ -87,20 +77,16 @@ Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_expone
 }
 
 long double Work(const SplitDisplacement& y, long double shape_exponent) {
-  if (SeriesConverges(y.high, shape_exponent)) {
-    return BackboneSeries(y.high, shape_exponent, 1, [](int k) { return -1.0L / (k + 1); });
-  }
-  if (IsMiddling(shape_exponent)) return MiddlingWork(y, shape_exponent);
   const long double force = Shape{shape_exponent}.Force(Reduce(y, shape_exponent));
   return (MasingLoopEnergy(y, shape_exponent) + 4 * y.high * force) / 8;
 }
 
 long double MasingLoopEnergy(const SplitDisplacement& y, long double shape_exponent) {
-  if (SeriesConverges(y.high, shape_exponent)) {
-    return BackboneSeries(y.high, shape_exponent, 2, [](int k) { return 4 - 8.0L / (k + 1); });
+  if (y.high <= kSeriesLimit && std::abs((1 - shape_exponent) * y.high) <= kSeriesLimit) {
+    return LoopEnergySeries(y.high, shape_exponent);
   }
   const long double force = Shape{shape_exponent}.Force(Reduce(y, shape_exponent));
-  if (IsMiddling(shape_exponent)) {
+  if (shape_exponent >= kNearlyElastic && shape_exponent <= kSoon) {
     return 8 * MiddlingWork(y, shape_exponent) - 4 * y.high * force;
   }
   const long double slip =

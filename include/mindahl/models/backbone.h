@@ -382,8 +382,8 @@ SplitDisplacement Normalize(double stiffness, double x, double slip_force);
 /// Reduces y with z to full relative precision.
 Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_exponent);
 
-/// Returns ∫₀^y φ ds = y − (1 − u^{2−α})/(2−α); → y²/2 as y → 0. Relative error below 2⁻⁵⁵ (64-bit
-/// long double).
+/// Returns ∫₀^y φ ds = y − (1 − u^{2−α})/(2−α), by the energy of the loop, which is 0 or more; →
+/// y²/2 as y → 0. Relative error below 2⁻⁵⁵ (64-bit long double).
 long double Work(const SplitDisplacement& y, long double shape_exponent);
 
 /// Returns the energy lost in a closed Masing loop of amplitude y over Tc²/σ, 8∫₀^y φ ds − 4yφ(y).
