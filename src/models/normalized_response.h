@@ -80,13 +80,15 @@ struct ForcedLaw {
 using DisplacementGradient = std::array<std::span<double>, 3>;
 
 /// The inverse of NormalizedResponse: d = σδ/Tc, from where the contact is unloaded, of a contact
-/// whose force is imposed (response.h has the equations), and its gradient, for solvers. On a
-/// branch from the reading T_r, which is where the force without its offset is t_r·Tc,
+/// whose force is imposed, and its gradient, for solvers. T and δ turn together, so that Madelung's
+/// rules hold of forces as they do of displacements (docs/theory.md §5). On a branch from the
+/// reading T_r, which is where the force without its offset is t_r·Tc,
 ///
 ///   d = d_r + s·m·v^β·y(φ),   φ = |T − T_r|/(m·v·Tc),   v = 1, or 1 − s·t_r of Dahl's own law
 ///
-/// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law). Keeps its buffer: nothing
-/// is allocated once it is large enough. Cost: three powers a sample with the gradient.
+/// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law). A branch has a relative
+/// error below (6 + |1 − α|·|ln u|) ε. Keeps its buffer: nothing is allocated once it is large
+/// enough. Cost: three powers a sample with the gradient.
 class NormalizedDisplacement {
  public:
   /// @param path   as from MakeLoadingPath on the same forces, for the model's memory: the branches

@@ -1,6 +1,6 @@
 #include "cli/command_line.h"
-#include "mindahl/models/response.h"
 #include "mindahl/models/variable_load.h"
+#include "support/imposed_force.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
@@ -152,8 +152,8 @@ class NoiseInDisplacement : public CommandTest {
   std::string Loop(double noise) {
     testing::History force = testing::Sine(3, 200);
     for (double& each : force) each *= 0.9 * kMindlin.slip_force;
-    testing::History displacement(force.size());
-    models::EvaluateDisplacement(testing::Model("mindlin"), kMindlin, force, displacement);
+    testing::History displacement =
+        testing::DisplacementUnder(testing::Model("mindlin"), kMindlin, force);
     testing::Generator generator(5);
     if (noise > 0) displacement = testing::WithNoise(generator, std::move(displacement), noise);
     std::string rows = "displacement [m],force [N]\n";

@@ -1,7 +1,7 @@
 #include "identification/inference/local.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
-#include "mindahl/models/response.h"
+#include "support/imposed_force.h"
 #include "support/prelude.h"
 
 // Fits of the displacement that answers an imposed force.
@@ -22,9 +22,7 @@ constexpr BranchLaw LawOf(double alpha) { return {5e7, alpha, kSlipForce}; }
 Record ForcedLoop(const BranchLaw& law, double share = 0.95,
                   std::string_view model = "mindlin-dahl", double cycles = 3.0) {
   const History force = Cycling(Wave::kSine, share * law.slip_force, cycles, kSamplesPerCycle);
-  History displacement(force.size());
-  models::EvaluateDisplacement(Model(model), law, force, displacement);
-  return Shifted(MakeRecord(displacement, force), 2e-7, 3.0);
+  return Shifted(MakeRecord(DisplacementUnder(Model(model), law, force), force), 2e-7, 3.0);
 }
 
 FitOptions OfDisplacement(std::string_view model = "mindlin-dahl") {

@@ -1,8 +1,9 @@
+#include "support/imposed_force.h"
+
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
-#include "mindahl/models/response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::imposed_force_test {
@@ -12,13 +13,6 @@ using Real = boost::multiprecision::cpp_bin_float_50;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kExponents[] = {0.0, 1e-9, 0.2, 1.0 / 3, 0.5, 0.9, 1 - 1e-12, 1.0, 1.5, 3.0};
-
-std::vector<double> Displacements(const FrictionModel& model, const BranchLaw& law,
-                                  const History& force, const SeriesSpring& rig = {}) {
-  std::vector<double> displacement(force.size());
-  EvaluateDisplacement(model, law, force, displacement, rig);
-  return displacement;
-}
 
 /// A walk or white sequence of forces within ±reach, with dwells; where reach is near Tc, so are
 /// some of them.
@@ -106,8 +100,8 @@ TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
                           LogUniform(generator, 1e-6, 1e6)};
       const reference::Law<Real> exact{law.tangential_stiffness, exponent, law.slip_force};
       const History force = RandomForces(generator, law.slip_force);
-      const std::vector<double> masing = Displacements(Model("mindlin-dahl"), law, force);
-      const std::vector<double> dahl = Displacements(Model("dahl"), law, force);
+      const std::vector<double> masing = DisplacementUnder(Model("mindlin-dahl"), law, force);
+      const std::vector<double> dahl = DisplacementUnder(Model("dahl"), law, force);
       std::vector<Real> past;
       for (std::size_t k = 0; k < force.size(); ++k) {
         past.emplace_back(force[k]);
@@ -120,40 +114,6 @@ TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
           << "alpha = " << exponent << ", history " << i;
     }
   }
-}
-
-TEST(ImposedForce, ASpringInSeriesAddsItsOwnTravel) {
-  const BranchLaw law{2.0, 1.0 / 3, 1.0};
-  const History force = {0.5, -0.25, 0.75};
-  const std::vector<double> alone = Displacements(Model("mindlin"), law, force);
-  const std::vector<double> both = Displacements(Model("mindlin"), law, force, {.stiffness = 4.0});
-  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_EQ(both[i], alone[i] + force[i] / 4);
-}
-
-TEST(ImposedForce, RefusesAForceThatReachesSlip) {
-  const BranchLaw law{2.0, 1.0 / 3, 3.0};
-  for (const double at : {3.0, -3.0, 4.0, std::numeric_limits<double>::quiet_NaN()}) {
-    const std::string message = MessageOf([&] {
-      Displacements(Model("mindlin"), law, {0.0, 1.0, at});
-    });
-    EXPECT_THAT(message, HasSubstr("force [N] of sample 2"));
-    EXPECT_THAT(message, HasSubstr("within the slip force, 3 N"));
-  }
-  EXPECT_NO_THROW(Displacements(Model("jenkins"), {2.0, 0.0, 3.0}, {std::nextafter(3.0, 0.0)}));
-}
-
-TEST(ImposedForce, RefusesWhatHasNoInverse) {
-  const BranchLaw law{1.0, 1.0 / 3, 1.0};
-  EXPECT_THROW(Displacements(Model("mindlin"), law, {}), InvalidArgument);
-  EXPECT_THROW(Displacements(Model("mindlin"), law, {0.5}, {.stiffness = 0.0}), InvalidArgument);
-  // For α = 2000 it is 1/(2000·0.5^1999): 1e598 elastic limits away.
-  EXPECT_THAT(MessageOf([&] {
-                Displacements(Model("mindlin-dahl"), {1.0, 2000.0, 1.0}, {0.0, 0.5});
-              }),
-              HasSubstr("force [N] of sample 1"));
-  std::vector<double> one(1);
-  EXPECT_THROW(EvaluateDisplacement(Model("mindlin"), law, History{0.1, 0.2}, one),
-               InvalidArgument);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "../../tests/support/imposed_force.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
@@ -208,9 +209,8 @@ Record ForcedRecord(const Scenario& scenario) {
                                          .cycles = static_cast<double>(scenario.cycles),
                                          .samples_per_cycle = scenario.samples_per_cycle})
                      .displacement;
-  record.displacement.resize(record.force.size());
-  models::EvaluateDisplacement(*models::FindFrictionModel(scenario.model), law, record.force,
-                               record.displacement);
+  record.displacement =
+      testing::DisplacementUnder(*models::FindFrictionModel(scenario.model), law, record.force);
   if (scenario.is_steady) LeaveOutFirstCycle(scenario, record);
   return record;
 }
