@@ -232,8 +232,9 @@ Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
                        const Resolution& resolution) {
   const auto shape = std::make_shared<const TableShape>(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
+    models::ScaledBranches branches;
     models::EvaluatePath(model, law, 0.0, *shape, MakeDrivePath(model, drive), drive.displacement,
-                         force);
+                         force, branches);
   };
 }
 

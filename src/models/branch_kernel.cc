@@ -1,5 +1,3 @@
-#include "models/branch_kernel.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,6 +6,7 @@
 #include <cstdint>
 
 #include "mindahl/models/backbone.h"
+#include "models/normalized_response.h"
 
 // Compilers differ in how functions are built for several instruction sets. A function that is
 // always inlined takes the set of its caller;

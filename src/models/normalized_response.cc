@@ -10,7 +10,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
-#include "models/branch_kernel.h"
 #include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 
@@ -22,6 +21,21 @@ namespace {
 BranchLaw LawOf(const NormalizedLaw& law) {
   return {
       .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
+}
+
+/// A general shape whose runs the kernel evaluates.
+struct KernelShape : backbone::GeneralShape<double> {};
+
+/// Returns the shape that is fastest for many displacements.
+template <typename Shape>
+const Shape& OfMany(const Shape& shape) {
+  return shape;
+}
+KernelShape OfMany(const backbone::GeneralShape<double>& shape) { return {shape}; }
+
+void EvaluateRun(const ScaledBranch& branch, const KernelShape& shape, double /*slip_force*/,
+                 double limit, std::span<const double> displacement, std::span<double> t) {
+  EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
 }
 
 /// Computes what the kernel does not: of a branch in series with a spring, or by an asymmetry.
@@ -48,22 +62,9 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
-  const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const double limit = path.limit();
   WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
-    ScaleBranches(scaling, path, shape, branches_);
-    RequireReach(branch_law, branches_, displacement);
-    for (const BranchRun& run : path.runs) {
-      const std::size_t count = run.end - run.begin;
-      const ScaledBranch& branch = branches_[static_cast<std::size_t>(run.branch)];
-      const std::span<const double> places = displacement.subspan(run.begin, count);
-      const std::span<double> of_run = t.subspan(run.begin, count);
-      if constexpr (std::is_same_v<decltype(shape), const backbone::GeneralShape<double>&>) {
-        EvaluateGeneralRun(branch, law.shape_exponent, limit, places, of_run);
-      } else {
-        EvaluateRun(branch, ShapeOn(shape, branch), 1.0, limit, places, of_run);
-      }
-    }
+    EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t,
+                 branches_);
   });
 }
 

@@ -5,19 +5,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/extremes.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
-#include "mindahl/models/loading_path.h"
-#include "models/normalized_response.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
 
-void ThrowBeyondReach(double displacement, double largest, double elastic_limit) {
-  ThrowInvalid("displacement [m]", displacement,
+void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
+                  std::span<const double> displacement) {
+  if (law.shape_exponent <= 1 || displacement.empty()) return;
+  const Extremes extremes = ExtremesOf(displacement);
+  double farthest = std::max(-extremes.least, extremes.greatest);
+  double steepest = 0.0;
+  double farthest_origin = 0.0;
+  for (const ScaledBranch& branch : branches) {
+    steepest = std::max(steepest, branch.rate);
+    farthest_origin = std::max(farthest_origin, std::abs(branch.origin));
+  }
+  farthest += farthest_origin;
+  if (farthest <= backbone::Reach(steepest)) return;
+  ThrowInvalid("displacement [m]", farthest,
                fmt::format("must be <= {:.3g} times the elastic limit of the steepest branch, "
                            "{:.3g} m, for shape exponents > 1",
-                           largest, elastic_limit));
+                           backbone::kLargestDisplacement<double>, 1 / steepest));
 }
 
 void Validate(const SeriesSpring& rig) {
@@ -32,8 +43,9 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
   Validate(law);
   RequireSizes(path, displacement, "force", force);
   const double travel = IsRigid(rig) ? 0.0 : SpringTravel(law, rig);
+  ScaledBranches branches;
   WithShapeBehindSpring(law.shape_exponent, travel, [&](const auto& shape) {
-    EvaluatePath(model, law, travel, shape, path, displacement, force);
+    EvaluatePath(model, law, travel, shape, path, displacement, force, branches);
   });
 }
 

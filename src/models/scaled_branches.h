@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/extremes.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
@@ -176,28 +175,14 @@ inline void RequireSizes(const LoadingPath& path, std::span<const double> displa
                   path.runs.empty() ? 0 : path.runs.back().end);
 }
 
-/// @throws InvalidArgument always
-[[noreturn]] void ThrowBeyondReach(double displacement, double largest, double elastic_limit);
-
-/// For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
-inline void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
-                         std::span<const double> displacement) {
-  if (law.shape_exponent <= 1 || displacement.empty()) return;
-  const Extremes extremes = ExtremesOf(displacement);
-  double farthest = std::max(-extremes.least, extremes.greatest);
-  double steepest = 0.0;
-  double farthest_origin = 0.0;
-  for (const ScaledBranch& branch : branches) {
-    steepest = std::max(steepest, branch.rate);
-    farthest_origin = std::max(farthest_origin, std::abs(branch.origin));
-  }
-  farthest += farthest_origin;
-  if (farthest > backbone::Reach(steepest)) {
-    ThrowBeyondReach(farthest, backbone::kLargestDisplacement<double>, 1 / steepest);
-  }
-}
+/// Refuses displacements beyond the reach of a branch where α > 1: the force still grows there; for
+/// α <= 1 it is Tc.
+/// @throws InvalidArgument
+void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
+                  std::span<const double> displacement);
 
 /// Computes the forces of one run; the loop has no branch or call, and vectorises where φ does.
+/// @param limit  the largest |t|
 template <typename Shape>
 void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_force, double limit,
                  std::span<const double> displacement, std::span<double> force) {
@@ -211,11 +196,11 @@ void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_for
 
 /// Computes the forces [N] along a path.
 /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+/// @param branches       written: those of the path
 template <typename Shape>
 void EvaluatePath(const FrictionModel& model, const BranchLaw& law, double spring_travel,
                   const Shape& shape, const LoadingPath& path, std::span<const double> displacement,
-                  std::span<double> force) {
-  ScaledBranches branches;
+                  std::span<double> force, ScaledBranches& branches) {
   ScaleBranches(BranchScaling(model, law, spring_travel), path, shape, branches);
   RequireReach(law, branches, displacement);
   const double limit = path.limit();

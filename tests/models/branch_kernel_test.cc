@@ -1,11 +1,10 @@
 // The kernels of fits against the branch law in extended precision.
 
-#include "models/branch_kernel.h"
-
 #include <random>
 
 #include "../support/worst.h"
 #include "mindahl/models/backbone.h"
+#include "models/normalized_response.h"
 #include "support/prelude.h"
 
 namespace mindahl::models::branch_kernel_test {
