@@ -15,7 +15,7 @@
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/preparation.h"
-#include "mindahl/loop/test_part.h"
+#include "mindahl/loop/segments.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
@@ -149,13 +149,13 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
   if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return left_out;
   bool all_cycled = true;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::TestPart test = loop::FindTestPart(records[r].record);
+    const loop::TestPart test = loop::FindTestPart(records[r].record.displacement);
     for (const loop::LeftOut& part : test.left_out) {
       left_out.push_back({.file = names[r],
                           .samples = part.last - part.first,
                           .first = records[r].LineOf(part.first),
                           .last = records[r].LineOf(part.last - 1),
-                          .why = std::string(NameOf(part.reason))});
+                          .why = std::string(part.reason)});
     }
     io::KeepSamples(records[r], test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
