@@ -251,16 +251,6 @@ std::optional<double> Asymmetry(std::span<const Cycle> cycles, double peak_force
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Returns a fact of the cycles that have it.
-template <typename Fact>
-std::vector<double> ValuesOf(std::span<const CycleFacts> cycles, Fact CycleFacts::*fact) {
-  std::vector<double> values;
-  for (const CycleFacts& cycle : cycles) {
-    if (const std::optional<double> value = cycle.*fact) values.push_back(*value);
-  }
-  return values;
-}
-
 /// Measures forces with the displacement's sign.
 LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> reversals) {
   LoopFacts facts;
@@ -275,26 +265,32 @@ LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> 
   if (!facts.closed) return facts;
   const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
   std::vector<Cycle> steady;
-  std::vector<CycleFacts> steady_facts;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
     facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::kSteady * widest;
-    if (!facts.cycles[k].steady) continue;
-    steady.push_back(cycles[k]);
-    steady_facts.push_back(facts.cycles[k]);
+    if (facts.cycles[k].steady) steady.push_back(cycles[k]);
   }
+  // Of the steady cycles that have it.
+  const auto values_of = [&](auto fact) {
+    std::vector<double> values;
+    for (const CycleFacts& cycle : facts.cycles) {
+      const std::optional<double> value = cycle.*fact;
+      if (cycle.steady && value) values.push_back(*value);
+    }
+    return values;
+  };
   facts.steady_cycles = steady.size();
-  facts.amplitude = Mean(ValuesOf(steady_facts, &CycleFacts::amplitude));
-  facts.peak_force = Mean(ValuesOf(steady_facts, &CycleFacts::peak_force));
-  facts.energy_per_cycle = Mean(ValuesOf(steady_facts, &CycleFacts::energy));
+  facts.amplitude = Mean(values_of(&CycleFacts::amplitude));
+  facts.peak_force = Mean(values_of(&CycleFacts::peak_force));
+  facts.energy_per_cycle = Mean(values_of(&CycleFacts::energy));
   facts.energy_ratio = EnergyRatio(facts.energy_per_cycle, facts.amplitude, facts.peak_force);
   facts.asymmetry = Asymmetry(steady, facts.peak_force);
-  const auto sliding = ValuesOf(steady_facts, &CycleFacts::sliding_amplitude);
+  const std::vector<double> sliding = values_of(&CycleFacts::sliding_amplitude);
   if (!sliding.empty()) facts.sliding_amplitude = Mean(sliding);
-  const auto gaps = ValuesOf(steady_facts, &CycleFacts::half_gap);
+  const std::vector<double> gaps = values_of(&CycleFacts::half_gap);
   if (!gaps.empty()) facts.half_gap = Mean(gaps);
   if (gaps.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps);
   if (facts.half_gap && *facts.half_gap > 0) {
-    const double centre = Mean(ValuesOf(steady_facts, &CycleFacts::centre_force));
+    const double centre = Mean(values_of(&CycleFacts::centre_force));
     facts.backlash = FindBacklash(steady, centre, *facts.half_gap, facts.amplitude);
   }
   return facts;
