@@ -7,18 +7,29 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/interpolated.h"
+#include "loop/rules.h"
 #include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
 
 namespace {
+
+/// Returns the least distance [m] between neighbours that differ; 0 where none do.
+double SmallestStep(std::span<const double> displacement) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (displacement.size() < 2) return 0.0;
+  const Eigen::Map<const Eigen::ArrayXd> x(displacement.data(), std::ssize(displacement));
+  const auto steps = (x.tail(x.size() - 1) - x.head(x.size() - 1)).abs();
+  const double smallest = (steps > 0).select(steps, kNone).minCoeff();
+  return smallest < kNone ? smallest : 0.0;
+}
 
 /// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
 /// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive has
@@ -190,14 +201,21 @@ class InterpolatedChannel {
     return *usual_step_;
   }
 
+  /// Draws a line between the samples about [begin, end), not all; a level one at the record's
+  /// ends.
   void LeaveOut(std::size_t begin, std::size_t end) {
     if (glitches_.empty()) {
-      glitches_.assign(values_.size(), false);
+      glitches_.assign(size(), false);
       interpolated_.assign(values_.begin(), values_.end());
     }
-    std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
-              glitches_.begin() + static_cast<std::ptrdiff_t>(end), true);
-    BridgeOver(begin, end);
+    const double last = interpolated_[end < size() ? end : begin - 1];
+    const double first = begin > 0 ? interpolated_[begin - 1] : last;
+    const auto steps = static_cast<double>(end - begin + 1);
+    for (std::size_t i = begin; i < end; ++i) {
+      glitches_[i] = true;
+      const double share = static_cast<double>(i - begin + 1) / steps;
+      interpolated_[i] = first + share * (last - first);
+    }
   }
 
   [[nodiscard]] const std::vector<bool>& glitches() const { return glitches_; }
@@ -207,18 +225,6 @@ class InterpolatedChannel {
   std::vector<double> TakeInterpolated() { return std::move(interpolated_); }
 
  private:
-  /// Draws a line between the samples about [begin, end); a level one at the record's ends.
-  void BridgeOver(std::size_t begin, std::size_t end) {
-    if (begin == 0 && end == size()) return;
-    const double last = interpolated_[end < size() ? end : begin - 1];
-    const double first = begin > 0 ? interpolated_[begin - 1] : last;
-    const auto steps = static_cast<double>(end - begin + 1);
-    for (std::size_t i = begin; i < end; ++i) {
-      const double share = static_cast<double>(i - begin + 1) / steps;
-      interpolated_[i] = first + share * (last - first);
-    }
-  }
-
   Readings values_;
   std::vector<double> interpolated_;
   std::vector<bool> glitches_;
@@ -239,7 +245,7 @@ struct Run {
 };
 
 /// Returns the samples that read 0 and 0 away from their neighbours.
-std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules) {
+std::vector<Run> FindDropouts(const RecordView& record) {
   const Readings x = record.displacement;
   const auto is_zero = [&](std::size_t i) { return x[i] == 0 && record.force[i] == 0; };
   std::vector<Run> runs;
@@ -260,13 +266,14 @@ std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules
   const double step_of_force = usual_step(record.force);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
-      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
+      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) >
+             GlitchRules::kEndDropout * step_of_x;
     }
     const auto outside = [&](Readings values) {
       return OutsideOf(values[run.begin - 1], values[run.end]);
     };
-    return outside(x) > rules.dropout * step_of_x ||
-           outside(record.force) > rules.dropout * step_of_force;
+    return outside(x) > GlitchRules::kDropout * step_of_x ||
+           outside(record.force) > GlitchRules::kDropout * step_of_force;
   };
   // If one run inside the record is a dropout, so are the others, wherever the loop was.
   const bool any = std::ranges::any_of(
@@ -279,30 +286,30 @@ std::vector<Run> FindDropouts(const RecordView& record, const GlitchRules& rules
 
 /// Returns the third largest step about [begin, end), that into it and that out of it aside: a
 /// second spike makes two. 0 with fewer.
-double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::size_t end,
-                 const GlitchRules& rules) {
+double StepAbout(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
     largest[2] = std::max(largest[2], channel.Step(i));
     std::ranges::sort(largest, std::greater<>());
   };
-  for (std::size_t i = begin - 1; i >= 1 && begin - i <= rules.about; --i) look_at(i);
+  for (std::size_t i = begin - 1; i >= 1 && begin - i <= GlitchRules::kAbout; --i) look_at(i);
   const std::size_t size = channel.size();
-  for (std::size_t i = end + 1; i < size && i - end <= rules.about; ++i) look_at(i);
+  for (std::size_t i = end + 1; i < size && i - end <= GlitchRules::kAbout; ++i) look_at(i);
   return largest[2];
 }
 
 /// Returns the number of samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i, const GlitchRules& rules) {
+std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i) {
   const Readings values = channel.values();
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
   double least = sense * values[i];
-  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + rules.longest_spike; ++end) {
+  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + GlitchRules::kLongestSpike;
+       ++end) {
     const double height = least - std::max(before, sense * values[end]);
-    if (height > rules.spike * channel.Step(end + 1) &&
-        height > rules.spike * StepAbout(channel, i, end, rules) &&
-        height > rules.spike * channel.usual_step()) {
+    if (height > GlitchRules::kSpike * channel.Step(end + 1) &&
+        height > GlitchRules::kSpike * StepAbout(channel, i, end) &&
+        height > GlitchRules::kSpike * channel.usual_step()) {
       return end - i;
     }
     least = std::min(least, sense * values[end]);
@@ -311,12 +318,12 @@ std::size_t SpikeAt(InterpolatedChannel& channel, std::size_t i, const GlitchRul
 }
 
 /// Makes one pass: a spike may hide another, until it is interpolated.
-bool FindSpikes(InterpolatedChannel& channel, const GlitchRules& rules) {
+bool FindSpikes(InterpolatedChannel& channel) {
   bool found = false;
   for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
     // Hardly any step of a clean record exceeds the one before it by this factor.
-    if (!(channel.Step(i) > rules.spike * channel.Step(i - 1))) continue;
-    const std::size_t samples = SpikeAt(channel, i, rules);
+    if (!(channel.Step(i) > GlitchRules::kSpike * channel.Step(i - 1))) continue;
+    const std::size_t samples = SpikeAt(channel, i);
     if (samples == 0) continue;
     channel.LeaveOut(i, i + samples);
     found = true;
@@ -341,12 +348,11 @@ bool Moves(const InterpolatedChannel& channel, std::size_t begin, std::size_t en
 }
 
 /// True if the column jumps at the end of the run [begin, end) of equal values.
-bool JumpsAtTheEnd(const InterpolatedChannel& channel, std::size_t begin, std::size_t end,
-                   const GlitchRules& rules) {
+bool JumpsAtTheEnd(const InterpolatedChannel& channel, std::size_t begin, std::size_t end) {
   const std::size_t length = end - begin;
   const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
                                 LargestStep(channel, end + 1, end + 1 + length));
-  return channel.Step(end) > rules.held_jump * about;
+  return channel.Step(end) > GlitchRules::kHeldJump * about;
 }
 
 /// True if the column continues in the direction of the last samples of [begin, end).
@@ -356,42 +362,16 @@ bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
          0;
 }
 
-/// Returns the next run of at least so many equal values from a sample on; empty at the end.
-Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
-  for (std::size_t begin = from, end = from; begin < values.size(); begin = end) {
-    while (end < values.size() && values[end] == values[begin]) ++end;
-    if (end - begin >= shortest) return {begin, end};
-  }
-  return {values.size(), values.size()};
-}
-
-/// True if the run [begin, end) of equal values lies away from what is read before and after it.
-bool ComesBack(InterpolatedChannel& channel, const Run& run, const GlitchRules& rules) {
-  const auto& [begin, end] = run;
-  if (begin == 0) return false;
-  const Readings values = channel.values();
-  const std::size_t length = end - begin;
-  const double in = values[begin] - values[begin - 1];
-  const double out = values[end] - values[end - 1];
-  // The steps into it and out of it are what is looked at, not what is compared with.
-  const double about =
-      std::max({LargestStep(channel, begin - std::min(begin, length), begin),
-                LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
-  return in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about;
-}
-
-/// Finds where one channel reads one value while the other moves: away from what it read before and
-/// reads again after, or held on its way.
-void FindRuns(InterpolatedChannel& channel, const InterpolatedChannel& other,
-              const GlitchRules& rules) {
-  for (Run run = NextRun(channel.values(), 0, rules.shortest_held); run.end < channel.size();
-       run = NextRun(channel.values(), run.end, rules.shortest_held)) {
-    const auto& [begin, end] = run;
-    if (!Moves(other, begin + 1, end) || JumpsAtTheEnd(other, begin, end, rules)) continue;
-    if (ComesBack(channel, run, rules)) {
-      channel.LeaveOut(begin, end);
-    } else if (JumpsAtTheEnd(channel, begin, end, rules) && GoesOn(other.values(), begin, end) &&
-               channel.Step(end) > rules.held_jump * channel.usual_step()) {
+/// Finds where one channel is held at a value on its way while the other moves.
+void FindHeld(InterpolatedChannel& channel, const InterpolatedChannel& other) {
+  std::size_t end = 0;
+  for (std::size_t begin = 0; begin < channel.size(); begin = end) {
+    const Readings values = channel.values();
+    for (end = begin + 1; end < values.size() && values[end] == values[begin];) ++end;
+    if (end - begin < GlitchRules::kShortestHeld || end == values.size()) continue;
+    if (Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end) &&
+        JumpsAtTheEnd(channel, begin, end) && GoesOn(other.values(), begin, end) &&
+        channel.Step(end) > GlitchRules::kHeldJump * channel.usual_step()) {
       channel.LeaveOut(begin + 1, end);  // the first reading is a good one
     }
   }
@@ -399,40 +379,36 @@ void FindRuns(InterpolatedChannel& channel, const InterpolatedChannel& other,
 
 }  // namespace
 
-Interpolated FindAndInterpolate(const RecordView& record, const GlitchRules& rules) {
+Interpolated FindAndInterpolate(const RecordView& record) {
   constexpr int kPasses = 3;
   InterpolatedChannel displacement(record.displacement);
   InterpolatedChannel force(record.force);
   // A finder that marks more than `most` of the samples of a channel has found no glitches: its
   // marks are taken back.
-  const auto take = [&rules](InterpolatedChannel& channel, const auto& find) {
+  const auto take = [](InterpolatedChannel& channel, const auto& find) {
     InterpolatedChannel without = channel;
     find(channel);
     const double found = channel.CountGlitches() - without.CountGlitches();
-    if (found > rules.most * static_cast<double>(channel.size())) channel = std::move(without);
+    if (found > GlitchRules::kMost * static_cast<double>(channel.size()))
+      channel = std::move(without);
   };
-  const std::vector<Run> dropouts = FindDropouts(record, rules);
+  const std::vector<Run> dropouts = FindDropouts(record);
   for (InterpolatedChannel* channel : {&displacement, &force}) {
     take(*channel, [&](auto& in) {
       for (const Run& run : dropouts) in.LeaveOut(run.begin, run.end);
     });
     take(*channel, [&](auto& in) {
-      for (int pass = 0; pass < kPasses && FindSpikes(in, rules); ++pass) continue;
+      for (int pass = 0; pass < kPasses && FindSpikes(in); ++pass) continue;
     });
   }
-  take(displacement, [&](auto& in) { FindRuns(in, force, rules); });
-  take(force, [&](auto& in) { FindRuns(in, displacement, rules); });
-  Interpolated interpolated;
-  for (InterpolatedChannel* channel : {&displacement, &force}) {
-    if (channel->CountGlitches() == 0) continue;
-    interpolated.glitches.resize(record.size());
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (channel->glitches()[i]) interpolated.glitches[i] = true;
-    }
-    (channel == &displacement ? interpolated.displacement : interpolated.force) =
-        channel->TakeInterpolated();
+  take(displacement, [&](auto& in) { FindHeld(in, force); });
+  take(force, [&](auto& in) { FindHeld(in, displacement); });
+  std::vector<bool> glitches = displacement.glitches();
+  glitches.resize(std::max(glitches.size(), force.glitches().size()));
+  for (std::size_t i = 0; i < force.glitches().size(); ++i) {
+    if (force.glitches()[i]) glitches[i] = true;
   }
-  return interpolated;
+  return {std::move(glitches), displacement.TakeInterpolated(), force.TakeInterpolated()};
 }
 
 }  // namespace mindahl::loop

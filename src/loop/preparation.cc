@@ -10,7 +10,6 @@
 
 #include "core/draws.h"
 #include "core/extremes.h"
-#include "loop/interpolated.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
@@ -46,7 +45,7 @@ void Smooth(PreparedRecord& prepared) {
 /// Leaves out glitches: their samples do not count, and the path goes straight over them.
 void LeaveOutGlitches(PreparedRecord& prepared) {
   prepared.counts.assign(prepared.size(), 1);
-  Interpolated interpolated = FindAndInterpolate(prepared.record, {});
+  Interpolated interpolated = FindAndInterpolate(prepared.record);
   if (interpolated.glitches.empty()) return;
   GlitchCount& count = prepared.glitches;
   for (std::size_t i = 0; i < prepared.size(); ++i) {

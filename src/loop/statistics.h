@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
-#include <limits>
 #include <span>
+#include <vector>
 
 namespace mindahl::loop {
 
@@ -45,18 +43,18 @@ inline constexpr double kDeviationOverMedian = 1.482602218505602;
 /// Returns the standard deviation of white noise by the median size of the differences of an order,
 /// of which what is smooth, turns and knees leave little; 0 for too few values. The variance of a
 /// difference of order k is C(2k, k) times the noise's.
-double NoiseByDifferences(std::span<const double> values, std::size_t order);
-
-/// Returns the least distance [m] between neighbours that differ; 0 where none do.
-inline double SmallestStep(std::span<const double> displacement) {
-  // Magnitudes are in the order of their bits, and of one less those of no step come last.
-  constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t smallest = kNone;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    const double step = std::abs(displacement[i] - displacement[i - 1]);
-    smallest = std::min(smallest, std::bit_cast<std::uint64_t>(step) - 1);
+inline double NoiseByDifferences(std::span<const double> values, std::size_t order) {
+  if (values.size() <= order) return 0.0;
+  std::vector<double> differences(values.begin(), values.end());
+  double variance = 1.0;  // of a difference over the noise's
+  for (std::size_t k = 1; k <= order; ++k) {
+    for (std::size_t i = 0; i + k < values.size(); ++i)
+      differences[i] = differences[i + 1] - differences[i];
+    variance *= 2.0 * static_cast<double>(2 * k - 1) / static_cast<double>(k);
   }
-  return smallest == kNone ? 0.0 : std::bit_cast<double>(smallest + 1);
+  differences.resize(values.size() - order);
+  for (double& difference : differences) difference = std::abs(difference);
+  return kDeviationOverMedian * Median(differences) / std::sqrt(variance);
 }
 
 }  // namespace mindahl::loop

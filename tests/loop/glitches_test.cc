@@ -1,6 +1,4 @@
-#include <type_traits>
-
-#include "loop/interpolated.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
@@ -35,9 +33,7 @@ Record Respond(Generator& generator, const History& displacement) {
   return record;
 }
 
-std::vector<bool> FindGlitches(const Record& record) {
-  return FindAndInterpolate(record, {}).glitches;
-}
+std::vector<bool> FindGlitches(const Record& record) { return FindAndInterpolate(record).glitches; }
 
 GlitchCount CountIn(const Record& record) {
   const RecordView view = record;
@@ -188,8 +184,7 @@ TEST(FindGlitches, FindsAChannelThatIsHeldOnItsWay) {
   }
 }
 
-TEST(FindGlitches, ADropoutOfOneChannelComesBackToWhereItWas) {
-  // A step that stays is the record's, a rest of both channels the drive's.
+TEST(FindGlitches, AStepThatStaysAndARestAreNone) {
   Record step = Noisy();
   for (std::size_t i = 60; i < 68; ++i) step.force[i] = 5.0;
   for (std::size_t i = 68; i < step.size(); ++i) step.force[i] += 10.0;
@@ -206,7 +201,7 @@ TEST(FindAndInterpolate, InterpolatesLinearlyInChannelsWithGlitches) {
   Record record = Noisy();
   record.force[300] = 50;
   record.force[301] = 51;
-  const Interpolated interpolated = FindAndInterpolate(record, {});
+  const Interpolated interpolated = FindAndInterpolate(record);
   EXPECT_TRUE(interpolated.displacement.empty());
   ASSERT_EQ(interpolated.force.size(), record.size());
   const double rise = record.force[302] - record.force[299];
@@ -230,9 +225,7 @@ TEST(FindGlitches, MeasuredRecordsHaveHardlyAny) {
   EXPECT_LE(spikes, 20U);
 }
 
-bool HasGlitch(const Record& record, const GlitchRules& rules) {
-  return !FindAndInterpolate(record, rules).glitches.empty();
-}
+bool HasGlitch(const Record& record) { return !FindAndInterpolate(record).glitches.empty(); }
 
 /// A triangle in steps of 1 and −1 with a force that follows it.
 Record Steps(std::size_t samples) {
@@ -245,99 +238,72 @@ Record Steps(std::size_t samples) {
   return record;
 }
 
-bool HasSpike(const GlitchRules& rules, double height, std::size_t samples) {
+bool HasSpike(double height, std::size_t samples) {
   Record record = Steps(90);
   for (std::size_t k = 0; k < samples; ++k) record.displacement[40 + k] += height;
-  return HasGlitch(record, rules);
+  return HasGlitch(record);
 }
 
-bool HasDropoutAt(const GlitchRules& rules, double level, std::size_t at) {
+bool HasDropoutAt(double level, std::size_t at) {
   Record record = Steps(90);
   const double shift = level - record.displacement[at];
   for (double& displacement : record.displacement) displacement += shift;
   for (double& force : record.force) force = 0.01 * (force - record.force[at]);
   const std::size_t row = at == 0 ? 0 : at + 1;  // its neighbours are at `level` and beyond
   record.displacement[row] = record.force[row] = 0.0;
-  return HasGlitch(record, rules);
+  return HasGlitch(record);
 }
 
-bool HasHeld(const GlitchRules& rules, std::size_t equal, double jump) {
+bool HasHeld(std::size_t equal, double jump) {
   Record record = Steps(90);
   for (std::size_t k = 1; k < equal; ++k) record.displacement[40 + k] = record.displacement[40];
   const double shift = record.displacement[40] + jump - record.displacement[40 + equal];
   for (std::size_t i = 40 + equal; i < record.size(); ++i) record.displacement[i] += shift;
-  return HasGlitch(record, rules);
+  return HasGlitch(record);
 }
 
-TEST(GlitchRules, HoldAtTheirValuesAndNeitherAtTwiceNorAtHalf) {
-  struct Rule {
-    const char* name;
-    std::function<void(GlitchRules&, double)> scale;
-    std::function<bool(const GlitchRules&)> holds;
-  };
-  const auto scaled = [](auto member) {
-    return [member](GlitchRules& rules, double factor) {
-      using Value = std::remove_reference_t<decltype(rules.*member)>;
-      rules.*member = static_cast<Value>(factor * static_cast<double>(rules.*member));
-    };
-  };
-  const std::vector<Rule> list = {
-      // Over the farther neighbour, which is a step higher.
-      {"spike", scaled(&GlitchRules::spike),
-       [](const GlitchRules& rules) {
-         return HasSpike(rules, 3.5 + 1, 1) && !HasSpike(rules, 2.5 + 1, 1);
-       }},
-      {"longest_spike", scaled(&GlitchRules::longest_spike),
-       [](const GlitchRules& rules) { return HasSpike(rules, 50, 3) && !HasSpike(rules, 50, 4); }},
-      // The first of five square pulses of two samples, so many samples apart, is one of a kind
-      // where two others are near.
-      {"about", scaled(&GlitchRules::about),
-       [](const GlitchRules& rules) {
-         const auto has = [&](std::size_t apart) {
-           Record record = Steps(900);
-           for (std::size_t pulse = 0; pulse < 5; ++pulse) {
-             record.displacement[200 + pulse * apart] += 50;
-             record.displacement[201 + pulse * apart] += 50;
-           }
-           const Interpolated interpolated = FindAndInterpolate(record, rules);
-           return !interpolated.glitches.empty() && interpolated.glitches[200];
-         };
-         return !has(5) && has(9);
-       }},
-      {"dropout", scaled(&GlitchRules::dropout),
-       [](const GlitchRules& rules) {
-         return HasDropoutAt(rules, 2.5, 20) && !HasDropoutAt(rules, 1.5, 20);
-       }},
-      {"end_dropout", scaled(&GlitchRules::end_dropout),
-       [](const GlitchRules& rules) {
-         return HasDropoutAt(rules, 4.5, 0) && !HasDropoutAt(rules, 2.5, 0);
-       }},
-      {"shortest_held", scaled(&GlitchRules::shortest_held),
-       [](const GlitchRules& rules) { return HasHeld(rules, 5, 5) && !HasHeld(rules, 4, 5); }},
-      {"held_jump", scaled(&GlitchRules::held_jump),
-       [](const GlitchRules& rules) {
-         return HasHeld(rules, 10, 3.5) && !HasHeld(rules, 10, 2.5);
-       }},
-      {"most", scaled(&GlitchRules::most),
-       [](const GlitchRules& rules) {
-         const auto has = [&](std::size_t every) {
-           Record record = Steps(900);
-           for (std::size_t i = 1; i < record.size(); i += every) {
-             record.displacement[i] = record.force[i] = 0.0;
-           }
-           return HasGlitch(record, rules);
-         };
-         return has(5) && !has(3);
-       }},
-  };
-  for (const Rule& rule : list) {
-    EXPECT_TRUE(rule.holds({})) << rule.name;
-    for (const double factor : {0.5, 2.0}) {
-      GlitchRules rules;
-      rule.scale(rules, factor);
-      EXPECT_FALSE(rule.holds(rules)) << rule.name << " at " << factor << " times the value";
+TEST(FindGlitches, HoldsToItsRules) {
+  // Over the farther neighbour, which is a step higher.
+  EXPECT_TRUE(HasSpike(3.5 + 1, 1));
+  EXPECT_FALSE(HasSpike(2.5 + 1, 1));
+  EXPECT_TRUE(HasSpike(50, 3));
+  EXPECT_FALSE(HasSpike(50, 4));
+  EXPECT_TRUE(HasDropoutAt(2.5, 20));
+  EXPECT_FALSE(HasDropoutAt(1.5, 20));
+  EXPECT_TRUE(HasDropoutAt(4.5, 0));
+  EXPECT_FALSE(HasDropoutAt(2.5, 0));
+  EXPECT_TRUE(HasHeld(5, 5));
+  EXPECT_FALSE(HasHeld(4, 5));
+  EXPECT_TRUE(HasHeld(10, 3.5));
+  EXPECT_FALSE(HasHeld(10, 2.5));
+}
+
+TEST(FindGlitches, APulseThatComesAgainSoonIsNoSpike) {
+  // The first of five pulses of two samples, so many apart, is one of a kind if two others are
+  // near.
+  const auto has = [&](std::size_t apart) {
+    Record record = Steps(900);
+    for (std::size_t pulse = 0; pulse < 5; ++pulse) {
+      record.displacement[200 + pulse * apart] += 50;
+      record.displacement[201 + pulse * apart] += 50;
     }
-  }
+    const std::vector<bool> glitches = FindGlitches(record);
+    return !glitches.empty() && glitches[200];
+  };
+  EXPECT_FALSE(has(5));
+  EXPECT_TRUE(has(9));
+}
+
+TEST(FindGlitches, WhatMakesUpMoreThanAQuarterOfARecordIsTheRecord) {
+  const auto has = [&](std::size_t every) {
+    Record record = Steps(900);
+    for (std::size_t i = 1; i < record.size(); i += every) {
+      record.displacement[i] = record.force[i] = 0.0;
+    }
+    return HasGlitch(record);
+  };
+  EXPECT_TRUE(has(5));
+  EXPECT_FALSE(has(3));
 }
 
 }  // namespace
