@@ -23,22 +23,13 @@ std::vector<std::size_t> FindReversals(std::span<const double> displacement, dou
   return reversals;
 }
 
-namespace {
-
-/// Returns the extremes, with the record's ends.
-std::vector<std::size_t> LocalExtremes(std::span<const double> displacement) {
+std::vector<Excursion> FindExcursions(std::span<const double> displacement) {
+  if (displacement.empty()) return {};
+  // The extremes, with the record's ends; those still open are kept in front of those not yet
+  // visited.
   std::vector<std::size_t> points = FindReversals(displacement, 0.0);
-  if (displacement.empty()) return points;
   points.insert(points.begin(), 0);
   points.push_back(displacement.size() - 1);
-  return points;
-}
-
-}  // namespace
-
-std::vector<Excursion> FindExcursions(std::span<const double> displacement) {
-  // Points that are still open are kept in front of those not yet visited.
-  std::vector<std::size_t> points = LocalExtremes(displacement);
   std::vector<Excursion> excursions;
   excursions.reserve(points.size());
   std::size_t open = 0;
@@ -86,7 +77,6 @@ enum class Look : unsigned char {
 
 /// An excursion and what it looks like.
 struct JudgedExcursion : Excursion {
-  bool is_brief = false;
   Look look = Look::kDrive;
 };
 using Excursions = std::span<const JudgedExcursion>;
@@ -126,16 +116,17 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
     return excursion.range < main_range &&
            static_cast<double>(excursion.duration()) <= share * main_duration;
   };
+  const auto is_brief = [&](const Excursion& excursion) {
+    return lasts_at_most(excursion, ReversalRules::kBrief);
+  };
+  if (std::ranges::none_of(excursions, is_brief)) return {};
   std::vector<JudgedExcursion> judged;
   judged.reserve(excursions.size());
-  for (const Excursion& excursion : excursions) {
-    judged.push_back({excursion, lasts_at_most(excursion, ReversalRules::kBrief)});
-  }
-  if (std::ranges::none_of(judged, &JudgedExcursion::is_brief)) return {};
+  for (const Excursion& excursion : excursions) judged.push_back({excursion});
   const double reach = ReachOfNoise(displacement, excursions.back().range);
   for (JudgedExcursion& one : judged) {
     if (one.range >= main_range) continue;
-    const bool is_brief_inside = one.is_brief && one.reversals != 1;
+    const bool is_brief_inside = is_brief(one) && one.reversals != 1;
     if (one.range <= reach) {
       one.look = is_brief_inside ? Look::kNoise : Look::kUnclear;
     } else if (lasts_at_most(one, ReversalRules::kSudden) && Jumps(displacement, one)) {
@@ -149,7 +140,7 @@ std::vector<JudgedExcursion> Judge(std::span<const double> displacement,
   std::size_t wider = 0;
   for (JudgedExcursion& one : std::views::reverse(judged)) {
     if (one.look == Look::kOdd) ++wider;
-    const bool ends = one.reversals == 1 && one.is_brief && one.look == Look::kDrive;
+    const bool ends = one.reversals == 1 && is_brief(one) && one.look == Look::kDrive;
     if (ends && wider >= ReversalRules::kMany) one.look = Look::kUnclear;
   }
   return judged;
@@ -193,28 +184,6 @@ Plateau WidestPlateau(Excursions excursions) {
   return widest;
 }
 
-/// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
-/// though none of them looks like it: vibration, or noise that a filter has made smooth.
-Plateau AboveSmoothDisturbances(Excursions excursions) {
-  Plateau widest;
-  double least = 0.0;  // of the brief excursions, since the last gap
-  std::size_t count = 0;
-  for (std::size_t i = 0; i + 1 < excursions.size() && excursions[i].is_brief; ++i) {
-    const double range = excursions[i].range;
-    if (i == 0 || range > ReversalRules::kClear * excursions[i - 1].range) {
-      least = range;
-      count = 0;
-    }
-    ++count;
-    const double upper = excursions[i + 1].range;
-    if (count >= ReversalRules::kMany && range >= ReversalRules::kSpread * least &&
-        upper >= ReversalRules::kFar * range) {
-      widest = {.lower = range, .upper = upper, .below = i + 1};
-    }
-  }
-  return widest;
-}
-
 /// @param other  another gate that competes
 ReversalGate Under(std::span<const Excursion> excursions, double gate,
                    std::optional<double> other = {}) {
@@ -226,32 +195,18 @@ ReversalGate Under(std::span<const Excursion> excursions, double gate,
           .other_gate = other.value_or(gate)};
 }
 
-/// Chooses the gate by what the excursions look like, one by one.
-ReversalGate ChooseByLooks(std::span<const double> displacement,
-                           std::span<const Excursion> excursions) {
-  const std::vector<JudgedExcursion> judged = Judge(displacement, excursions);
-  const Plateau chosen = WidestPlateau(judged);
-  const Plateau smooth = AboveSmoothDisturbances(judged);
-  if (smooth.below > chosen.below) return Under(excursions, smooth.gate(), chosen.gate());
+}  // namespace
+
+ReversalGate ChooseReversalGate(std::span<const double> displacement) {
+  const std::vector<Excursion> excursions = FindExcursions(displacement);
+  if (excursions.size() < 2) return Under(excursions, 0.0);
+  const Plateau chosen = WidestPlateau(Judge(displacement, excursions));
   if (chosen.below == 0) return Under(excursions, 0.0);
   if (chosen.upper >= ReversalRules::kClear * chosen.lower) return Under(excursions, chosen.gate());
   const auto kept = static_cast<double>(excursions.size() - chosen.below);
   return static_cast<double>(chosen.below) < ReversalRules::kOutnumber * kept
              ? Under(excursions, 0.0, chosen.gate())
              : Under(excursions, chosen.gate(), 0.0);
-}
-
-}  // namespace
-
-ReversalGate ChooseReversalGate(std::span<const double> displacement) {
-  const std::vector<Excursion> excursions = FindExcursions(displacement);
-  if (excursions.size() < 2) return Under(excursions, 0.0);
-  const ReversalGate chosen = ChooseByLooks(displacement, excursions);
-  // An encoder that counts to and fro is at rest, however long that takes it.
-  const double flicker = ReversalRules::kCounts * EncoderStep(displacement);
-  const bool flickers = excursions.front().range <= flicker;
-  const bool is_stroke = flicker >= excursions.back().range / 2;
-  return flickers && !is_stroke && flicker > chosen.gate ? Under(excursions, flicker) : chosen;
 }
 
 }  // namespace mindahl::loop

@@ -17,9 +17,6 @@ struct ReversalRules {
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
   static constexpr double kBeyond = 1.25;
-  /// [steps of an encoder] Least gate where its last digit goes to and fro: more than one, less
-  /// than the two that a motion makes.
-  static constexpr double kCounts = 1.5;
   /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
   static constexpr double kRough = 0.05;
   /// [of the excursions that look like noise] Largest fraction classified otherwise.
@@ -29,12 +26,8 @@ struct ReversalRules {
   /// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
   /// drive: of random walks, whose excursions are of all ranges, it is not.
   static constexpr double kOutnumber = 20.0;
-  /// Smooth disturbances are distinguished from nested loops by their number,
+  /// So many wider ones that are as brief make a turn just before an end of the record unclear.
   static constexpr std::size_t kMany = 8;
-  /// [-] the ratio of their ranges, which lie as densely as those of noise,
-  static constexpr double kSpread = 10.0;
-  /// [-] The third mark is the ratio of the plateau's ends above them.
-  static constexpr double kFar = 10.0;
 };
 
 /// Sets the limits beyond which a sample is a glitch.

@@ -244,21 +244,6 @@ TEST(ChooseReversalGate, ASingleNoisyStrokeHasNone) {
   }
 }
 
-TEST(ChooseReversalGate, SaysBothCountsWhereItIsNotSure) {
-  // Vibration: as smooth as a drive, with ranges from a little to a tenth of a stroke.
-  History history = Sine(3, 4000);
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    const auto at = static_cast<double>(i);
-    history[i] += 0.02 * std::sin(at / 5) * (1.01 + std::sin(at / 97));
-  }
-  const ReversalGate choice = ChooseReversalGate(history);
-  EXPECT_FALSE(choice.certain);
-  EXPECT_EQ(choice.count, 6U);
-  EXPECT_GT(choice.other_count, 100U);
-  EXPECT_EQ(FindReversals(history, choice.gate).size(), choice.count);
-  EXPECT_EQ(FindReversals(history, choice.other_gate).size(), choice.other_count);
-}
-
 TEST(MeasuredReversals, AreAsManyAsTheTestsWereRunWith) {
   struct Measured {
     const char* file;

@@ -96,11 +96,10 @@ struct ReversalGate {
 ///   1.25·2√(2 ln n) standard deviations,
 /// or made mostly of a jump between two samples. Of the plateaus of the count that nearly agree
 /// with these looks the widest in log(gate) is taken, never beyond a stroke that looks like the
-/// drive's; the gate lies in it, at most at twice the range below it, and at one and a half counts
-/// where an encoder flickers by one. Where nothing looks like
-/// noise - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain
-/// where the plateau is narrow, and where excursions that lie as densely as those of noise are
-/// smooth, as vibration is.
+/// drive's; the gate lies in it, at most at twice the range below it. Where nothing looks like
+/// noise
+/// - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain where the
+/// plateau is narrow.
 ///
 /// @param displacement  [m], finite
 /// Cost: n log n at most.
