@@ -149,12 +149,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   LoopMeasures measures;
   const std::vector<std::size_t> points = TurningPoints(x, reversals);
   const std::vector<Stroke> strokes = MainStrokes(record, points);
-  const double highest =
-      MeanOf(strokes, [](const Stroke& of) { return ExtremesOf(of.displacement).greatest; });
-  const double lowest =
-      MeanOf(strokes, [](const Stroke& of) { return ExtremesOf(of.displacement).least; });
-  measures.amplitude = (highest - lowest) / 2;
-  measures.centre = lowest + measures.amplitude;
+  measures.amplitude = MeanOf(strokes, [](const Stroke& of) { return of.range(); }) / 2;
   // Most loops peak where they turn; some before, when the force relaxes in a dwell.
   const double lower_end = MeanOf(strokes, [](const Stroke& of) { return of.lower_end_force(); });
   const double upper_end = MeanOf(strokes, [](const Stroke& of) { return of.upper_end_force(); });
@@ -165,7 +160,6 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   const double least_force =
       std::min({lower_end, upper_end, UsualExtreme(strokes, least, std::greater<>())});
   measures.peak_force = (greatest_force - least_force) / 2;
-  measures.centre_force = least_force + measures.peak_force;
 
   if (!reversals.empty() && measures.amplitude > 0) {
     measures.cycles = static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 +

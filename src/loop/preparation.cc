@@ -231,7 +231,6 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records[r];
     prepared.measures = MeasureLoop(prepared.readings(), prepared.reversals);
-    prepared.measures.centre_force *= result.force_sense;
     prepared.encoder_step = EncoderStep(prepared.readings().displacement);
     prepared.displacement_noise = DisplacementNoise(prepared, options);
     Smooth(prepared);

@@ -89,9 +89,9 @@ struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
   loop::GlitchCount glitches;          ///< glitches left out, by kind
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  loop::LoopMeasures measures;         ///< with the force's sign that of the displacement
-  loop::LoopFacts facts;               ///< likewise, cycle by cycle; from depth kErrors on
-  double displacement_noise = 0.0;     ///< noise of the readings [m]; 0 if exact
+  loop::LoopMeasures measures;
+  loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
+  double displacement_noise = 0.0;  ///< noise of the readings [m]; 0 if exact
   models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.

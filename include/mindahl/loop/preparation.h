@@ -78,16 +78,13 @@ struct LoopMeasures {
   /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
   /// start and to its end count by their length, 0.02 cycles short of one is one.
   std::size_t cycles = 0;
-  /// X [m]: half the distance between the mean upper and lower extremes of the main swings, those
-  /// at least 0.95 times as wide as the widest
+  /// X [m]: half the mean range of the main swings, those at least 0.95 times as wide as the widest
   double amplitude = 0.0;
-  double centre = 0.0;  ///< [m]: midway between those extremes
   /// T* [N]: half the distance between the greatest and least force of the main swings: the mean at
   /// their ends, or, where the force peaks before it turns, the extreme of its mean over a
   /// twentieth of a swing (median over the swings of a direction), so that neither noise nor a
   /// spike makes it
   double peak_force = 0.0;
-  double centre_force = 0.0;  ///< [N]: midway between those forces
 };
 
 /// One record as every later stage sees it.
@@ -98,12 +95,12 @@ struct PreparedRecord {
   std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
   ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  LoopMeasures measures;               ///< with the force's sign that of the displacement
-  double encoder_step = 0.0;           ///< [m]; 0 where the displacement is no encoder's
-  double displacement_noise = 0.0;     ///< [m]; 0 where readings are not smoothed
-  std::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
-  std::size_t left_out = 0;            ///< samples that do not count
-  std::vector<double> smoothed;        ///< [m]; empty where readings count as exact
+  LoopMeasures measures;
+  double encoder_step = 0.0;          ///< [m]; 0 where the displacement is no encoder's
+  double displacement_noise = 0.0;    ///< [m]; 0 where readings are not smoothed
+  std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
+  std::size_t left_out = 0;           ///< samples that do not count
+  std::vector<double> smoothed;       ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
   std::vector<std::size_t> smoothing;
 
