@@ -22,8 +22,6 @@ class CycleTable(Told, Table):
     units: of the columns that have one. to_pandas(): the same as a data frame.
     headline: the whole test in one line.
     changes: sentences on steps and trends beyond chance, at most ten; empty if there are none.
-    energy_counts: number of fits that `accumulated_energy` counts with their own energy,
-        "measured", with that of the fits before them, "replaced", or not at all, "left_out".
     quantities: the time history of each quantity by name, as `mindahl track --json` has it: "unit",
         "first", "last", "settled_at", "steps" and "trends".
     established: did any fit converge?
@@ -34,7 +32,6 @@ class CycleTable(Told, Table):
         self._text, self.established = answer.text.replace(" in output", "", 1), answer.established
         document = self.to_dict()
         self.headline: str = document["headline"]
-        self.energy_counts: dict[str, int] = document["energy_counts"]
         self.quantities: dict[str, dict[str, Any]] = document["quantities"]
         self.changes = tuple(document["changes"])
         header, *rows = csv.reader(io.StringIO(table))

@@ -36,7 +36,8 @@ struct Line {
   double squares = 0.0;  // Σw(y − line)²
 
   [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
-  /// Returns the variance of its value at a bin where a weight of one has the variance one.
+  /// Returns the variance of its value at a bin where a weight of one has the
+  /// variance one.
   [[nodiscard]] double VarianceAt(const Course::Bin& bin) const {
     return 1 / weights + (slope == 0 ? 0.0 : (bin.cycle - x0) * (bin.cycle - x0) / spread);
   }
@@ -68,8 +69,9 @@ struct Noise {
   double degrees = 0.0;   // of freedom of that
 };
 
-/// Estimates it from second differences of the means of neighbouring blocks: a trend leaves these
-/// alone, their median disregards steps, and in blocks of eight bins correlated ones count.
+/// Estimates it from second differences of the means of neighbouring blocks: a
+/// trend leaves these alone, their median disregards steps, and in blocks of
+/// eight bins correlated ones count.
 Noise NoiseOf(Bins bins) {
   constexpr std::size_t kLongest = 8;
   constexpr std::size_t kBlocks = 16;
@@ -144,7 +146,8 @@ void Divide(Bins bins, const Noise& noise, int depth, std::vector<Segment>& segm
   segments.push_back({bins, one});
 }
 
-/// Returns the bins, each with the median of it and its neighbours: one alone that is off is none.
+/// Returns the bins, each with the median of it and its neighbours: one alone
+/// that is off is none.
 std::vector<Course::Bin> WithoutOutliers(Bins bins) {
   std::vector<Course::Bin> kept(bins.begin(), bins.end());
   for (std::size_t i = 1; i + 1 < bins.size(); ++i) {
@@ -174,8 +177,9 @@ std::optional<std::size_t> SettledAt(std::span<const Segment> segments) {
   return settled;
 }
 
-/// Returns the step from one segment to the next where there is one: a jump by more than slopes
-/// make of it within the shortest segment, and beyond chance at one of so many places.
+/// Returns the step from one segment to the next where there is one: a jump by
+/// more than slopes make of it within the shortest segment, and beyond chance
+/// at one of so many places.
 std::optional<Change> StepBetween(const Segment& before, const Segment& after, const Noise& noise,
                                   std::size_t places) {
   const std::size_t cycle = before.bins.back().last_cycle + 1;
@@ -267,14 +271,15 @@ constexpr std::array kQuantities = {
     TrackedQuantity{"energy_ratio", "", "", "rms"},
 };
 
-/// Returns one over the square of an error, within what sums of a million million neither overflow
-/// nor lose.
+/// Returns one over the square of an error, within what sums of a million
+/// million neither overflow nor lose.
 double WeightOf(double error) {
   constexpr double kLargest = 1e145;
   return std::clamp(1 / error / error, 1 / kLargest, kLargest);
 }
 
-/// Returns "+60 %"; nothing where the sign changes or it grows more than tenfold.
+/// Returns "+60 %"; nothing where the sign changes or it grows more than
+/// tenfold.
 std::string RelativeChange(double from, double to) {
   constexpr double kMost = 10;
   const double change = to / from - 1;
@@ -302,8 +307,8 @@ std::string FromTo(const std::vector<double>& values, const std::string& unit) {
                      scaled.name);
 }
 
-/// Returns the first value and the last, and between them the one that is farthest beyond both, if
-/// that is by more than half of what they differ.
+/// Returns the first value and the last, and between them the one that is
+/// farthest beyond both, if that is by more than half of what they differ.
 std::vector<double> Milestones(const CourseDescription& course) {
   const auto [low, high] = std::minmax(course.first, course.last);
   double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.first));
@@ -367,7 +372,8 @@ void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
     if (!value || fit.HasFlag(quantity.open_flag)) continue;
-    // A value without an error is exact, held or without noise: then all have one weight.
+    // A value without an error is exact, held or without noise: then all have
+    // one weight.
     const std::optional<double>& error = fit[quantity.error];
     evolution.course.Add(fit.number, *value, error && *error > 0 ? WeightOf(*error) : 1.0);
   }
@@ -385,13 +391,10 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
   if (is_open && !of_a_step.empty()) {
     std::vector<double> neighbours(of_a_step.begin(), of_a_step.end());
     of_last = steps * boost::math::statistics::median(neighbours);
-    ++replaced;
   } else if (is_open || !fit["energy"]) {
     of_last = 0.0;
-    ++left_out;
   } else {
     of_last = *fit["energy"];
-    ++measured;
     if (of_a_step.size() == kNeighbours) of_a_step.pop_front();
     of_a_step.push_back(*fit["energy"] / steps);
   }
@@ -423,7 +426,8 @@ std::string Headline(std::span<const Evolution> evolutions) {
       text += is_one ? first : FromTo({course.first, course.last}, evolution.unit);
       text += ", in too few rows to test";
     } else if (!course.changed()) {
-      // The first and the last cycle differ by scatter only, so one value stands for both.
+      // The first and the last cycle differ by scatter only, so one value
+      // stands for both.
       text += first + " throughout, but for scatter";
     } else {
       const std::vector<double> values = Milestones(course);
@@ -435,45 +439,33 @@ std::string Headline(std::span<const Evolution> evolutions) {
 }
 
 std::vector<std::string> ChangeStatements(std::span<const Evolution> evolutions, std::size_t most) {
-  struct Statement {
-    double size;  // relative
-    std::string text;
-  };
-  std::vector<Statement> statements;
-  const auto add = [&](const Evolution& evolution, const std::string& when, double from, double to,
-                       double p_value) {
-    const std::string change = RelativeChange(from, to);
-    statements.push_back(
-        {std::abs(to - from) / std::max(std::abs(from), std::abs(to)),
-         fmt::format("{}: {}, {}{}, {}", evolution.quantity->name, when,
-                     FromTo({from, to}, evolution.unit), change.empty() ? "" : " (" + change + ")",
-                     report::ChanceText(p_value, 1))});
+  std::vector<std::string> statements;
+  std::vector<double> sizes;  // relative
+  const auto add = [&](const Evolution& evolution, const std::string& when, const Change& change) {
+    const auto& [first, last, from, to, p_value] = change;
+    const std::string relative = RelativeChange(from, to);
+    sizes.push_back(std::abs(to - from) / std::max(std::abs(from), std::abs(to)));
+    statements.push_back(fmt::format(
+        "{}: {}, {}{}, {}", evolution.quantity->name, when, FromTo({from, to}, evolution.unit),
+        relative.empty() ? "" : " (" + relative + ")", report::ChanceText(p_value, 1)));
   };
   for (const Evolution& evolution : evolutions) {
     for (const Change& trend : evolution.description.trends) {
-      add(evolution, fmt::format("cycles {} to {}", trend.first_cycle, trend.last_cycle),
-          trend.from, trend.to, trend.p_value);
+      add(evolution, fmt::format("cycles {} to {}", trend.first_cycle, trend.last_cycle), trend);
     }
     for (const Change& step : evolution.description.steps) {
-      add(evolution, fmt::format("a step at cycle {}", step.first_cycle), step.from, step.to,
-          step.p_value);
+      add(evolution, fmt::format("a step at cycle {}", step.first_cycle), step);
     }
   }
-  std::vector<const Statement*> said;
-  said.reserve(statements.size());
-  for (const Statement& statement : statements) said.push_back(&statement);
-  if (said.size() > most) {  // one line says how many more
-    std::ranges::stable_sort(said, std::greater<>(), &Statement::size);
-    said.resize(most - 1);
-    std::ranges::sort(said);
-  }
+  if (statements.size() <= most) return statements;
+  std::vector<double> sorted = sizes;
+  std::ranges::sort(sorted, std::greater<>());
   std::vector<std::string> lines;
-  lines.reserve(said.size() + 1);
-  for (const Statement* statement : said) lines.push_back(statement->text);
-  if (said.size() < statements.size()) {
-    lines.push_back(
-        fmt::format("and {} smaller ones, which --json lists", statements.size() - said.size()));
+  for (std::size_t k = 0; k < statements.size(); ++k) {
+    if (sizes[k] > sorted[most - 1]) lines.push_back(std::move(statements[k]));
   }
+  lines.push_back(
+      fmt::format("and {} smaller ones, which --json lists", statements.size() - lines.size()));
   return lines;
 }
 

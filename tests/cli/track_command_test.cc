@@ -190,8 +190,6 @@ TEST_F(TrackCommand, SummarisesItsOwnTableWhateverItsRowsStandFor) {
 // A spike of the displacement turns it, and makes two pieces of a cycle.
 TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
   const json whole = JsonOf(Track("clean.csv"));
-  EXPECT_EQ(whole["energy_counts"]["measured"], kCycles);
-  EXPECT_EQ(whole["energy_counts"]["replaced"], 0);
   const Table rows = Rows(ContentOf("clean.csv"));
   std::vector<std::string> lines = Lines(text_);
   for (const std::size_t cycle : {40U, 90U, 150U}) {
@@ -201,7 +199,6 @@ TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
   }
   Write("spiked.csv", Joined(lines));
   const json spiked = JsonOf(Track("spiked_table.csv", "spiked.csv"));
-  EXPECT_EQ(spiked["energy_counts"]["replaced"], 6);
   // Two of 200 cycles would be one per cent.
   EXPECT_NEAR(spiked["accumulated_energy"].get<double>(), whole["accumulated_energy"].get<double>(),
               1e-3 * whole["accumulated_energy"].get<double>());

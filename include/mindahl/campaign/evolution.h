@@ -123,9 +123,6 @@ void Describe(std::vector<Evolution>& evolutions);
 struct DissipatedEnergy {
   std::size_t together = 1;  ///< cycles of one fit
   double total = 0.0;        ///< up to the end of the last fit's cycles, or of all once finished
-  std::size_t measured = 0;  ///< fits with an energy of their own, glitches interpolated
-  std::size_t replaced = 0;  ///< fits given the energy per sample of the measured ones before
-  std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
   std::deque<double> of_a_step{};  ///< energies [J] of the last that were measured
   std::size_t counted = 0;         ///< cycles that are in the total
   double of_last = 0.0;            ///< energy [J] of a cycle of the last fit
