@@ -14,7 +14,7 @@
 
 #include "cli/command.h"
 #include "core/nearest_name.h"
-#include "mindahl/core/memory.h"
+#include "core/platform.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "core/text.h"
@@ -15,33 +14,27 @@ namespace {
 
 /// Edits from one text to the other, in which no part is edited twice.
 std::size_t EditDistance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> before_last(to.size() + 1);
-  std::vector<std::size_t> last(to.size() + 1);
-  std::vector<std::size_t> row(to.size() + 1);
-  for (std::size_t j = 0; j <= to.size(); ++j) row[j] = j;
+  std::vector<std::vector<std::size_t>> edits(from.size() + 1,
+                                              std::vector<std::size_t>(to.size() + 1));
+  for (std::size_t i = 0; i <= from.size(); ++i) edits[i][0] = i;
+  for (std::size_t j = 0; j <= to.size(); ++j) edits[0][j] = j;
   for (std::size_t i = 1; i <= from.size(); ++i) {
-    before_last.swap(last);
-    last.swap(row);
-    row[0] = i;
     for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = last[j - 1] + (from[i - 1] == to[j - 1] ? 0 : 1);
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
+      const std::size_t replaced = edits[i - 1][j - 1] + (from[i - 1] == to[j - 1] ? 0 : 1);
+      edits[i][j] = std::min({edits[i - 1][j] + 1, edits[i][j - 1] + 1, replaced});
       const bool swapped = i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1];
-      if (swapped) row[j] = std::min(row[j], before_last[j - 2] + 1);
+      if (swapped) edits[i][j] = std::min(edits[i][j], edits[i - 2][j - 2] + 1);
     }
   }
-  return row[to.size()];
+  return edits.back().back();
 }
-
-/// Edits by which a word of so many letters may be off the name that is meant.
-std::size_t MostEdits(std::size_t letters) { return std::clamp<std::size_t>(letters / 3, 1, 3); }
 
 }  // namespace
 
 std::optional<std::string> NearestName(std::string_view word, std::span<const std::string> names) {
   const std::string lower = LowerCase(word);
   std::optional<std::string> nearest;
-  std::size_t least = MostEdits(word.size()) + 1;
+  std::size_t least = std::clamp<std::size_t>(word.size() / 3, 1, 3) + 1;
   for (const std::string& name : names) {
     const std::size_t edits = EditDistance(lower, LowerCase(name));
     // A name that shares no letter with the word is no remedy for it.
@@ -51,10 +44,8 @@ std::optional<std::string> NearestName(std::string_view word, std::span<const st
     }
   }
   if (nearest || word.size() < 3) return nearest;
-  std::size_t shortest = std::numeric_limits<std::size_t>::max();
   for (const std::string& name : names) {
-    if (name.size() < shortest && LowerCase(name).starts_with(lower)) {
-      shortest = name.size();
+    if (LowerCase(name).starts_with(lower) && (!nearest || name.size() < nearest->size())) {
       nearest = name;
     }
   }

@@ -1,17 +1,20 @@
 #include "core/platform.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -27,11 +30,6 @@ extern char** environ;
 #endif
 
 namespace mindahl {
-namespace {
-
-constexpr std::uintmax_t kUnknown = std::numeric_limits<std::uintmax_t>::max();
-
-}  // namespace
 
 void EndAtOnce(std::string_view message, int status) {
   const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
@@ -59,20 +57,22 @@ void IgnoreFileSizeSignal() { std::signal(SIGXFSZ, SIG_IGN); }
 
 int ProcessNumber() { return ::getpid(); }
 
-std::uintmax_t MemoryOfMachine() {
+std::uintmax_t MemoryOfProcess() {
+  std::uintmax_t least = std::numeric_limits<std::uintmax_t>::max();
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long page = ::sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page <= 0) return kUnknown;
-  return static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
-}
-
-std::uintmax_t MemoryLimit() {
+  if (pages > 0 && page > 0) {
+    least = static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
+  }
   rlimit limit{};
-  const bool is_known = ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-  return is_known ? limit.rlim_cur : kUnknown;
+  const bool is_limited = ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  if (is_limited) least = std::min<std::uintmax_t>(least, limit.rlim_cur);
+  std::uintmax_t of_group = 0;  // no number where the file says "max"
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> of_group) least = std::min(least, of_group);
+  return least;
 }
 
-std::uintmax_t PeakMemory() {
+std::string OutOfMemoryText() {
 #ifdef __APPLE__
   constexpr std::uintmax_t kUnit = 1;  // [bytes]
 #else
@@ -80,7 +80,17 @@ std::uintmax_t PeakMemory() {
 #endif
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uintmax_t>(usage.ru_maxrss) * kUnit;
+  return fmt::format("memory ran out: the process had {} and may have {}",
+                     BytesInWords(static_cast<std::uintmax_t>(usage.ru_maxrss) * kUnit),
+                     BytesInWords(MemoryOfProcess()));
+}
+
+std::string BytesInWords(std::uintmax_t bytes) {
+  constexpr double kMegabyte = 1e6;
+  constexpr double kGigabyte = 1e9;
+  const auto size = static_cast<double>(bytes);
+  return size < kGigabyte ? fmt::format("{:.3g} MB", size / kMegabyte)
+                          : fmt::format("{:.3g} GB", size / kGigabyte);
 }
 
 int OpenFile(const std::string& name, Opening opening, int& file) {
@@ -166,19 +176,10 @@ int RunProgram(std::vector<std::string> words, std::string_view input, ProgramOu
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  // Ends it where its file may not grow.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  sigaddset(&defaults, SIGXFSZ);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = 0;
   if (error == 0) {
-    error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+    error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   }
-  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) return error;
   int status = 0;

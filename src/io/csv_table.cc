@@ -9,10 +9,10 @@
 #include <system_error>
 #include <utility>
 
+#include "core/platform.h"
 #include "io/source.h"
 #include "io/table_reader.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 
 namespace mindahl::io {
 namespace {

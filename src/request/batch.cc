@@ -15,10 +15,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/platform.h"
 #include "core/probability.h"
 #include "io/source.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "report/html.h"
 #include "report/json.h"
