@@ -12,7 +12,7 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/simplified_law.h"
-#include "mindahl/tradeoff/approximation.h"
+#include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::cli {
 

@@ -1,7 +1,6 @@
-#include "mindahl/tradeoff/approximation.h"
-
 #include <set>
 
+#include "mindahl/tradeoff/work_precision.h"
 #include "support/prelude.h"
 
 namespace mindahl::tradeoff::approximation_test {
