@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <map>
-#include <tuple>
 #include <utility>
 
 #include "core/probability.h"
@@ -27,71 +24,51 @@ using identification::ParameterStatus;
 
 namespace {
 
-/// Values of a fit's parameters by their names.
-using Values = std::map<std::string_view, double>;
+/// Says how a quantity follows a parameter of the fit.
+struct Dependence {
+  const ParameterEstimate* parameter;
+  double exponent = 0.0;  ///< of the parameter or, with a factor, of 1 + factor·parameter
+  double factor = 0.0;
 
-Values ValuesOf(const FitResult& fit) {
-  Values values;
-  for (const ParameterEstimate& estimate : fit.parameters) values[estimate.name] = estimate.value;
-  return values;
-}
-
-/// Returns a quantity, > 0; empty where the parameters are none of a contact.
-using Formula = std::function<std::optional<UncertainValue>(const Values&)>;
-
-/// Returns how far the interval of each parameter takes the logarithm of a quantity to its larger,
-/// or its smaller, end, negative where the parameter falls; empty where an end is open.
-std::optional<std::vector<double>> WaysTo(bool up, const FitResult& fit, const Formula& formula) {
-  const Values values = ValuesOf(fit);
-  const double found = formula(values)->value;
-  std::vector<double> ways(fit.parameters.size(), 0.0);
-  for (std::size_t k = 0; k < ways.size(); ++k) {
-    const ParameterEstimate& estimate = fit.parameters[k];
-    if (estimate.status == ParameterStatus::kFixed) continue;
-    const auto change = [&](double value) -> std::optional<double> {
-      Values moved = values;
-      moved[estimate.name] = value;
-      const auto quantity = formula(moved);
-      return quantity ? std::optional(std::log(quantity->value / found)) : std::nullopt;
-    };
-    // The step shows whether the quantity grows with the parameter. It is small because E may have
-    // no value further away. Where the contact radius is given, p₀ does not depend on the fit.
-    const double step = 1e-6 * (estimate.value == 0 ? 1.0 : std::abs(estimate.value));
-    const double trend = change(estimate.value + step).value_or(0.0);
-    if (trend == 0) continue;
-    const bool rises = up == (trend > 0);
-    const std::optional<double> end = rises ? estimate.upper95 : estimate.lower95;
-    const std::optional<double> way = end ? change(*end) : std::nullopt;
-    if (!way || !std::isfinite(*way)) return std::nullopt;
-    ways[k] = rises ? std::abs(*way) : -std::abs(*way);
+  /// Returns the logarithm of the quantity as far as it depends on a value of the parameter.
+  [[nodiscard]] double LogAt(double value) const {
+    return exponent * std::log(factor == 0 ? value : 1 + factor * value);
   }
-  return ways;
+  /// Returns how far the interval of the parameter takes the logarithm up, or down, negative where
+  /// the parameter falls; empty where that end is open.
+  [[nodiscard]] std::optional<double> WayTo(bool up) const {
+    if (parameter->status == ParameterStatus::kFixed || exponent == 0) return 0.0;
+    const bool rises = up == (exponent * (factor == 0 ? 1 : factor) > 0);
+    const std::optional<double>& end = rises ? parameter->upper95 : parameter->lower95;
+    if (!end) return std::nullopt;
+    const double way = std::abs(LogAt(*end) - LogAt(parameter->value));
+    return std::isfinite(way) ? std::optional(rises ? way : -way) : std::nullopt;
+  }
+};
+
+double CorrelationOf(const FitResult& fit, const Dependence& one, const Dependence& other) {
+  const std::size_t count = fit.parameters.size();
+  if (fit.correlation.size() != count * count) return 0.0;
+  const auto place = [&](const Dependence& of) {
+    return static_cast<std::size_t>(of.parameter - fit.parameters.data());
+  };
+  const double known = fit.correlation[place(one) * count + place(other)];
+  return std::isfinite(known) ? known : 0.0;
 }
 
-/// Sets value and ends of a quantity: the ways of its parameters added in quadrature, with their
-/// correlations and the uncertainty of its inputs.
-void Fill(const FitResult& fit, const Formula& formula, ContactQuantity& quantity) {
-  const UncertainValue found = *formula(ValuesOf(fit));
+/// Sets value and ends of a quantity > 0: the ways of its parameters added in quadrature, with
+/// their correlation and the uncertainty of its inputs.
+void Fill(const FitResult& fit, const UncertainValue& found, const Dependence& one,
+          const Dependence& other, ContactQuantity& quantity) {
   quantity.value = found.value;
   quantity.why = "the interval of what it follows from is open";
-  const double of_inputs =
-      NormalQuantile(fit.confidence) * found.standard_error / std::abs(found.value);
-  const std::size_t count = fit.parameters.size();
-  const auto correlation = [&](std::size_t i, std::size_t j) {
-    if (i == j) return 1.0;
-    const double known =
-        fit.correlation.size() == count * count ? fit.correlation[i * count + j] : 0.0;
-    return std::isfinite(known) ? known : 0.0;
-  };
+  const double of_inputs = NormalQuantile(fit.confidence) * found.standard_error / found.value;
   for (const bool up : {false, true}) {
-    const std::optional<std::vector<double>> ways = WaysTo(up, fit, formula);
-    if (!ways) continue;
-    double squares = of_inputs * of_inputs;
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < count; ++j) {
-        squares += (*ways)[i] * (*ways)[j] * correlation(i, j);
-      }
-    }
+    const std::optional<double> first = one.WayTo(up);
+    const std::optional<double> second = other.WayTo(up);
+    if (!first || !second) continue;
+    const double squares = of_inputs * of_inputs + *first * *first + *second * *second +
+                           2 * *first * *second * CorrelationOf(fit, one, other);
     const double whole = std::sqrt(std::max(squares, 0.0));
     (up ? quantity.upper : quantity.lower) = found.value * std::exp(up ? whole : -whole);
   }
@@ -102,36 +79,22 @@ struct QuantityRow {
   std::string_view symbol;
   std::string_view unit;
   std::string_view parameter;
+  double exponent;  ///< of the parameter, unless the contact radius is given
   Kind kind;
   bool is_of_sphere = true;  ///< follows only where Hertz's law of the load is not denied
   const char* why = "";      ///< inputs that it needs; "" for those of contact::MissingInputs()
 };
 
 constexpr std::array kQuantities = {
-    QuantityRow{"friction_coefficient", "μ", "-", "slip_force", Kind::kFrictionCoefficient, false},
-    QuantityRow{"contact_radius", "a", "m", "sigma", Kind::kContactRadius, false},
-    QuantityRow{"compliance", "G*", "1/Pa", "sigma", Kind::kTangentialCompliance, false},
-    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", Kind::kStiffnessRatio, false,
-                "needs materials, radii and load, or contact radius and compliance"},
-    QuantityRow{"equivalent_radius", "ρ", "m", "sigma", Kind::kEquivalentRadius},
-    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma", Kind::kMaximumPressure},
+    QuantityRow{"friction_coefficient", "μ", "-", "slip_force", 1, Kind::kFrictionCoefficient,
+                false},
+    QuantityRow{"contact_radius", "a", "m", "sigma", 1, Kind::kContactRadius, false},
+    QuantityRow{"compliance", "G*", "1/Pa", "sigma", -1, Kind::kTangentialCompliance, false},
+    QuantityRow{"sigma_over_hertz_mindlin", "σ/(8a/G*)", "-", "sigma", 1, Kind::kStiffnessRatio,
+                false, "needs materials, radii and load, or contact radius and compliance"},
+    QuantityRow{"equivalent_radius", "ρ", "m", "sigma", 3, Kind::kEquivalentRadius},
+    QuantityRow{"maximum_pressure", "p₀", "Pa", "sigma", -2, Kind::kMaximumPressure},
 };
-
-/// Lists what several loads make known of the materials of a smooth sphere of known radii.
-constexpr std::array kOfSeries = {
-    QuantityRow{"compliance", "G*", "1/Pa", "sigma", Kind::kSphereCompliance},
-    QuantityRow{"effective_modulus", "E*", "Pa", "sigma", Kind::kSphereEffectiveModulus},
-    QuantityRow{"youngs_modulus", "E", "Pa", "sigma", Kind::kSphereYoungsModulus},
-};
-
-Formula FormulaOf(Kind kind, const KnownContact& known) {
-  return [kind, &known](const Values& at) -> std::optional<UncertainValue> {
-    const double sigma = at.at("sigma");
-    const double slip_force = at.at("slip_force");
-    if (!(sigma > 0 && slip_force > 0)) return std::nullopt;
-    return contact::IdentifyContact(kind, sigma, slip_force, known);
-  };
-}
 
 constexpr std::string_view kWhyNoSphere =
     "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
@@ -151,19 +114,20 @@ bool IsThatOfThePlateau(const FitResult& fit, double sense, double slip_force) {
 
 /// Returns the force at which the contact slips in one direction, Tc(1 ± A).
 /// @param sense  +1 towards positive displacement, −1 the other way
-void FillSlipForce(const FitResult& fit, double sense, ContactQuantity& quantity) {
-  const Formula formula = [sense](const Values& at) -> std::optional<UncertainValue> {
-    const double force = at.at("slip_force") * (1 + sense * at.at("asymmetry"));
-    return force > 0 ? std::optional<UncertainValue>(force) : std::nullopt;
-  };
-  const std::optional<UncertainValue> found = formula(ValuesOf(fit));
-  if (!fit.Find("slip_force")->is_known() || !fit.Find("asymmetry")->is_known() || !found) {
+ContactQuantity SlipForce(const FitResult& fit, std::string_view name, std::string_view symbol,
+                          double sense) {
+  ContactQuantity quantity{.name = name, .symbol = symbol, .unit = "N", .parameter = "slip_force"};
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  const ParameterEstimate& asymmetry = *fit.Find("asymmetry");
+  const double force = slip_force.value * (1 + sense * asymmetry.value);
+  if (!slip_force.is_known() || !asymmetry.is_known() || !(force > 0)) {
     quantity.why = "slip_force or asymmetry is not identifiable";
-  } else if (!IsThatOfThePlateau(fit, sense, found->value)) {
+  } else if (!IsThatOfThePlateau(fit, sense, force)) {
     quantity.why = "the measured strokes do not show it: it stands for an offset of the force";
   } else {
-    Fill(fit, formula, quantity);
+    Fill(fit, force, {&slip_force, 1}, {&asymmetry, 1, sense}, quantity);
   }
+  return quantity;
 }
 
 constexpr double kThird = contact::kMindlinShapeExponent;  // of α, and Hertz's of the load
@@ -190,63 +154,47 @@ ContactQuantity NormalLoad(const FitResult& fit, const KnownContact& known) {
 
 std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownContact& known) {
   const bool denies_hertz = DeniesHertz(fit);
-  const auto describe = [&](const QuantityRow& row) {
-    ContactQuantity quantity{
-        .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter};
+  const ParameterEstimate& sigma = *fit.Find("sigma");
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  std::vector<ContactQuantity> quantities;
+  for (const QuantityRow& row : kQuantities) {
+    ContactQuantity& quantity = quantities.emplace_back(ContactQuantity{
+        .name = row.name, .symbol = row.symbol, .unit = row.unit, .parameter = row.parameter});
     const ParameterEstimate& parameter = *fit.Find(row.parameter);
-    const bool needs_fit = !(row.name == "maximum_pressure" && known.contact_radius);
-    const Formula formula = FormulaOf(row.kind, known);
-    const std::optional<UncertainValue> at_estimate = formula(ValuesOf(fit));
+    const bool has_radius = row.is_of_sphere && known.contact_radius;
+    const Dependence dependence{&parameter, has_radius ? 0.0 : row.exponent};
+    std::optional<UncertainValue> found;
+    if (sigma.value > 0 && slip_force.value > 0) {
+      found = contact::IdentifyContact(row.kind, sigma.value, slip_force.value, known);
+    }
     if (row.is_of_sphere && denies_hertz) {
       quantity.why = kWhyNoSphere;
-    } else if (!at_estimate) {
+    } else if (!found) {
       quantity.why = row.why;
       if (quantity.why.empty()) {
         quantity.why =
             fmt::format("needs {}", fmt::join(contact::MissingInputs(known, row.kind), ", "));
       }
-    } else if (needs_fit && !parameter.is_known()) {
+    } else if (dependence.exponent != 0 && !parameter.is_known()) {
       quantity.why = fmt::format("needs an identifiable {}", row.parameter);
       if (row.name == "friction_coefficient" && WhatIsShown(parameter) == Shown::kLowerLimit) {
-        quantity.lower = at_estimate->value * *parameter.lower95 / parameter.value;
+        quantity.lower = found->value * *parameter.lower95 / parameter.value;
       }
     } else {
-      Fill(fit, formula, quantity);
+      Fill(fit, *found, dependence, {&parameter}, quantity);
     }
-    return quantity;
-  };
-  std::vector<ContactQuantity> quantities;
-  for (const QuantityRow& row : kQuantities) {
-    quantities.push_back(describe(row));
     if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
-    for (const auto& [name, symbol, sense] :
-         {std::tuple("slip_force_positive", "Tc up", 1.0), {"slip_force_negative", "down", -1.0}}) {
-      ContactQuantity& force = quantities.emplace_back(
-          ContactQuantity{.name = name, .symbol = symbol, .unit = "N", .parameter = "slip_force"});
-      FillSlipForce(fit, sense, force);
-    }
-  }
-  for (const QuantityRow& row : kOfSeries) {
-    const bool is_known = FormulaOf(row.kind, known)(ValuesOf(fit)).has_value();
-    if (!fit.is_load_series() || !known.normal_load || !is_known) continue;
-    const auto old = std::ranges::find(quantities, row.name, &ContactQuantity::name);
-    if (old == quantities.end()) {
-      quantities.push_back(describe(row));
-    } else if (!old->value) {
-      *old = describe(row);
-    }
+    quantities.push_back(SlipForce(fit, "slip_force_positive", "Tc up", 1));
+    quantities.push_back(SlipForce(fit, "slip_force_negative", "down", -1));
   }
   ContactQuantity gross_slip{
       .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
-  if (!fit.Find("sigma")->is_known() || !fit.Find("slip_force")->is_known()) {
+  if (!sigma.is_known() || !slip_force.is_known()) {
     gross_slip.why = "needs an identifiable sigma and slip_force";
   } else if (TestAlpha(fit).is_rejected.value_or(false)) {
     gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
   } else {
-    const Formula formula = [](const Values& at) {
-      return 1.5 * at.at("slip_force") / at.at("sigma");
-    };
-    Fill(fit, formula, gross_slip);
+    Fill(fit, 1.5 * slip_force.value / sigma.value, {&slip_force, 1}, {&sigma, -1}, gross_slip);
   }
   quantities.push_back(std::move(gross_slip));
   quantities.push_back(NormalLoad(fit, known));
