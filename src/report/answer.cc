@@ -53,6 +53,13 @@ bool IsOfLaw(std::string_view parameter) {
   return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
 }
 
+/// Returns "half gap" of "half_gap".
+std::string WithBlanks(std::string_view name) {
+  std::string text(name);
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
 /// Findings that a line of the answer says in its own words.
 bool IsSaidByALine(std::string_view code) {
   constexpr auto kSaid =
@@ -388,13 +395,15 @@ std::string MisfitStatement(const Report& report) {
 std::vector<Line> AnswerLines(const Report& report) { return Writer(report).Answer(); }
 
 std::vector<Line> DetailLines(const Report& report) {
+  constexpr int kDigits = 4;
   std::vector<Line> lines;
   const FitResult& fit = report.fit;
   if (report.notes.size() > 1) {
     for (const std::string& note : report.notes) lines.push_back({"read as", note});
   }
+  const Json document = DocumentOf(report);
   lines.push_back({"model", fmt::format("{}, initial state {}", fit.model->title,
-                                        fmt::join(ValuesUnder(report, "initial_state"), ""))});
+                                        CellText(document["initial_state"]))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
     const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
@@ -403,13 +412,15 @@ std::vector<Line> DetailLines(const Report& report) {
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});
   }
   for (const char* section : {"input", "measured", "adequacy", "residuals", "mapping", "solver"}) {
-    const std::vector<std::string> values = ValuesUnder(report, section);
+    std::vector<std::string> values;
+    for (const auto& [name, value] : document[section].items()) {
+      if (value.is_null() || value.is_structured()) continue;
+      values.push_back(fmt::format("{} {}", WithBlanks(name), CellText(value, kDigits)));
+    }
     if (!values.empty()) lines.push_back({section, fmt::format("{}", fmt::join(values, ", "))});
   }
   for (const identification::Cause& cause : fit.adequacy.causes) {
-    std::string code(cause.code);
-    std::ranges::replace(code, '_', ' ');
-    lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", code,
+    lines.push_back({"looks like", fmt::format("{}, {:.0f} % of the misfit", WithBlanks(cause.code),
                                                std::min(100.0, 100 * cause.explains))});
   }
   for (const Finding& finding : fit.findings) {

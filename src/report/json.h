@@ -66,24 +66,10 @@ std::string TableCsv(const Json& rows);
 /// Returns the rows as a table of a page; "" of none.
 std::string TableHtml(std::string_view caption, const Json& rows);
 
-// --- the fields of a fit's JSON, one row each, from which details of the text and of the page and
-// the table of docs/contract.md are made too
+// --- the JSON of a fit, from which details of the text and of the page are made too
 
-/// One row of the report.
-struct Field {
-  std::string_view path;     ///< "residuals.rms"
-  std::string_view unit;     ///< unit of a force; "" of a text, "-" of a ratio
-  std::string_view meaning;  ///< in words
-  /// Makes the value, null where there is none; it may be a list or an object of any depth.
-  Json (*get)(const Report&);
-  std::string_view why_null = {};  ///< why it, or a member of it, is null
-};
-
-const std::vector<Field>& Fields();
-
-/// Returns the numbers and words in a section of the JSON, "rms 0.4 N", behind their names and with
-/// their units; none of what is null or has members.
-std::vector<std::string> ValuesUnder(const Report& report, std::string_view section);
+/// Returns the JSON that ToJson() writes.
+Json DocumentOf(const Report& report);
 
 /// Returns a row for each model that was compared and converged, the best first.
 Json ComparedModels(const Report& report);

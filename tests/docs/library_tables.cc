@@ -19,14 +19,6 @@ namespace {
 
 using report::Json;
 
-Json FieldsTable() {
-  Json rows = Json::array();
-  for (const report::Field& field : report::Fields()) {
-    rows.push_back({{"path", field.path}, {"unit", field.unit}, {"meaning", field.meaning}});
-  }
-  return rows;
-}
-
 /// Returns the first name by which `--terms` adds a term; empty where there is none.
 std::string_view OptionOf(const identification::Term& term) {
   for (const identification::TermGroup& group : identification::TermGroups()) {
@@ -96,9 +88,10 @@ Json Columns() {
 }  // namespace mindahl
 
 int main() {
-  const mindahl::report::Json tables = {
-      {"fields", mindahl::FieldsTable()},     {"terms", mindahl::TermsTable()},
-      {"findings", mindahl::FindingsTable()}, {"causes", mindahl::CausesTable()},
-      {"flags", mindahl::FlagsTable()},       {"columns", mindahl::Columns()}};
+  const mindahl::report::Json tables = {{"terms", mindahl::TermsTable()},
+                                        {"findings", mindahl::FindingsTable()},
+                                        {"causes", mindahl::CausesTable()},
+                                        {"flags", mindahl::FlagsTable()},
+                                        {"columns", mindahl::Columns()}};
   std::cout << tables.dump(1) << '\n';
 }

@@ -63,9 +63,17 @@ def in_page_order(rows, kept):
     return sorted(rows, key=lambda row: order.get(row[0], len(order)))
 
 
-def fields_table(tables, _, __):
-    return table(["key", "unit", "what it is"],
-                 [[code(row["path"]), row["unit"], cell(row["meaning"])] for row in tables["fields"]])
+def fields_of(node, path):
+    """What the schema of a fit describes."""
+    if path and "description" in node:
+        yield [code(path), node.get("unit", ""), cell(node["description"])]
+    for name, member in node.get("properties", {}).items():
+        yield from fields_of(member, f"{path}.{name}" if path else name)
+
+
+def fields_table(*_):
+    schema = json.loads((ROOT / "docs/schema/fit.json").read_text())
+    return table(["key", "unit", "what it is"], fields_of(schema, ""))
 
 
 def terms_table(tables, _, __):

@@ -1,10 +1,11 @@
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "mindahl/identification/terms.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
-#include "report/json.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 #include "support/unit_scale.h"
@@ -17,11 +18,17 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns the unit that the contract states of a path; empty where it states none.
+/// Returns the unit that the schema states of a path; empty where it states none.
 std::string StatedUnit(const std::string& path) {
-  for (const report::Field& field : report::Fields()) {
-    if (field.path == path) return std::string(field.unit);
+  static const json kSchema =
+      json::parse(std::ifstream(MINDAHL_SOURCE_DIR "/docs/schema/fit.json"));
+  const json* node = &kSchema;
+  std::istringstream names(path);
+  for (std::string name; std::getline(names, name, '.') && node != nullptr;) {
+    const json::json_pointer place = json::json_pointer("/properties") / name;
+    node = node->contains(place) ? &(*node)[place] : nullptr;
   }
+  if (node != nullptr && node->contains("unit")) return (*node)["unit"];
   // Members of cycles, of the other law and of models that are compared.
   static const std::map<std::string, std::string> kOfMembers = {
       {"amplitude", "m"}, {"peak_force", "N"}, {"half_gap", "N"}, {"energy", "J"},

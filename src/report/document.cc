@@ -1,0 +1,380 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "mindahl/core/version.h"
+#include "mindahl/identification/terms.h"
+#include "report/json.h"
+#include "report/statements.h"
+
+// Makes the JSON of a fit. docs/schema/fit.json says what each of its members is, and in what unit.
+namespace mindahl::report {
+
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+using identification::RecordFit;
+
+namespace {
+
+Json ColumnJson(const io::ChosenColumn* column) {
+  if (column == nullptr || column->index == 0) return nullptr;
+  return {{"name", column->name}, {"index", column->index}, {"unit", column->unit}};
+}
+
+Json Columns(const Report& report) {
+  const io::RecordFile& first = report.records.front();
+  return {{"displacement", ColumnJson(&first.displacement)},
+          {"force", ColumnJson(&first.force)},
+          {"time", ColumnJson(first.time ? &*first.time : nullptr)},
+          {"normal_load", ColumnJson(first.normal_load ? &*first.normal_load : nullptr)}};
+}
+
+Json Samples(const Report& report) {
+  std::size_t samples = 0;
+  for (const io::RecordFile& file : report.records) {
+    samples += file.record.size() + (file.piece ? file.piece->left_out : 0);
+  }
+  for (const LeftOut& part : report.left_out) samples += part.samples;
+  return samples;
+}
+
+Json LeftOutJson(const Report& report) {
+  const auto line = [](std::size_t number) { return number > 0 ? Json(number) : Json(); };
+  return ListOf(DescribeLeftOut(report), [&](const LeftOut& part) -> Json {
+    return {{"file", part.file},
+            {"samples", part.samples},
+            {"first", line(part.first)},
+            {"last", line(part.last)},
+            {"why", part.why}};
+  });
+}
+
+/// True where a value is only where the search ended: at a limit of the program's own.
+bool IsAtOwnLimit(const ParameterEstimate& estimate) {
+  return (estimate.status == ParameterStatus::kAtLowerBound ||
+          estimate.status == ParameterStatus::kAtUpperBound) &&
+         estimate.identifiability == identification::Identifiability::kNotIdentifiable;
+}
+
+Json Parameters(const Report& report) {
+  Json parameters = Json::object();
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const bool is_at_limit = IsAtOwnLimit(estimate);
+    const auto unless_at_limit = [&](std::optional<double> value) {
+      return is_at_limit ? Json() : NumberOrNull(value);
+    };
+    parameters[estimate.name] = {
+        {"value", unless_at_limit(estimate.value)},
+        {"unit", estimate.unit},
+        {"ci95", {unless_at_limit(estimate.lower95), unless_at_limit(estimate.upper95)}},
+        {"standard_error", unless_at_limit(estimate.standard_error)},
+        {"status", Name(estimate.status)},
+        {"identifiability", Name(estimate.identifiability)}};
+  }
+  return parameters;
+}
+
+Json Correlations(const Report& report) {
+  const auto& parameters = report.fit.parameters;
+  const std::vector<double>& correlation = report.fit.correlation;
+  Json matrix = Json::object();
+  if (correlation.size() != parameters.size() * parameters.size()) return matrix;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    Json row = Json::object();
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      row[parameters[j].name] = NumberOrNull(correlation[i * parameters.size() + j]);
+    }
+    matrix[parameters[i].name] = std::move(row);
+  }
+  return matrix;
+}
+
+Json MeasuredJson(const Report& report) {
+  static const RecordFit kNone;
+  const RecordFit& widest = report.failed() ? kNone : report.fit.WidestRecord();
+  const loop::LoopFacts& facts = widest.facts;
+  const auto if_closed = [&](std::optional<double> value) {
+    return facts.closed ? NumberOrNull(value) : Json();
+  };
+  const auto else_measured = [&](double of_cycles, double of_record) {
+    if (report.failed()) return Json();
+    return NumberOrNull(facts.closed ? of_cycles : of_record);
+  };
+  return {{"half_gap",
+           {{"value", if_closed(facts.half_gap)},
+            {"standard_deviation", if_closed(facts.half_gap_standard_deviation)}}},
+          {"amplitude", else_measured(facts.amplitude, widest.measures.amplitude)},
+          {"peak_force", else_measured(facts.peak_force, widest.measures.peak_force)},
+          {"energy_per_cycle", if_closed(facts.energy_per_cycle)},
+          {"energy_ratio", if_closed(facts.energy_ratio)},
+          {"asymmetry", if_closed(facts.asymmetry)},
+          {"slides", report.failed() ? Json() : Json(loop::Slides(facts))},
+          {"cycles", ListOf(facts.cycles, [](const loop::CycleFacts& cycle) -> Json {
+             return {{"start", cycle.start},
+                     {"amplitude", NumberOrNull(cycle.amplitude)},
+                     {"peak_force", NumberOrNull(cycle.peak_force)},
+                     {"half_gap", NumberOrNull(cycle.half_gap)},
+                     {"energy", NumberOrNull(cycle.energy)},
+                     {"energy_ratio", NumberOrNull(cycle.energy_ratio)}};
+           })}};
+}
+
+Json AdequacyJson(const Report& report) {
+  const identification::Adequacy& adequacy = report.fit.adequacy;
+  const bool is_judged = IsJudged(report);
+  const auto number = [&](std::optional<double> value) {
+    return is_judged ? NumberOrNull(value) : Json();
+  };
+  return {{"verdict", is_judged ? Json(Name(adequacy.verdict)) : Json()},
+          {"use", is_judged ? Json(Name(adequacy.use)) : Json()},
+          {"p_value", number(adequacy.p_value)},
+          {"misfit_over_noise", number(adequacy.misfit_over_noise)},
+          {"misfit_over_half_gap", number(adequacy.misfit_over_half_gap)},
+          {"causes", ListOf(adequacy.causes, [](const identification::Cause& cause) -> Json {
+             return {{"code", cause.code},
+                     {"term", cause.term.empty() ? Json() : Json(cause.term)},
+                     {"delta_aicc", NumberOrNull(cause.delta_aicc)},
+                     {"explains", NumberOrNull(cause.explains)}};
+           })}};
+}
+
+Json LawChoiceJson(const std::optional<identification::LawChoice>& choice) {
+  Json alternatives = Json::array();
+  if (choice) {
+    alternatives.push_back({{"law", choice->alternative->name}});
+    alternatives.back().update(LawJson(choice->law));
+  }
+  const bool prefers = choice && choice->preferred != nullptr;
+  return {{"decided", choice && choice->decided},
+          {"preferred", prefers ? Json(choice->preferred->name) : Json()},
+          {"alternatives", std::move(alternatives)},
+          {"delta_aicc", choice ? NumberOrNull(choice->delta_aicc) : Json()}};
+}
+
+Json ContactJson(const Report& report) {
+  Json contact = Json::object();
+  for (const ContactQuantity& quantity : report.contact) {
+    contact[std::string(quantity.name)] = {
+        {"value", NumberOrNull(quantity.value)},
+        {"ci95", {NumberOrNull(quantity.lower), NumberOrNull(quantity.upper)}},
+        {"unit", quantity.unit}};
+  }
+  return contact;
+}
+
+Json TermsJson(const Report& report) {
+  Json considered = Json::array();
+  if (report.terms) {
+    considered = ListOf(report.terms->considered, [](const auto& term) -> Json {
+      return {{"name", term.name},
+              {"gain", NumberOrNull(term.gain)},
+              {"added", term.added},
+              {"refused", term.obstacle}};
+    });
+  }
+  Json added = ListOf(AddedTerms(report), [](const auto* term) -> Json { return term->name; });
+  const char* const mode = !considered.empty() ? "auto" : added.empty() ? "none" : "named";
+  return {{"mode", mode}, {"considered", std::move(considered)}, {"added", std::move(added)}};
+}
+
+Json NextJson(const std::optional<NextStep>& next) {
+  if (!next) return nullptr;
+  return {{"text", next->text},
+          {"options", next->options},
+          {"misfit_before", next->misfit_before},
+          {"misfit_after", next->misfit_after}};
+}
+
+/// Reasons of nulls by the path of a value or of an object that has it.
+using Reasons = std::map<std::string, std::string>;
+
+Reasons ReasonsOf(const Report& report) {
+  if (report.failed()) return {{"", "the fit failed: " + report.fit.solver.message}};
+  constexpr const char* kNotTested =
+      "alpha is held, at a bound or not identifiable, or it is a torque";
+  Reasons reasons = {
+      {"", "not a finite number"},
+      {"input.columns", "the file has none, or it is not used"},
+      {"input.left_out", "they are not in a row"},
+      {"correlation", "one of the two is not fitted, or has no error"},
+      {"adequacy", "there are too few samples to identify anything in addition to the model"},
+      {"adequacy.misfit_over_half_gap", "it is not judged, or no half gap is measured"},
+      {"adequacy.causes", "no term takes it into account"},
+      {"measured", "no cycle is closed"},
+      {"measured.half_gap.standard_deviation",
+       "there are fewer than two cycles of the widest amplitude"},
+      {"measured.cycles", "the cycle does not show it"},
+      {"law.preferred", "the record does not distinguish the laws, or they are not compared"},
+      {"law.delta_aicc",
+       "both give the same steady loop of one amplitude, or they are not compared"},
+      {"mapping", kNotTested},
+      {"mapping.sigma_over_hertz_mindlin",
+       "as of contact.sigma_over_hertz_mindlin; not of a torque"},
+      {"compared", "there are no cycles to hold out, or a fit without them failed"},
+      {"next", "nothing that was tried helps by a tenth"}};
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    reasons["parameters." + estimate.name] =
+        IsAtOwnLimit(estimate)                       ? "the search stopped at its own limit"
+        : estimate.status == ParameterStatus::kFixed ? "it is held"
+                                                     : "the record does not determine it";
+  }
+  for (const ContactQuantity& quantity : report.contact) {
+    reasons[fmt::format("contact.{}", quantity.name)] = quantity.why;
+  }
+  return reasons;
+}
+
+/// Returns the reason of the longest path that leads to a place.
+const std::string& WhyNull(const Reasons& reasons, std::string path) {
+  while (!reasons.contains(path)) {
+    const std::size_t last = path.find_last_of(".[");
+    path.resize(last == std::string::npos ? 0 : last);
+  }
+  return reasons.at(path);
+}
+
+/// Adds a place for every null of a value, each with its reason.
+void FindNulls(const Json& value, const std::string& path, const Reasons& reasons, Json& nulls) {
+  if (value.is_null()) nulls.push_back({{"path", path}, {"why", WhyNull(reasons, path)}});
+  if (!value.is_structured()) return;
+  for (const auto& [key, member] : value.items()) {
+    FindNulls(member,
+              value.is_array() ? fmt::format("{}[{}]", path, key)
+              : path.empty()   ? key
+                               : fmt::format("{}.{}", path, key),
+              reasons, nulls);
+  }
+}
+
+}  // namespace
+
+std::string Document(std::string_view schema, const Json& members) {
+  Json document = {{"schema", schema}, {"version", Version()}};
+  document.update(members);
+  return Dump(document);
+}
+
+Json DocumentOf(const Report& report) {
+  const identification::FitResult& fit = report.fit;
+  const identification::ResidualStatistics& residuals = fit.residuals;
+  const auto if_fitted = [&](double value) {
+    return report.failed() ? Json() : NumberOrNull(value);
+  };
+  std::size_t cycles = 0;
+  std::size_t reversals = 0;
+  for (const RecordFit& record : fit.records) {
+    cycles += record.measures.cycles;
+    reversals += record.reversals.size();
+  }
+  Json document = {
+      {"schema", "mindahl.fit/2"},
+      {"version", Version()},
+      {"input",
+       {{"files", report.files},
+        {"columns", Columns(report)},
+        {"samples", Samples(report)},
+        {"cycles", cycles},
+        {"reversals", reversals},
+        {"left_out", LeftOutJson(report)}}},
+      {"model", fit.model->name},
+      {"initial_state", fit.has_mixed_states() ? "mixed" : Name(fit.initial_state)},
+      {"parameters", Parameters(report)},
+      {"correlation", Correlations(report)},
+      {"residuals",
+       {{"rms", if_fitted(residuals.rms)},
+        {"max_abs", if_fitted(residuals.max_abs)},
+        {"r_squared", if_fitted(residuals.r_squared)},
+        {"durbin_watson", if_fitted(residuals.durbin_watson)},
+        {"effective_samples", if_fitted(residuals.effective_samples)}}},
+      {"solver",
+       {{"solver", fit.solver.solver},
+        {"termination", fit.solver.termination},
+        {"converged", fit.converged},
+        {"iterations", fit.solver.iterations},
+        {"final_cost", NumberOrNull(fit.solver.final_cost)}}},
+      {"adequacy", AdequacyJson(report)},
+      {"measured", MeasuredJson(report)},
+      {"law", LawChoiceJson(fit.law_choice)},
+      {"contact", ContactJson(report)},
+      {"mapping",
+       {{"alpha_minus_third", NumberOrNull(report.alpha.minus_third)},
+        {"p_value", NumberOrNull(report.alpha.p_value)},
+        {"sigma_over_hertz_mindlin", NumberOrNull(report.ValueOf("sigma_over_hertz_mindlin"))}}},
+      {"terms", TermsJson(report)},
+      {"compared", ComparedModels(report)},
+      {"next", NextJson(report.next)},
+      {"confidence", fit.confidence},
+      {"warnings", ListOf(report.warnings, [](const Warning& warning) -> Json {
+         return {{"code", warning.code}, {"message", warning.message}};
+       })}};
+  Json nulls = Json::array();
+  FindNulls(document, "", ReasonsOf(report), nulls);
+  document["nulls"] = std::move(nulls);
+  return document;
+}
+
+std::string ToJson(const Report& report) { return Dump(DocumentOf(report)); }
+
+Json ComparedModels(const Report& report) {
+  std::vector<identification::ModelScore> scores = report.compared;
+  std::erase_if(scores, [](const auto& score) { return !score.converged; });
+  std::ranges::sort(scores, {}, &identification::ModelScore::delta_aicc);
+  return ListOf(scores, [](const auto& score) -> Json {
+    return {{"model", score.model->name},
+            {"rig", score.rig},
+            {"delta_aicc", score.delta_aicc},
+            {"rms", score.rms},
+            {"held_out_rms", NumberOrNull(score.held_out_rms)}};
+  });
+}
+
+std::vector<LeftOut> DescribeLeftOut(const Report& report) {
+  std::vector<LeftOut> parts = report.left_out;
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const io::RecordFile& file = report.records[r];
+    const RecordFit& fit = report.fit.records[r];
+    const auto add = [&](std::size_t samples, std::size_t first, bool are_in_a_row,
+                         const char* why) {
+      const auto line = [&](std::size_t sample) { return are_in_a_row ? file.LineOf(sample) : 0; };
+      if (samples == 0) return;
+      parts.push_back({.file = report.files[r],
+                       .samples = samples,
+                       .first = line(first),
+                       .last = line(first + samples - 1),
+                       .why = why});
+    };
+    const std::size_t faults = fit.glitches.total;
+    const std::size_t rest = fit.left_out - std::min(fit.left_out, faults);
+    const auto first = std::ranges::find(fit.counts, 0);
+    const auto last =
+        std::find_if(first, fit.counts.end(), [](auto counts) { return counts != 0; });
+    add(faults, fit.glitches.first, faults == 1, "faults");
+    add(rest, static_cast<std::size_t>(first - fit.counts.begin()),
+        faults == 0 && static_cast<std::size_t>(last - first) == rest, "selection");
+    add(file.piece ? file.piece->left_out : 0, 0, /*are_in_a_row=*/false, "another load");
+  }
+  return parts;
+}
+
+std::vector<const ParameterEstimate*> AddedTerms(const Report& report) {
+  std::vector<const ParameterEstimate*> terms;
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const std::string_view name = identification::TermNameOf(estimate.name);
+    constexpr auto kOfEveryFit = std::to_array<std::string_view>(
+        {"sigma", "alpha", "slip_force", "load_exponent", "force_offset", "displacement_offset"});
+    if (std::ranges::find(kOfEveryFit, name) != kOfEveryFit.end()) continue;
+    // Reported of every fit, as 0 where it is not fitted.
+    const bool is_none = estimate.status == ParameterStatus::kFixed &&
+                         (estimate.value == 0.0 || std::isinf(estimate.value)) &&
+                         !report.options.fixed.contains(std::string(name));
+    if (!is_none) terms.push_back(&estimate);
+  }
+  return terms;
+}
+
+}  // namespace mindahl::report
