@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -91,7 +92,7 @@ py::tuple BatchOf(const std::vector<py::tuple>& states) {
   const std::vector<BatchEntry> entries = EntriesOf(states);
   return py::make_tuple(request::TableJson(entries), request::TableCsv(entries),
                         request::ToJson(entries, ""), request::ToText(entries, ""),
-                        request::AllDone(entries));
+                        std::ranges::all_of(entries, &BatchEntry::done));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   }
   WriteAnswer(options.json_path, console, ToJson(fits, options.output),
               ToText(fits, options.output));
-  console.exit_status = AllDone(fits) ? kDone : kNotEstablished;
+  console.exit_status = std::ranges::all_of(fits, &BatchEntry::done) ? kDone : kNotEstablished;
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cctype>
 #include <cmath>
-#include <deque>
 #include <filesystem>
 #include <future>
 #include <new>
@@ -26,7 +26,6 @@
 
 namespace mindahl::request {
 
-using identification::ParameterEstimate;
 using report::At;
 using report::Dump;
 using report::Json;
@@ -34,47 +33,7 @@ using report::NumberOrNull;
 
 namespace {
 
-/// A column of the table, and where `fit --json` has it.
-struct ColumnRow {
-  std::string_view name;
-  std::string_view pointer;
-};
-
-constexpr std::array kBatchColumns = {
-    ColumnRow{"samples", "/input/samples"},
-    ColumnRow{"model", "/model"},
-    ColumnRow{"initial_state", "/initial_state"},
-    ColumnRow{"adequacy", "/adequacy/verdict"},
-    ColumnRow{"cycles", "/input/cycles"},
-    ColumnRow{"amplitude", "/measured/amplitude"},
-    ColumnRow{"peak_force", "/measured/peak_force"},
-    ColumnRow{"half_gap", "/measured/half_gap/value"},
-    ColumnRow{"energy_per_cycle", "/measured/energy_per_cycle"},
-    ColumnRow{"energy_ratio", "/measured/energy_ratio"},
-    ColumnRow{"sigma", "/parameters/sigma/value"},
-    ColumnRow{"sigma_error", "/parameters/sigma/standard_error"},
-    ColumnRow{"sigma_lower95", "/parameters/sigma/ci95/0"},
-    ColumnRow{"sigma_upper95", "/parameters/sigma/ci95/1"},
-    ColumnRow{"sigma_verdict", "/parameters/sigma/identifiability"},
-    ColumnRow{"alpha", "/parameters/alpha/value"},
-    ColumnRow{"alpha_error", "/parameters/alpha/standard_error"},
-    ColumnRow{"alpha_lower95", "/parameters/alpha/ci95/0"},
-    ColumnRow{"alpha_upper95", "/parameters/alpha/ci95/1"},
-    ColumnRow{"alpha_verdict", "/parameters/alpha/identifiability"},
-    ColumnRow{"slip_force", "/parameters/slip_force/value"},
-    ColumnRow{"slip_force_error", "/parameters/slip_force/standard_error"},
-    ColumnRow{"slip_force_lower95", "/parameters/slip_force/ci95/0"},
-    ColumnRow{"slip_force_upper95", "/parameters/slip_force/ci95/1"},
-    ColumnRow{"slip_force_verdict", "/parameters/slip_force/identifiability"},
-    ColumnRow{"rms", "/residuals/rms"},
-    ColumnRow{"r_squared", "/residuals/r_squared"},
-    ColumnRow{"slides", "/measured/slides"},
-    ColumnRow{"normal_load", "/contact/normal_load/value"},
-    ColumnRow{"friction_coefficient", "/contact/friction_coefficient/value"},
-    ColumnRow{"friction_coefficient_lower95", "/contact/friction_coefficient/ci95/0"},
-    ColumnRow{"friction_coefficient_upper95", "/contact/friction_coefficient/ci95/1"},
-    ColumnRow{"contact_radius", "/contact/contact_radius/value"},
-};
+constexpr std::array kParameters = {"sigma", "alpha", "slip_force"};
 
 /// A quantity that repeats of a test have in common, by the names of its columns.
 struct Repeated {
@@ -93,22 +52,47 @@ Json DocumentOf(const BatchEntry& entry) {
   return entry.fit.empty() ? Json() : Json::parse(entry.fit);
 }
 
-Json TableRows(std::span<const BatchEntry> entries) {
-  Json rows = Json::array();
-  for (const BatchEntry& entry : entries) {
-    const Json fit = DocumentOf(entry);
-    Json row = {{"file", entry.file}, {"done", entry.done}};
-    for (const ColumnRow& column : kBatchColumns) row[column.name] = At(fit, column.pointer);
-    std::vector<std::string> codes;
-    for (const Json& warning : At(fit, "/warnings")) codes.push_back(warning["code"]);
-    row["warnings"] = fmt::format("{}", fmt::join(codes, " "));
-    row["fault"] = entry.fault;
-    row["version"] = Version();
-    row["sha256"] = entry.sha256;
-    rows.push_back(std::move(row));
+/// Returns the row of a file in the table.
+Json RowOf(const BatchEntry& entry) {
+  const Json fit = DocumentOf(entry);
+  Json row = {{"file", entry.file},
+              {"done", entry.done},
+              {"samples", At(fit, "/input/samples")},
+              {"model", At(fit, "/model")},
+              {"initial_state", At(fit, "/initial_state")},
+              {"adequacy", At(fit, "/adequacy/verdict")},
+              {"cycles", At(fit, "/input/cycles")}};
+  for (const char* name :
+       {"amplitude", "peak_force", "half_gap", "energy_per_cycle", "energy_ratio"}) {
+    const Json measured = At(fit, fmt::format("/measured/{}", name));
+    row[name] = measured.is_object() ? measured["value"] : measured;
   }
-  return rows;
+  for (const std::string name : kParameters) {
+    const Json parameter = At(fit, "/parameters/" + name);
+    row[name] = At(parameter, "/value");
+    row[name + "_error"] = At(parameter, "/standard_error");
+    row[name + "_lower95"] = At(parameter, "/ci95/0");
+    row[name + "_upper95"] = At(parameter, "/ci95/1");
+    row[name + "_verdict"] = At(parameter, "/identifiability");
+  }
+  std::vector<std::string> codes;
+  for (const Json& warning : At(fit, "/warnings")) codes.push_back(warning["code"]);
+  row.update({{"rms", At(fit, "/residuals/rms")},
+              {"r_squared", At(fit, "/residuals/r_squared")},
+              {"slides", At(fit, "/measured/slides")},
+              {"normal_load", At(fit, "/contact/normal_load/value")},
+              {"friction_coefficient", At(fit, "/contact/friction_coefficient/value")},
+              {"friction_coefficient_lower95", At(fit, "/contact/friction_coefficient/ci95/0")},
+              {"friction_coefficient_upper95", At(fit, "/contact/friction_coefficient/ci95/1")},
+              {"contact_radius", At(fit, "/contact/contact_radius/value")},
+              {"warnings", fmt::format("{}", fmt::join(codes, " "))},
+              {"fault", entry.fault},
+              {"version", Version()},
+              {"sha256", entry.sha256}});
+  return row;
 }
+
+Json TableRows(std::span<const BatchEntry> entries) { return report::ListOf(entries, &RowOf); }
 
 /// Compares the scatter of repeats of a test with their stated errors.
 /// @param errors  by which they should scatter, > 0; none where they state none
@@ -150,64 +134,44 @@ Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& er
           {"says", says}};
 }
 
-/// Returns what repeats of a test say of a quantity; null of fewer than two.
-/// @param rows  the table's, of the same fits
-Json RepeatsOf(std::span<const BatchEntry> fits, const Json& rows, const Repeated& quantity) {
-  std::vector<double> values;
-  std::vector<double> errors;  // by which repeats scatter
-  for (std::size_t k = 0; k < fits.size(); ++k) {
-    const BatchEntry& fit = fits[k];
-    const auto number = [&](std::string_view name, const char* suffix) {
-      const Json value = rows[k].value(fmt::format("{}{}", name, suffix), Json());
-      return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-    };
-    const std::optional<double> value = number(quantity.name, "");
-    if (!fit.done || !value) continue;
-    const std::string_view parameter = quantity.parameter;
-    if (parameter.empty()) {
-      values.push_back(*value);
-      continue;
-    }
-    const Json& verdict = rows[k].at(fmt::format("{}_verdict", parameter));
-    const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
-    const std::optional<double> of_parameter = number(parameter, "");
-    const std::optional<double> lower = number(quantity.name, "_lower95");
-    const std::optional<double> upper = number(quantity.name, "_upper95");
-    if (!is_known || !of_parameter) continue;
-    constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
-    const double whole = lower && upper ? (*upper - *lower) / kWidth : 0.0;
-    // μ = Tc/N scatters as Tc does; a parameter at a bound has an interval only.
-    const double own = number(parameter, "_error").value_or(0.0) * (*value / *of_parameter);
-    const double error = own > 0 ? own : whole;
-    if (!(error > 0)) continue;
-    values.push_back(*value);
-    errors.push_back(error);
-  }
-  return values.size() < 2 ? Json() : RepeatsRow(values, errors, quantity.unit);
-}
-
-/// Returns what repeats of a test say of each quantity.
+/// Returns what repeats of a test say of each quantity that two files or more have.
 Json RepeatRows(std::span<const BatchEntry> entries) {
   const Json table = TableRows(entries);
-  Json rows = Json::object();
+  Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    Json row = RepeatsOf(entries, table, quantity);
-    if (!row.is_null()) rows[quantity.name] = std::move(row);
+    std::vector<double> values;
+    std::vector<double> errors;  // by which repeats scatter
+    for (const Json& row : table) {
+      /// NaN where the row has none.
+      const auto number = [&](std::string_view name, const char* suffix) {
+        const Json value = row.value(fmt::format("{}{}", name, suffix), Json());
+        return value.is_number() ? value.get<double>() : std::nan("");
+      };
+      const double value = number(quantity.name, "");
+      const std::string_view parameter = quantity.parameter;
+      if (!row["done"].get<bool>() || std::isnan(value)) continue;
+      if (!parameter.empty()) {
+        const Json& verdict = row[fmt::format("{}_verdict", parameter)];
+        if (verdict == "bounded_below" || verdict == "not_identifiable") continue;
+        constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
+        // μ = Tc/N scatters as Tc does; a parameter at a bound has an interval only.
+        const double own = number(parameter, "_error") * (value / number(parameter, ""));
+        const double whole =
+            (number(quantity.name, "_upper95") - number(quantity.name, "_lower95")) / kWidth;
+        const double error = own > 0 ? own : whole;
+        if (!(error > 0)) continue;
+        errors.push_back(error);
+      }
+      values.push_back(value);
+    }
+    if (values.size() > 1) repeats[quantity.name] = RepeatsRow(values, errors, quantity.unit);
   }
-  return rows;
+  return repeats;
 }
 
 // --- the index of pages
 
 const std::string kNone = "–";
-constexpr std::array<std::string_view, 3> kParameters = {"sigma", "alpha", "slip_force"};
-
-/// Returns no number of what is not known.
-std::string ParameterText(const BatchEntry& entry, std::string_view name) {
-  const auto found = std::ranges::find(entry.parameters, name, &ParameterEstimate::name);
-  return found == entry.parameters.end() ? kNone : report::ValueText(*found);
-}
-
 /// Returns an address within a page: whatever is no letter, digit, '-', '_' or '.' in hexadecimal.
 std::string Address(std::string_view name) {
   std::string address;
@@ -237,7 +201,10 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
     entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
-    entry.parameters = report.fit.parameters;
+    for (const char* parameter : kParameters) {
+      const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
+      entry.parameters.push_back(estimate == nullptr ? kNone : report::ValueText(*estimate));
+    }
     if (write_page) entry.page = write_page(report, k);
     if (!entry.done) {
       fault = report.fit.converged ? "not established: the model is not adequate or a free "
@@ -259,25 +226,19 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads, const WritePage& write_page) {
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
-  const std::vector<std::string>& files = request.files;
-  std::vector<BatchEntry> entries;
-  std::deque<std::future<BatchEntry>> at_work;
-  for (std::size_t next = 0; entries.size() < files.size();) {
-    while (next < files.size() && at_work.size() < threads) {
-      const auto fit = [&, k = next] {
-        return FitSource(request, files[k], strictness, &ReadRecords, write_page, k);
-      };
-      at_work.push_back(std::async(fit));  // here where no thread can be started
-      ++next;
+  std::vector<BatchEntry> entries(request.files.size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < entries.size(); k = next++) {
+      entries[k] = FitSource(request, request.files[k], strictness, &ReadRecords, write_page, k);
     }
-    entries.push_back(at_work.front().get());
-    at_work.pop_front();
+  };
+  std::vector<std::future<void>> workers;
+  for (std::size_t k = 0; k < threads; ++k) {
+    workers.push_back(std::async(work));  // here where no thread can be started
   }
+  for (std::future<void>& worker : workers) worker.get();
   return entries;
-}
-
-bool AllDone(std::span<const BatchEntry> entries) {
-  return std::ranges::all_of(entries, &BatchEntry::done);
 }
 
 std::string TableCsv(std::span<const BatchEntry> entries) {
@@ -314,7 +275,8 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
   for (const BatchEntry& entry : entries) {
     std::vector<std::string> cells = {fmt::format("{}", files.size() + 1),
                                       entry.verdict.empty() ? kNone : entry.verdict};
-    for (const std::string_view name : kParameters) cells.push_back(ParameterText(entry, name));
+    cells.insert(cells.end(), entry.parameters.begin(), entry.parameters.end());
+    cells.resize(2 + kParameters.size(), kNone);
     cells.push_back(entry.fault);
     files.push_back({entry.file, std::move(cells),
                      entry.verdict.empty() ? "" : report::Name(report::JudgementOf(entry.verdict)),

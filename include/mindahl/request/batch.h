@@ -22,7 +22,7 @@ struct BatchEntry {
   std::string sha256;              ///< SHA-256 of the file; "" if it is none
   std::string page;     ///< address of its page, relative to the index; "" where there is none
   std::string verdict;  ///< one word for the fit's adequacy; "" where there is none
-  std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
+  std::vector<std::string> parameters;  ///< σ, α and Tc in words; empty where there is no fit
 };
 
 /// Reads the records of one source.
@@ -40,9 +40,6 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
 /// @throws InputError or InvalidArgument for options that break a rule whatever the files are
 std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
                                  std::size_t threads, const WritePage& write_page = {});
-
-/// True if every entry is done.
-bool AllDone(std::span<const BatchEntry> entries);
 
 /// Returns the table that `mindahl batch --output` writes as CSV, and its rows as JSON.
 std::string TableCsv(std::span<const BatchEntry> entries);
