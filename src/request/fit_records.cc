@@ -34,85 +34,70 @@ using loop::Record;
 
 namespace {
 
-/// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
-double RequireHalfRange(const std::string& file, const RecordFile& input,
-                        const io::ChosenColumn& column, const std::vector<double>& values,
-                        std::string_view what, std::string_view unit) {
+/// Refuses records that are no loops, naming the place in the file: of two kinds, of a column that
+/// never changes or is beyond any unit that is meant, or with a gate that leaves no turning point.
+void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   constexpr double kSmallest = 1e-100;
   constexpr double kLargest = 1e100;
-  const auto [least, greatest] = std::ranges::minmax_element(values);
-  const double half_range = *greatest / 2 - *least / 2;
-  if (half_range == 0 || (half_range >= kSmallest && half_range <= kLargest)) return half_range;
-  const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
-  throw InputError(
-      fmt::format("{}:{}:{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
-                  "choose other units",
-                  file, input.LineOf(static_cast<std::size_t>(widest - values.begin())),
-                  column.index, what, half_range, unit));
-}
-
-[[noreturn]] void ThrowConstant(const std::string& file, const RecordFile& input,
-                                const io::ChosenColumn& column, double value, std::string_view what,
-                                std::string_view unit, std::string_view need) {
-  throw InputError(
-      fmt::format("{}:{}:{}: the {} never changes, it is {} {} in every row: a fit needs a {} "
-                  "contact; choose another column with --{}",
-                  file, input.LineOf(0), column.index, what, value, unit, need, what));
-}
-
-void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  bool is_loaded = false;
+  const bool is_torsional = inputs.front().is_torsional;
+  const report::Units& units = report::UnitsOf(is_torsional);
+  const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
+  const auto place = [&](std::size_t r, std::size_t sample, const io::ChosenColumn& column) {
+    return fmt::format("{}:{}:{}", request.files[r], inputs[r].LineOf(sample), column.index);
+  };
+  const auto half_range = [&](std::size_t r, const io::ChosenColumn& column,
+                              const std::vector<double>& values, std::string_view what,
+                              std::string_view unit) {
+    const auto [least, greatest] = std::ranges::minmax_element(values);
+    const double half = *greatest / 2 - *least / 2;
+    if (half == 0 || (half >= kSmallest && half <= kLargest)) return half;
+    const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
+    throw InputError(fmt::format(
+        "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
+        "choose other units",
+        place(r, static_cast<std::size_t>(widest - values.begin()), column), what, half, unit));
+  };
+  const auto refuse_constant = [&](std::size_t r, const io::ChosenColumn& column, double value,
+                                   std::string_view what, std::string_view unit,
+                                   std::string_view need) {
+    throw InputError(
+        fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
+                    "choose another column with --{}",
+                    place(r, 0, column), what, value, unit, need, what));
+  };
+  double travel = 0.0;
+  double force = 0.0;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
-    const std::string& file = request.files[r];
-    const report::Units& units = report::UnitsOf(input.is_torsional);
-    if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
-                           units.displacement) > 0)) {
-      ThrowConstant(file, input, input.displacement, record.displacement.front(), "displacement",
-                    units.displacement, "moving");
+    if (input.is_torsional != is_torsional) {
+      throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
+                                   request.files[is_torsional ? r : 0],
+                                   request.files[is_torsional ? 0 : r]));
     }
-    if (input.time && !record.time.empty()) {
-      RequireHalfRange(file, input, *input.time, record.time, "time", "s");
+    const double own_travel =
+        half_range(r, input.displacement, record.displacement, "displacement", units.displacement);
+    if (own_travel == 0) {
+      refuse_constant(r, input.displacement, record.displacement.front(), "displacement",
+                      units.displacement, "moving");
     }
-    is_loaded |= RequireHalfRange(file, input, input.force, record.force, "force", units.force) > 0;
+    if (input.time && !record.time.empty()) half_range(r, *input.time, record.time, "time", "s");
+    travel = std::max(travel, own_travel);
+    force = std::max(force, half_range(r, input.force, record.force, "force", units.force));
   }
   const RecordFile& first = inputs.front();
-  if (!is_loaded) {
-    ThrowConstant(request.files.front(), first, first.force, first.record.force.front(), "force",
-                  report::UnitsOf(first.is_torsional).force, "loaded");
+  if (force == 0) {
+    refuse_constant(0, first.force, first.record.force.front(), "force", units.force, "loaded");
   }
-}
-
-/// A gate is in SI units, as every option: one that is wider than the motion, or the force where
-/// that is imposed, leaves no turning point.
-void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  // A gate is in SI units, as every option.
   const std::optional<double>& gate = request.fit.preparation.reversal_gate;
-  if (!gate) return;
-  const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
-  double widest = 0.0;
-  for (const RecordFile& input : inputs) {
-    const auto [least, greatest] =
-        std::ranges::minmax(is_forced ? input.record.force : input.record.displacement);
-    widest = std::max(widest, greatest - least);
-  }
-  if (*gate < widest) return;
-  const report::Units& units = report::UnitsOf(inputs.front().is_torsional);
+  const double range = 2 * (is_forced ? force : travel);
+  if (!gate || *gate < range) return;
   const std::string_view unit = is_forced ? units.force : units.displacement;
   throw InputError(fmt::format(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
       "give a smaller gate, in {}",
-      *gate, is_forced ? "force" : "motion", widest, unit, unit));
-}
-
-/// A joint fit is of one kind.
-void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& inputs) {
-  for (std::size_t r = 1; r < inputs.size(); ++r) {
-    if (inputs[r].is_torsional == inputs.front().is_torsional) continue;
-    throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
-                                 request.files[inputs[r].is_torsional ? 0 : r],
-                                 request.files[inputs[r].is_torsional ? r : 0]));
-  }
+      *gate, is_forced ? "force" : "motion", range, unit, unit));
 }
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
@@ -123,12 +108,10 @@ std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<Record
   const loop::PreparationOptions& chosen = request.fit.preparation;
   const bool splits =
       request.contact.normal_loads.empty() && !chosen.load_window && !chosen.samples;
-  names = request.files;
-  if (!splits) return inputs;
-  names.clear();
   std::vector<RecordFile> records;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
-    std::vector<io::NamedRecord> pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
+    std::vector<io::NamedRecord> pieces;
+    if (splits) pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
     if (pieces.size() <= 1) pieces = {{.name = request.files[r], .file = std::move(inputs[r])}};
     for (io::NamedRecord& record : pieces) {
       names.push_back(std::move(record.name));
@@ -190,17 +173,6 @@ void RequireLoadsOfRecords(const FitRequest& request) {
   throw InputError(
       fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a file", loads,
                   request.files.size(), request.files.size() > 1 ? "s" : ""));
-}
-
-/// Uses the measured normal load where it was not given: its mean.
-void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::FitResult& fit,
-                           const Record& first, std::vector<std::string>& notes) {
-  if (known.normal_load) return;
-  if (fit.normal_load) {
-    known.normal_load = *fit.normal_load;
-  } else if (!first.normal_load.empty()) {
-    notes.emplace_back("the normal load is not positive in every file: it is not used");
-  }
 }
 
 /// Fits the options' law with the terms that are named or, where asked for, chosen.
@@ -426,14 +398,12 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   }
   RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
-  RequireColumns(request, inputs);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     throw InputError(
         "--normal-load and other options that describe a contact do not apply to a torque against "
         "an angle: leave them out");
   }
   RequireLoops(request, inputs);
-  RequireGateWithinTheMotion(request, inputs);
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
@@ -457,7 +427,11 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::optional<report::NextStep> next;
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
-  UseMeasuredNormalLoad(known, asked.fit, records.front(), notes);
+  if (!known.normal_load && asked.fit.normal_load) {
+    known.normal_load = *asked.fit.normal_load;
+  } else if (!known.normal_load && !records.front().normal_load.empty()) {
+    notes.emplace_back("the normal load is not positive in every file: it is not used");
+  }
   return report::MakeReport(
       {.files = std::move(names),
        .records = std::move(inputs),
