@@ -6,48 +6,18 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <span>
 
 namespace mindahl::report {
 
 namespace {
 
-struct Prefix {
-  double factor;
-  std::string_view name;
-};
-
-constexpr std::array<Prefix, 9> kPrefixes = {{
-    {1e-15, "f"},
-    {1e-12, "p"},
-    {1e-9, "n"},
-    {1e-6, "µ"},
-    {1e-3, "m"},
-    {1.0, ""},
-    {1e3, "k"},
-    {1e6, "M"},
-    {1e9, "G"},
-}};
-
-/// A stiffness is read against a displacement: N/µm, not MN/m.
-constexpr std::array<Prefix, 4> kStiffnesses = {{
-    {1.0, "N/m"},
-    {1e3, "N/mm"},
-    {1e6, "N/µm"},
-    {1e9, "N/nm"},
-}};
+/// Symbols for factors of 1000, the sixth for 1. A stiffness is read against a displacement, which
+/// takes the prefix: N/µm, not MN/m.
+constexpr std::array<std::string_view, 9> kPrefixes = {"f", "p", "n", "µ", "m", "", "k", "M", "G"};
+constexpr std::array<std::string_view, 4> kStiffnesses = {"N/m", "N/mm", "N/µm", "N/nm"};
+constexpr int kNoPrefix = 5;
 
 constexpr std::array<std::string_view, 6> kPrefixed = {"N", "m", "J", "Pa", "s", "rad"};
-
-const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
-  // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
-  constexpr double kRoundsUp = 1 - 5e-5;
-  const Prefix* suiting = &prefixes.front();
-  for (const Prefix& prefix : prefixes) {
-    if (magnitude >= kRoundsUp * prefix.factor) suiting = &prefix;
-  }
-  return *suiting;
-}
 
 }  // namespace
 
@@ -55,18 +25,22 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude) {
   const double size = std::abs(magnitude);
   if (unit == "-") return {1.0, ""};
   if (!(size > 0) || !std::isfinite(size)) return {1.0, std::string(unit)};
+  // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
+  constexpr double kRoundsUp = 1 - 5e-5;
+  const int thousands = static_cast<int>(std::floor(std::log10(size / kRoundsUp) / 3));
+  const auto factor = [](int power) { return std::pow(10.0, 3 * power); };
   if (unit == "N/m") {
-    const Prefix& suiting = Suiting(kStiffnesses, size);
-    return {suiting.factor, std::string(suiting.name)};
+    const int power = std::clamp(thousands, 0, 3);
+    return {factor(power), std::string(kStiffnesses.at(static_cast<std::size_t>(power)))};
   }
   // A prefix stands before a first letter that is a unit of one.
   const std::string_view first = unit.substr(0, unit.find_first_of(" /"));
   if (std::ranges::find(kPrefixed, first) == kPrefixed.end()) return {1.0, std::string(unit)};
   // Nobody reads kilometres or kiloradians.
   const bool is_length = unit == "m" || unit == "rad" || unit == "s";
-  const Prefix& suiting =
-      Suiting(std::span(kPrefixes).first(is_length ? 6 : kPrefixes.size()), size);
-  return {suiting.factor, fmt::format("{}{}", suiting.name, unit)};
+  const int power = std::clamp(thousands, -kNoPrefix, is_length ? 0 : 3);
+  return {factor(power),
+          fmt::format("{}{}", kPrefixes.at(static_cast<std::size_t>(power + kNoPrefix)), unit)};
 }
 
 std::string WithUnit(std::string_view name, std::string_view unit) {
@@ -111,26 +85,24 @@ std::string RoundedTo(double error, double value) {
   // The second digit of the error as it is printed, so that 0.0996 is 0.10 and not 0.100.
   constexpr double kRoundsUp = 0.995;
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(error / kRoundsUp)));
+  const double scale = std::pow(10.0, std::min(decimals, 0));
+  const double rounded = decimals < 0 ? std::round(value * scale) / scale : value;
+  // Beyond these, zeros are counted.
+  constexpr double kMostWritten = 1e6;
+  constexpr double kLeastWritten = 1e-4;
   constexpr int kMostDecimals = 9;
-  constexpr double kMostWritten = 1e6;    // beyond it zeros are counted
-  constexpr double kLeastWritten = 1e-4;  // below it zeros are counted too
-  if (decimals > kMostDecimals && std::abs(value) < kLeastWritten && value != 0) {
-    constexpr int kMostDigits = 5;
-    const int digits = static_cast<int>(std::floor(std::log10(std::abs(value)))) + decimals;
-    return fmt::format("{:.{}e}", value, std::clamp(digits, 0, kMostDigits));
+  const double size = std::abs(rounded);
+  if ((size >= kMostWritten && decimals <= 0) ||
+      (size < kLeastWritten && size > 0 && decimals > kMostDecimals)) {
+    constexpr int kMostDigits = 5;  // of one that is small
+    const int digits = static_cast<int>(std::floor(std::log10(size))) + decimals;
+    return fmt::format("{:.{}e}", rounded,
+                       std::max(0, size < 1 ? std::min(digits, kMostDigits) : digits));
   }
   if (decimals > kMostDecimals) return fmt::format("{:.6g}", value);
-  const double rounded =
-      decimals < 0 ? std::round(value * std::pow(10.0, decimals)) / std::pow(10.0, decimals)
-                   : value;
-  if (std::abs(rounded) >= kMostWritten && decimals <= 0) {
-    const int digits = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + decimals;
-    return fmt::format("{:.{}e}", rounded, std::max(0, digits));
-  }
-  const std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
-  return text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')
-             ? text.substr(1)
-             : text;
+  std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
+  if (text.find_first_not_of("-0.") == std::string::npos) text.erase(0, text.find('0'));
+  return text;
 }
 
 namespace {
