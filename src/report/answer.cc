@@ -74,7 +74,7 @@ class Writer {
   explicit Writer(const Report& report) : report_(report), fit_(report.fit) {}
 
   std::vector<Line> Answer() {
-    if (!report_.check.empty()) Add("check", report_.check, Judgement::kBad);
+    if (!report_.check.empty()) Add("check", report_.check, kBad);
     AddColumns();
     AddReading();
     AddFriction();
@@ -97,8 +97,13 @@ class Writer {
   }
 
  private:
-  void Add(std::string label, std::string text, Judgement judgement = Judgement::kNone) {
+  void Add(std::string label, std::string text, std::string_view judgement = kPlain) {
     if (!text.empty()) lines_.push_back({std::move(label), std::move(text), judgement});
+  }
+  /// Adds a line of parts with commas between them; none of those that are empty.
+  void Add(std::string label, std::vector<std::string> parts, std::string_view judgement = kPlain) {
+    std::erase(parts, "");
+    Add(std::move(label), fmt::format("{}", fmt::join(parts, ", ")), judgement);
   }
 
   /// Returns why a parameter has no value, and takes note that it is said; "" where another line
@@ -140,8 +145,7 @@ class Writer {
       const bool is_first = quantity.name == "friction_coefficient";
       parts.insert(is_first ? parts.begin() : parts.end(), QuantityText(quantity));
     }
-    std::erase(parts, "");
-    Add(std::move(label), fmt::format("{}", fmt::join(parts, ", ")), JudgementOf(estimate));
+    Add(std::move(label), std::move(parts), JudgementOf(estimate));
   }
 
   void AddColumns() {
@@ -149,45 +153,43 @@ class Writer {
     std::vector<std::string> columns;
     const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
       if (column.index == 0) return;
-      std::string text = role;
-      if (!column.name.empty()) text += fmt::format(" '{}'", column.name);
-      text += fmt::format(" ({}{})", column.index, remark);
-      if (column.name.find(column.unit) == std::string::npos && !column.unit.empty()) {
-        text += " in " + column.unit;
-      }
-      columns.push_back(std::move(text));
+      const bool has_unit = column.name.find(column.unit) != std::string::npos;
+      columns.push_back(fmt::format(
+          "{}{} ({}{}){}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
+          column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit));
     };
     const bool is_torsional = report_.is_torsional();
     add(is_torsional ? "angle" : "displacement", first.displacement, "");
     add(is_torsional ? "torque" : "force", first.force,
         fit_.force_sense < 0 ? ", opposite sign" : "");
     if (first.normal_load) add("load", *first.normal_load, "");
-    Add(columns.empty() ? "record" : "columns",
-        columns.empty() ? NameOf(report_.files)
-                        : fmt::format("{}: {}", NameOf(report_.files), fmt::join(columns, ", ")));
+    const std::string name = NameOf(report_.files);
+    if (columns.empty()) return Add("record", name);
+    Add("columns", fmt::format("{}: {}", name, fmt::join(columns, ", ")));
   }
 
   /// Says what was assumed of the files: one thing in full, of more how many, as the columns and
   /// their units stand in the line above. A unit in letters that were perhaps not understood, and
   /// the encoding of a file of which a unit is assumed, are said in full always.
   void AddReading() {
-    std::vector<std::string> notes = report_.notes;
     const auto names_no_unit = [](const std::string& note) {
       return note.find("no unit") != std::string::npos;
     };
-    const bool has_units = std::ranges::any_of(notes, names_no_unit);
-    std::erase_if(notes, [&](const std::string& note) {
+    const bool has_units = std::ranges::any_of(report_.notes, names_no_unit);
+    std::vector<std::string> others;
+    for (const std::string& note : report_.notes) {
       const bool is_foreign = std::ranges::any_of(note, [](char of) { return (of & 0x80) != 0; });
       const bool is_encoding = has_units && note.find("is not UTF-8") != std::string::npos;
-      const bool is_said = is_encoding || (is_foreign && names_no_unit(note));
-      if (is_said) Add("read as", note);
-      return is_said;
-    });
-    if (notes.empty()) return;
-    if (notes.size() == 1) return Add("read as", notes.front());
-    const bool has_more = std::ranges::any_of(notes, names_no_unit);
-    Add("read as", fmt::format("{} assumptions{}: --details", notes.size(),
-                               has_more ? ", units among them" : ""));
+      if (is_encoding || (is_foreign && names_no_unit(note))) {
+        Add("read as", note);
+      } else {
+        others.push_back(note);
+      }
+    }
+    if (others.size() <= 1) return Add("read as", others);
+    Add("read as",
+        fmt::format("{} assumptions{}: --details", others.size(),
+                    std::ranges::any_of(others, names_no_unit) ? ", units among them" : ""));
   }
 
   void AddFriction() {
@@ -232,7 +234,7 @@ class Writer {
     for (const ParameterEstimate* term : AddedTerms(report_)) {
       if (!IsMoot(report_, *term)) terms.push_back(TextOf(term->name, *term));
     }
-    Add("terms", fmt::format("{}", fmt::join(terms, ", ")));
+    Add("terms", terms);
   }
 
   /// Says what was given of parameters before the record: it is a part of their intervals.
@@ -244,7 +246,7 @@ class Writer {
           "{} {}", name,
           QuantityWithError(prior.value, prior.standard_uncertainty, fit_.Find(name)->unit)));
     }
-    Add("prior", fmt::format("{}", fmt::join(priors, ", ")));
+    Add("prior", priors);
   }
 
   /// Says which columns the choice of terms took for repeats of another: one may be the cause.
@@ -267,6 +269,7 @@ class Writer {
     const auto name = [](const models::FrictionModel& model) {
       return model.name == "dahl" ? "Dahl's own" : "Masing's";
     };
+    const std::string laws = fmt::format("{}; {}", name(*fit_.model), name(*choice->alternative));
     std::vector<std::string> other;
     const auto add = [&](const char* symbol, const char* parameter, double value) {
       const ParameterEstimate& estimate = *fit_.Find(parameter);
@@ -276,17 +279,14 @@ class Writer {
     add("σ", "sigma", choice->law.tangential_stiffness);
     add("Tc", "slip_force", choice->law.slip_force);
     const std::string values = other.empty() ? "" : fmt::format(" ({})", fmt::join(other, ", "));
-    const char* const fitted = name(*fit_.model);
-    const char* const alternative = name(*choice->alternative);
     if (!choice->decided) {
-      Add("law", fmt::format("{}; {} fits as well{}", fitted, alternative, values));
+      Add("law", fmt::format("{} fits as well{}", laws, values));
     } else if (choice->preferred == choice->alternative) {
       Add("law",
-          fmt::format("{}; {} fits better{}: --model {}", fitted, alternative, values,
-                      choice->alternative->name),
-          Judgement::kPoor);
+          fmt::format("{} fits better{}: --model {}", laws, values, choice->alternative->name),
+          kPoor);
     } else {
-      Add("law", fmt::format("{}, not {}", fitted, alternative), Judgement::kGood);
+      Add("law", fmt::format("{}, not {}", name(*fit_.model), name(*choice->alternative)), kGood);
     }
   }
 
@@ -318,7 +318,7 @@ class Writer {
     if (fit_.is_load_series() && widest.normal_load) {
       parts.push_back("at N = " + Quantity(*widest.normal_load, "N", 4));
     }
-    Add("measured", fmt::format("{}", fmt::join(parts, ", ")));
+    Add("measured", parts);
   }
 
   void AddLeftOut() {
@@ -335,7 +335,7 @@ class Writer {
                           ? fmt::format("line {} ({})", part.first, part.why)
                           : fmt::format("lines {} … {} ({})", part.first, part.last, part.why));
     }
-    Add("left out", fmt::format("{}", fmt::join(parts, ", ")));
+    Add("left out", parts);
   }
 
   /// Says what else a person should act on: of the record, where the model is inadequate.
@@ -346,10 +346,10 @@ class Writer {
       const bool is_said = std::ranges::find(said_, &finding) != said_.end();
       const bool is_moot = IsInadequate(report_) && !finding.parameters.empty();
       if (is_note || is_said || is_moot || IsSaidByALine(finding.code)) continue;
-      Add("note", WarningText(finding, report_), Judgement::kPoor);
+      Add("note", WarningText(finding, report_), kPoor);
     }
     for (const Warning& warning : report_.warnings) {
-      if (warning.code == "contact_implausible") Add("note", warning.message, Judgement::kPoor);
+      if (warning.code == "contact_implausible") Add("note", warning.message, kPoor);
     }
   }
 

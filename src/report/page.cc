@@ -110,7 +110,7 @@ std::string LinesHtml(std::string_view caption, const std::vector<Line>& lines) 
   std::vector<TableLine> rows;
   for (const Line& line : lines) {
     if (line.label == "next" || line.label == "misfit") continue;  // they have places of their own
-    rows.push_back({line.label, {line.text}, Name(line.judgement)});
+    rows.push_back({line.label, {line.text}, line.judgement});
   }
   return TableHtml(caption, {}, rows);
 }
@@ -125,36 +125,6 @@ std::string NextHtml(const Report& report, const Provenance& provenance) {
                                  Prose(command), Prose(report.next->options)));
 }
 
-struct Bar {
-  std::string_view symbol;
-  double value;
-  std::optional<double> lower;
-  std::optional<double> upper;
-  std::string_view unit;
-  Judgement judgement;
-  std::optional<double> mark = {};  ///< a value that theory gives
-};
-
-std::vector<Bar> BarsOf(const Report& report) {
-  std::vector<Bar> bars;
-  const auto add = [&](const char* symbol, const char* name, std::optional<double> mark = {}) {
-    const ParameterEstimate& estimate = *report.fit.Find(name);
-    if (WhatIsShown(estimate) != Shown::kValue) return;
-    bars.push_back({symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
-                    JudgementOf(estimate), mark});
-  };
-  const ContactQuantity* friction = report.Find("friction_coefficient");
-  if (friction != nullptr && friction->value) {
-    bars.push_back({"μ", *friction->value, friction->lower, friction->upper, "-",
-                    JudgementOf(*report.fit.Find("slip_force"))});
-  } else {
-    add("Tc", "slip_force");
-  }
-  add("σ", "sigma");
-  add("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
-  return bars;
-}
-
 /// Returns friction (the slip force without a load), σ and α with their intervals as bars, α's with
 /// 1/3 marked. A bar is green only of what may be quoted. "" where none has a value.
 std::string IntervalsHtml(const Report& report) {
@@ -163,45 +133,57 @@ std::string IntervalsHtml(const Report& report) {
   constexpr int kRow = 50;    // [px] of one bar
   constexpr int kLeast = 64;  // [px]: one bar alone is still to be seen on a telephone
   std::string svg;
-  int top = 0;
-  for (const Bar& bar : BarsOf(report)) {
-    const double from = bar.lower.value_or(bar.value);
-    const double to = bar.upper.value_or(bar.value);
-    double least = std::min(from, bar.mark.value_or(from));
-    double greatest = std::max(to, bar.mark.value_or(to));
-    const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(bar.value);
+  int middle = 31;
+  const auto add = [&](std::string_view symbol, double value, std::optional<double> lower,
+                       std::optional<double> upper, std::string_view unit,
+                       std::string_view judgement, std::optional<double> mark = {}) {
+    double least = std::min(lower.value_or(value), mark.value_or(value));
+    double greatest = std::max(upper.value_or(value), mark.value_or(value));
+    const double margin = greatest > least ? 0.25 * (greatest - least) : 0.1 * std::abs(value);
     least -= margin;
     greatest += margin;
-    const auto x = [&](double value) {
-      return kLeft + (kRight - kLeft) * (value - least) / (greatest - least);
+    const auto x = [&](double at) {
+      return kLeft + (kRight - kLeft) * (at - least) / (greatest - least);
     };
-    const double left = bar.lower ? x(*bar.lower) : kLeft;
-    const double right = bar.upper ? x(*bar.upper) : kRight;
-    const int middle = top + 31;
+    const double left = lower ? x(*lower) : kLeft;
+    const double right = std::max(upper ? x(*upper) : kRight, left + 2);
     svg += fmt::format(
         "<text x=\"8\" y=\"{}\">{}</text><text x=\"{:.0f}\" y=\"{}\">{}</text>"
-        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>",
-        middle + 5, bar.symbol, kLeft, top + 14,
-        io::HtmlText(QuantityWithInterval(bar.value, bar.lower, bar.upper, bar.unit)), kLeft,
-        middle, kRight);
-    svg += fmt::format(
-        "<path class=\"interval {}\" d=\"M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}Z\"/>"
-        "<path class=\"axis\" d=\"M{:.1f} {}V{}\"/>",
-        Name(bar.judgement), left, middle - 6.0, std::max(right, left + 2), middle + 6.0, left,
-        x(bar.value), middle - 9, middle + 9);
-    if (bar.mark) {
+        "<path class=\"grid\" d=\"M{:.0f} {}H{:.0f}\"/>"
+        "<path class=\"interval {}\" d=\"M{:.1f} {}H{:.1f}v12H{:.1f}Z\"/>"
+        "<path class=\"axis\" d=\"M{:.1f} {}v18\"/>",
+        middle + 5, symbol, kLeft, middle - 17,
+        io::HtmlText(QuantityWithInterval(value, lower, upper, unit)), kLeft, middle, kRight,
+        judgement, left, middle - 6, right, left, x(value), middle - 9);
+    if (mark) {
       svg += fmt::format(
-          "<path class=\"mark\" d=\"M{:.1f} {}V{}\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
-          x(*bar.mark), middle - 12, middle + 12, x(*bar.mark) + 4, middle + 18);
+          "<path class=\"mark\" d=\"M{:.1f} {}v24\"/><text x=\"{:.1f}\" y=\"{}\">1/3</text>",
+          x(*mark), middle - 12, x(*mark) + 4, middle + 18);
     }
-    top += kRow;
+    middle += kRow;
+  };
+  const auto add_parameter = [&](const char* symbol, const char* name,
+                                 std::optional<double> mark = {}) {
+    const ParameterEstimate& estimate = *report.fit.Find(name);
+    if (WhatIsShown(estimate) != Shown::kValue) return;
+    add(symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
+        JudgementOf(estimate), mark);
+  };
+  const ContactQuantity* friction = report.Find("friction_coefficient");
+  if (friction != nullptr && friction->value) {
+    add("μ", *friction->value, friction->lower, friction->upper, "-",
+        JudgementOf(*report.fit.Find("slip_force")));
+  } else {
+    add_parameter("Tc", "slip_force");
   }
+  add_parameter("σ", "sigma");
+  add_parameter("α", "alpha", report.is_torsional() ? std::nullopt : std::optional(1.0 / 3));
   if (svg.empty()) return "";
   return FigureHtml(
       {.id = "intervals",
        .title = fmt::format("Values with their {:.4g} % intervals", 100 * report.fit.confidence),
        .text = "Green may be quoted; amber only with its interval."},
-      "", std::max(top, kLeast), svg);
+      "", std::max(middle - 31, kLeast), svg);
 }
 
 }  // namespace
@@ -218,7 +200,7 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
       title,
       fmt::format(
           "{}<div class=\"first\">\n<div>\n{}{}</div>\n<div>\n{}{}{}</div>\n</div>\n{}{}",
-          VerdictHtml(Name(JudgementOf(word)), word, MisfitStatement(report)),
+          VerdictHtml(JudgementOf(word), word, MisfitStatement(report)),
           FigureHtml({.id = "loop",
                       .title = "Measured and fitted loop",
                       .text = "Below it, what the fit leaves over at the same place."},
@@ -235,7 +217,7 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                                     TableHtml(fmt::format("models compared, rms in {}",
                                                           report.units.response),
                                               ComparedModels(report))),
-          SectionHtml("Details", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
+          SectionHtml("Details, in SI units", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

@@ -34,16 +34,15 @@ std::string_view VerdictWord(const Report& report) {
   return IsJudged(report) ? Name(report.fit.adequacy.verdict) : "not judged";
 }
 
-Judgement JudgementOf(std::string_view verdict) {
-  if (verdict == "adequate") return Judgement::kGood;
-  return verdict == "doubtful" || verdict == "not judged" ? Judgement::kPoor : Judgement::kBad;
+std::string_view JudgementOf(std::string_view verdict) {
+  if (verdict == "adequate") return kGood;
+  return verdict == "doubtful" || verdict == "not judged" ? kPoor : kBad;
 }
 
-Judgement JudgementOf(const ParameterEstimate& estimate) {
-  if (WhatIsShown(estimate) == Shown::kHeld) return Judgement::kNone;
-  if (WhatIsShown(estimate) == Shown::kNothing) return Judgement::kBad;
-  return estimate.identifiability == Identifiability::kIdentifiable ? Judgement::kGood
-                                                                    : Judgement::kPoor;
+std::string_view JudgementOf(const ParameterEstimate& estimate) {
+  if (WhatIsShown(estimate) == Shown::kHeld) return kPlain;
+  if (WhatIsShown(estimate) == Shown::kNothing) return kBad;
+  return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
 }
 
 Shown WhatIsShown(const ParameterEstimate& estimate) {
@@ -90,30 +89,23 @@ std::string PercentText(double share) {
 
 namespace {
 
-/// Says what a misfit is compared with.
-struct MisfitScale {
-  std::string_view name;
-  double over_half_gap = 1.0;
-};
-
-MisfitScale ScaleOf(const Report& report) {
+/// Returns what a misfit was judged over, in half gaps: 1, or the peak force.
+double ScaleOf(const Report& report) {
   const std::optional<double> half_gap = report.fit.MeasuredHalfGap();
-  const double scale = report.fit.MisfitScale();
-  if (!half_gap || scale == *half_gap) return {"half gap"};
-  return {"peak force", scale / *half_gap};
+  return half_gap ? report.fit.MisfitScale() / *half_gap : 1.0;
 }
 
 }  // namespace
 
 std::string MisfitShare(const Report& report, double over_half_gap) {
-  const MisfitScale scale = ScaleOf(report);
-  const double share = over_half_gap / scale.over_half_gap;
-  if (share >= 1) return fmt::format("more than the {}", scale.name);
-  return fmt::format("{} of the {}", PercentText(share), scale.name);
+  const double scale = ScaleOf(report);
+  const double share = over_half_gap / scale;
+  return fmt::format("{} the {}", share >= 1 ? "more than" : PercentText(share) + " of",
+                     scale == 1 ? "half gap" : "peak force");
 }
 
 std::string NextStatement(const Report& report, const NextStep& next) {
-  const double scale = ScaleOf(report).over_half_gap;
+  const double scale = ScaleOf(report);
   return fmt::format("{}{}misfit {} → {} (tried)", next.text, next.text.empty() ? "" : ", ",
                      PercentText(next.misfit_before / scale),
                      MisfitShare(report, next.misfit_after));
@@ -133,15 +125,10 @@ void RequireFitted(const Report& report, std::string_view what) {
 
 namespace {
 
-/// Says a finding. Of a finding that has a kind the row "code.kind" goes before that of its code.
-/// Numbers of the finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
-struct SentenceRow {
-  std::string_view code;
-  std::string_view text;
-  std::string_view if_it_slides = {};  ///< instead, where the record shows a loop that slides
-};
-
-constexpr auto kSentences = std::to_array<SentenceRow>({
+/// Sentences by the code of a finding. Of one that has a kind the row "code.kind" goes before that
+/// of its code, and where the record shows a loop that slides the row "code.slides". Numbers of the
+/// finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
+constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::string_view>>({
     // about the record
     {"reversals_uncertain",
      "{count} reversals, or {other_count} if excursions up to {other_gate:excitation} are noise: "
@@ -156,7 +143,8 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     // about the parameters
     {"undetermined_parameter", "the record does not depend on it"},
     {"undetermined_combination",
-     "only a combination of {parameters} is determined; fix one, or record a larger amplitude",
+     "only a combination of {parameters} is determined; fix one, or record a larger amplitude"},
+    {"undetermined_combination.slides",
      "only a combination of {parameters} is determined; fix one, or sample more densely after the "
      "reversals"},
     {"sigma_not_identifiable",
@@ -169,8 +157,8 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"asymmetry_not_identifiable", "the loop stays below slip"},
     {"slip_force_bounded_below",
      "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
-     "plan says how far)",
-     "the force keeps changing while the contact slides"},
+     "plan says how far)"},
+    {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
     {"force_at_limit",
@@ -210,11 +198,6 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"fit_failed", "{message}"},
 });
 
-const SentenceRow* FindRow(std::string_view code) {
-  const auto row = std::ranges::find(kSentences, code, &SentenceRow::code);
-  return row == kSentences.end() ? nullptr : &*row;
-}
-
 /// Returns the unit of a placeholder: one of the report's, or itself.
 std::string_view UnitOf(std::string_view name, const Units& units) {
   if (name == "force") return units.force;
@@ -248,12 +231,14 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;
-  const SentenceRow* row = FindRow(fmt::format("{}.{}", code, finding.kind));
-  if (row == nullptr) row = FindRow(code);
   const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
-  std::string_view text = row == nullptr                         ? code
-                          : slides && !row->if_it_slides.empty() ? row->if_it_slides
-                                                                 : row->text;
+  std::string_view text = code;
+  for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind),
+                                 fmt::format("{}.{}", code, slides ? "slides" : "")}) {
+    const auto row =
+        std::ranges::find(kSentences, key, [](const auto& each) { return each.first; });
+    if (row != kSentences.end()) text = row->second;
+  }
   std::string sentence;
   if (const std::optional<double> record = finding.Number("record")) {
     sentence = fmt::format("record {:.0f}: ", *record);

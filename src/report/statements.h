@@ -12,30 +12,23 @@
 // Makes the words that text and page share, without an end of line.
 namespace mindahl::report {
 
-/// Lists what the reports call the values of an enumeration, in their order.
-template <typename Enum>
-inline constexpr std::array<std::string_view, 0> kNamesOf{};
-
-template <>
-inline constexpr auto kNamesOf<identification::ParameterStatus> =
-    std::to_array<std::string_view>({"free", "fixed", "at_lower_bound", "at_upper_bound"});
-template <>
-inline constexpr auto kNamesOf<identification::Identifiability> = std::to_array<std::string_view>(
-    {"identifiable", "effective", "bounded_below", "not_identifiable"});
-template <>
-inline constexpr auto kNamesOf<models::InitialState> = std::to_array<std::string_view>({"virgin",
-                                                                                        "steady"});
-template <>
-inline constexpr auto kNamesOf<identification::AdequacyVerdict> =
-    std::to_array<std::string_view>({"adequate", "doubtful", "inadequate"});
-template <>
-inline constexpr auto kNamesOf<identification::Use> =
-    std::to_array<std::string_view>({"quantitative", "indicative", "none"});
-
-template <typename Enum>
-constexpr std::string_view Name(Enum value) {
-  const auto place = static_cast<std::size_t>(value);
-  return place < kNamesOf<Enum>.size() ? kNamesOf<Enum>[place] : std::string_view();
+// What the reports call the values of an enumeration.
+constexpr std::string_view Name(identification::ParameterStatus status) {
+  return std::array{"free", "fixed", "at_lower_bound", "at_upper_bound"}.at(
+      static_cast<std::size_t>(status));
+}
+constexpr std::string_view Name(identification::Identifiability verdict) {
+  return std::array{"identifiable", "effective", "bounded_below", "not_identifiable"}.at(
+      static_cast<std::size_t>(verdict));
+}
+constexpr std::string_view Name(models::InitialState state) {
+  return std::array{"virgin", "steady"}.at(static_cast<std::size_t>(state));
+}
+constexpr std::string_view Name(identification::AdequacyVerdict verdict) {
+  return std::array{"adequate", "doubtful", "inadequate"}.at(static_cast<std::size_t>(verdict));
+}
+constexpr std::string_view Name(identification::Use use) {
+  return std::array{"quantitative", "indicative", "none"}.at(static_cast<std::size_t>(use));
 }
 
 /// Names several files by the name of the first, without its directory: "loop.csv and 2 more".
@@ -47,15 +40,15 @@ bool IsJudged(const Report& report);
 /// Returns "adequate", "doubtful", "inadequate", "not judged", "not converged" or "failed".
 std::string_view VerdictWord(const Report& report);
 
-/// How good what is said is, for its colour.
-enum class Judgement { kNone, kGood, kPoor, kBad };
-template <>
-inline constexpr auto kNamesOf<Judgement> =  // classes of the page's style
-    std::to_array<std::string_view>({"plain", "good", "poor", "bad"});
+// How good what is said is: a class of the page's style, which has its colour.
+inline constexpr std::string_view kPlain = "plain";
+inline constexpr std::string_view kGood = "good";
+inline constexpr std::string_view kPoor = "poor";
+inline constexpr std::string_view kBad = "bad";
 /// @param verdict  as VerdictWord()
-Judgement JudgementOf(std::string_view verdict);
+std::string_view JudgementOf(std::string_view verdict);
 /// Returns kGood only of what may be quoted as it stands.
-Judgement JudgementOf(const identification::ParameterEstimate& estimate);
+std::string_view JudgementOf(const identification::ParameterEstimate& estimate);
 
 /// Says how much of a parameter is shown: no number that the record does not determine, nor where
 /// the search stopped at a limit.
@@ -102,7 +95,7 @@ std::string WarningText(const identification::Finding& finding, const Report& re
 struct Line {
   std::string label;  ///< "friction"
   std::string text;
-  Judgement judgement = Judgement::kNone;  ///< kGood of what may be quoted
+  std::string_view judgement = kPlain;  ///< kGood of what may be quoted
 };
 
 /// Returns the lines in their order: what to check, columns, assumptions of the reader, friction,

@@ -279,7 +279,7 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
     cells.resize(2 + kParameters.size(), kNone);
     cells.push_back(entry.fault);
     files.push_back({entry.file, std::move(cells),
-                     entry.verdict.empty() ? "" : report::Name(report::JudgementOf(entry.verdict)),
+                     entry.verdict.empty() ? "" : report::JudgementOf(entry.verdict),
                      Address(entry.page)});
   }
   const std::string repeats = report::TableHtml(

@@ -358,13 +358,13 @@ TEST(Answer, IsAtMostAHundredColumnsWide) {
 
 TEST(Judgement, IsGoodOnlyOfWhatMayBeQuoted) {
   auto estimate = MadeParameter("sigma", "N/m", 4e7, 4e5);
-  EXPECT_EQ(JudgementOf(estimate), Judgement::kGood);
+  EXPECT_EQ(JudgementOf(estimate), kGood);
   estimate.identifiability = Identifiability::kEffective;
-  EXPECT_EQ(JudgementOf(estimate), Judgement::kPoor);
+  EXPECT_EQ(JudgementOf(estimate), kPoor);
   estimate.identifiability = Identifiability::kNotIdentifiable;
-  EXPECT_EQ(JudgementOf(estimate), Judgement::kBad);
+  EXPECT_EQ(JudgementOf(estimate), kBad);
   estimate.status = ParameterStatus::kFixed;
-  EXPECT_EQ(JudgementOf(estimate), Judgement::kNone);
+  EXPECT_EQ(JudgementOf(estimate), kPlain);
 }
 
 TEST(Sentence, ThereIsOneForEveryFinding) {
