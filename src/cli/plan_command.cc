@@ -37,44 +37,27 @@ struct PlanOptions {
   std::vector<std::string> want;
   std::string json;
   std::string plot;
-
-  [[nodiscard]] bool fits_rig() const {
-    return std::ranges::find(with, "rig_stiffness") != with.end();
-  }
-};
-
-/// Holds what reaches the wanted precision from one initial state.
-struct Reached {
-  std::string_view state;
-  std::optional<double> amplitude;  // the least that suffices [m]
-  Protocol fewest;                  // sufficient, with the fewest cycles; amplitude 0: none is
 };
 
 struct Plan {
   Expectation expected;
-  Protocol protocol;
   WantedPrecision wanted;
-  std::string wanted_text;
   double slip = 0.0;                    // displacement [m] of λ = 1
   std::vector<ExpectedFit> loops = {};  // by their initial states and amplitudes
-  std::vector<Reached> reached = {};    // one an initial state, if anything is wanted
+  Json reached = Json::array();         // one an initial state, if anything is wanted
   std::vector<std::string> notes = {};
 };
 
-identification::FitOptions PlannedFit(const PlanOptions& options) {
-  const std::vector<std::string_view> planned = identification::PlannedTerms();
-  for (const std::string& name : options.with) RequireOneOf("--with", name, planned);
-  return {.terms = options.with};
-}
-
-/// Takes law and noise from the fit of a record. Where it does not identify α, that is --alpha or
-/// Mindlin's: the record has the other parameters to it.
-void ExpectFromRecord(const PlanOptions& options, Plan& plan) {
+/// Fits a record for the law and the noise that are expected. Where it does not identify α, that is
+/// --alpha or Mindlin's: the record has the other parameters to it.
+identification::FitResult FitOfRecord(const PlanOptions& options,
+                                      identification::FitOptions fit_options,
+                                      std::vector<std::string>& notes) {
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
-  plan.notes = file.notes;
-  identification::FitOptions fit_options = PlannedFit(options);
+  notes = file.notes;
   if (options.law.alpha) fit_options.fixed["alpha"] = *options.law.alpha;
-  if (options.rig_stiffness && !options.fits_rig()) {
+  const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
+  if (options.rig_stiffness && !fits_rig) {
     RequirePositive("--rig-stiffness [N/m]", *options.rig_stiffness);
     fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   }
@@ -82,9 +65,8 @@ void ExpectFromRecord(const PlanOptions& options, Plan& plan) {
   const auto is_inadequate = [&] {
     return fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
   };
-  const auto is_known = [&](std::string_view name) { return fit.Find(name)->is_known(); };
-  if (fit.converged && !is_inadequate() && !is_known("alpha")) {
-    plan.notes.emplace_back(
+  if (fit.converged && !is_inadequate() && !fit.Find("alpha")->is_known()) {
+    notes.emplace_back(
         "alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
     fit_options.fixed["alpha"] = 1.0 / 3;
     fit = identification::Fit({&file.record, 1}, fit_options);
@@ -94,22 +76,20 @@ void ExpectFromRecord(const PlanOptions& options, Plan& plan) {
         fmt::format("--record: {}: the fit does not converge: see mindahl fit", options.record));
   }
   if (is_inadequate()) {
-    plan.notes.emplace_back(
+    notes.emplace_back(
         "the model does not describe this record: the plan holds for a contact that it describes");
-  } else {
-    for (const std::string_view name : {"sigma", "slip_force"}) {
-      if (is_known(name)) continue;
-      plan.notes.push_back(fmt::format("{} is not identified: its value is a guess", name));
-    }
+    return fit;
   }
-  plan.expected.law = fit.law;
-  plan.expected.rig = fit.rig;
-  plan.expected.force_noise = fit.force_noise;
-  plan.expected.displacement_noise = fit.records.front().displacement_noise;
+  for (const std::string_view name : {"sigma", "slip_force"}) {
+    if (fit.Find(name)->is_known()) continue;
+    notes.push_back(fmt::format("{} is not identified: its value is a guess", name));
+  }
+  return fit;
 }
 
-void SetExpectation(const PlanOptions& options, Plan& plan) {
-  Expectation& expected = plan.expected;
+Expectation Expect(const PlanOptions& options, const identification::FitOptions& fit_options,
+                   std::vector<std::string>& notes) {
+  Expectation expected = options.expected;
   const double displacement_noise = expected.displacement_noise;
   RequireNonNegative("--displacement-noise [m]", displacement_noise);
   if (!options.record.empty()) {
@@ -117,20 +97,23 @@ void SetExpectation(const PlanOptions& options, Plan& plan) {
       throw InputError(
           "--record excludes --sigma, --slip-force and other options that describe a contact");
     }
-    ExpectFromRecord(options, plan);
+    const identification::FitResult fit = FitOfRecord(options, fit_options, notes);
+    expected = {fit.law, fit.rig, fit.force_noise, fit.records.front().displacement_noise};
   } else {
     if (!options.force_noise) {
       throw InputError("--force-noise missing: give the standard deviation of the force [N]");
     }
     expected.law = ResolveLaw(options.law);
-    plan.notes = DoubtsAbout(options.law.contact);
+    notes = DoubtsAbout(options.law.contact);
   }
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (displacement_noise > 0) expected.displacement_noise = displacement_noise;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
-  if (options.fits_rig() && std::isinf(expected.rig.stiffness)) {
+  const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
+  if (fits_rig && std::isinf(expected.rig.stiffness)) {
     throw InputError("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
   }
+  return expected;
 }
 
 WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
@@ -162,32 +145,35 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
 }
 
 Plan MakePlan(const PlanOptions& options) {
-  Plan plan{.expected = options.expected,
-            .protocol = options.protocol,
-            .wanted = ParseWanted(options.want),
-            .wanted_text = fmt::format("{}", fmt::join(options.want, ", "))};
-  SetExpectation(options, plan);
+  const std::vector<std::string_view> planned = identification::PlannedTerms();
+  for (const std::string& name : options.with) RequireOneOf("--with", name, planned);
+  const identification::FitOptions fit_options{.terms = options.with};
+  Plan plan;
+  plan.wanted = ParseWanted(options.want);
+  plan.expected = Expect(options, fit_options, plan.notes);
   plan.slip = SlipReach(plan.expected.law, plan.expected.rig);
-  const identification::FitOptions fit_options = PlannedFit(options);
   std::vector<double> amplitudes = options.amplitudes;
   constexpr std::array kShares = {0.1, 0.2, 0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2., 3., 5., 10.};
   if (amplitudes.empty()) {
     for (const double share : kShares) amplitudes.push_back(share * plan.slip);
   }
   for (const InitialState state : options.initial_states) {
-    Protocol protocol = plan.protocol;
+    Protocol protocol = options.protocol;
     protocol.initial_state = state;
     for (const double amplitude : amplitudes) {
       protocol.amplitude = amplitude;
       plan.loops.push_back(identification::ExpectFit(plan.expected, protocol, fit_options));
     }
     if (plan.wanted.empty()) continue;
-    Reached& reached = plan.reached.emplace_back();
-    reached.state = report::Name(state);
-    const std::optional<ExpectedFit> loop = identification::LeastAmplitude(
+    Protocol fewest;
+    const std::optional<ExpectedFit> least = identification::LeastAmplitude(
         plan.expected, protocol, plan.wanted, kShares.front() * plan.slip,
-        kShares.back() * plan.slip, fit_options, &reached.fewest);
-    if (loop) reached.amplitude = loop->protocol.amplitude;
+        kShares.back() * plan.slip, fit_options, &fewest);
+    const bool any = fewest.amplitude > 0;
+    plan.reached.push_back({{"initial_state", report::Name(state)},
+                            {"least_amplitude", least ? Json(least->protocol.amplitude) : Json()},
+                            {"fewest_cycles", any ? Json(fewest.cycles) : Json()},
+                            {"amplitude_of_fewest_cycles", any ? Json(fewest.amplitude) : Json()}});
   }
   return plan;
 }
@@ -237,18 +223,19 @@ Json ErrorRows(const Plan& plan) {
   });
 }
 
-std::string ToText(const Plan& plan) {
+std::string ToText(const PlanOptions& options, const Plan& plan) {
   const Expectation& expected = plan.expected;
   const models::BranchLaw& law = expected.law;
+  const double cycles = options.protocol.cycles;
   std::string text = fmt::format("expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N",
                                  law.tangential_stiffness, law.shape_exponent, law.slip_force);
   if (!std::isinf(expected.rig.stiffness)) {
     text += fmt::format(", rig {:.6g} N/m", expected.rig.stiffness);
   }
-  text += fmt::format("; noise {:.4g} N and {:.4g} m a\nsample", expected.force_noise,
-                      expected.displacement_noise);
-  text += fmt::format("; a sine of {:g} cycles, {} samples each\n", plan.protocol.cycles,
-                      plan.protocol.samples_per_cycle);
+  text += fmt::format(
+      "; noise {:.4g} N and {:.4g} m a\nsample; a sine of {:g} cycles, {} samples each\n",
+      expected.force_noise, expected.displacement_noise, cycles,
+      options.protocol.samples_per_cycle);
   for (const std::string& note : plan.notes) text += "note: " + note + '\n';
   text += fmt::format(
       "\nstandard errors\n{}"
@@ -257,16 +244,18 @@ std::string ToText(const Plan& plan) {
       "m.\n",
       report::TableText(ErrorRows(plan)), identification::Thresholds().undecided, plan.slip);
   if (plan.wanted.empty()) return text;
-  text += fmt::format("\nwanted: {}\n", plan.wanted_text);
-  for (const Reached& reached : plan.reached) {
-    text += fmt::format("  {}: ", reached.state);
-    if (reached.amplitude) {
+  text += fmt::format("\nwanted: {}\n", fmt::join(options.want, ", "));
+  for (const Json& reached : plan.reached) {
+    const Json& least = reached["least_amplitude"];
+    const Json& fewest = reached["fewest_cycles"];
+    text += fmt::format("  {}: ", report::CellText(reached["initial_state"]));
+    if (!least.is_null()) {
       text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n",
-                          *reached.amplitude, *reached.amplitude / plan.slip);
-    } else if (reached.fewest.amplitude > 0) {
-      text +=
-          fmt::format("no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n",
-                      plan.protocol.cycles, reached.fewest.amplitude, reached.fewest.cycles);
+                          least.get<double>(), least.get<double>() / plan.slip);
+    } else if (!fewest.is_null()) {
+      text += fmt::format(
+          "no amplitude reaches it with {:g} cycles; X = {:.3g} m would with {:g}\n", cycles,
+          reached["amplitude_of_fewest_cycles"].get<double>(), fewest.get<double>());
     } else {
       text += "no amplitude determines it\n";
     }
@@ -274,50 +263,40 @@ std::string ToText(const Plan& plan) {
   return text;
 }
 
-Json LoopsJson(const Plan& plan) {
-  return report::ListOf(plan.loops, [](const ExpectedFit& fit) {
-    Json entry = {{"initial_state", report::Name(fit.protocol.initial_state)},
-                  {"amplitude", fit.protocol.amplitude},
-                  {"peak_force", fit.peak_force}};
-    for (const ParameterEstimate& estimate : fit.parameters) {
-      entry["parameters"][estimate.name] = {
-          {"value", estimate.value},
-          {"unit", estimate.unit},
-          {"standard_error", NumberOrNull(estimate.standard_error)}};
-    }
-    entry["law_evidence"] = fit.law_evidence;
-    entry["law_decided"] = IsLawDecided(fit);
-    return entry;
-  });
-}
-
-std::string ToJson(const Plan& plan) {
+std::string ToJson(const PlanOptions& options, const Plan& plan) {
   const Expectation& expected = plan.expected;
   Json contact = report::LawJson(expected.law);
   contact.update({{"rig_stiffness", NumberOrNull(expected.rig.stiffness)},
                   {"force_noise", expected.force_noise},
                   {"displacement_noise", expected.displacement_noise},
                   {"gross_slip_displacement", plan.slip}});
+  Json loops = report::ListOf(plan.loops, [](const ExpectedFit& fit) -> Json {
+    Json parameters = Json::object();
+    for (const ParameterEstimate& estimate : fit.parameters) {
+      parameters[estimate.name] = {{"value", estimate.value},
+                                   {"unit", estimate.unit},
+                                   {"standard_error", NumberOrNull(estimate.standard_error)}};
+    }
+    return {{"initial_state", report::Name(fit.protocol.initial_state)},
+            {"amplitude", fit.protocol.amplitude},
+            {"peak_force", fit.peak_force},
+            {"parameters", std::move(parameters)},
+            {"law_evidence", fit.law_evidence},
+            {"law_decided", IsLawDecided(fit)}};
+  });
   Json wanted = Json::object();
   for (const auto& [name, precision] : plan.wanted) {
     wanted[name] = {{"standard_error", precision.value}, {"relative", precision.is_relative}};
   }
-  Json reached = report::ListOf(plan.reached, [](const Reached& each) -> Json {
-    const bool any = each.fewest.amplitude > 0;
-    return {{"initial_state", each.state},
-            {"least_amplitude", NumberOrNull(each.amplitude)},
-            {"fewest_cycles", any ? Json(each.fewest.cycles) : nullptr},
-            {"amplitude_of_fewest_cycles", any ? Json(each.fewest.amplitude) : nullptr}};
-  });
-  return report::Document(
-      "mindahl.plan/1",
-      {{"expected", std::move(contact)},
-       {"protocol",
-        {{"cycles", plan.protocol.cycles}, {"samples_per_cycle", plan.protocol.samples_per_cycle}}},
-       {"loops", LoopsJson(plan)},
-       {"wanted", std::move(wanted)},
-       {"reached", std::move(reached)},
-       {"notes", plan.notes}});
+  return report::Document("mindahl.plan/1",
+                          {{"expected", std::move(contact)},
+                           {"protocol",
+                            {{"cycles", options.protocol.cycles},
+                             {"samples_per_cycle", options.protocol.samples_per_cycle}}},
+                           {"loops", std::move(loops)},
+                           {"wanted", std::move(wanted)},
+                           {"reached", plan.reached},
+                           {"notes", plan.notes}});
 }
 
 /// Draws the expected errors against the amplitude, one panel per initial state.
@@ -352,10 +331,11 @@ io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
 void RunPlan(const PlanOptions& options, Console& console) {
   const Plan plan = MakePlan(options);
   if (!options.plot.empty()) io::WritePlot(ToPlot(options, plan), options.plot);
-  WriteAnswer(options.json, console, ToJson(plan), ToText(plan));
-  const auto is_reached = [](const Reached& each) { return each.amplitude.has_value(); };
-  if (!plan.wanted.empty() && std::ranges::none_of(plan.reached, is_reached))
+  WriteAnswer(options.json, console, ToJson(options, plan), ToText(options, plan));
+  const auto fails = [](const Json& reached) { return reached["least_amplitude"].is_null(); };
+  if (!plan.wanted.empty() && std::ranges::all_of(plan.reached, fails)) {
     console.exit_status = kNotEstablished;
+  }
 }
 
 }  // namespace
