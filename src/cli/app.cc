@@ -35,23 +35,11 @@ bool IsCommand(std::string_view name) {
   return std::ranges::find(kCommands, name, &CommandRow::name) != kCommands.end();
 }
 
-/// Keys of a configuration: the long names of a command's options.
-std::vector<std::string> KeyNames(const CLI::App& command) {
+/// Returns the long names of options, behind dashes or, as keys of a configuration, without.
+std::vector<std::string> NamesOfOptions(const CLI::App& command, const std::string& dashes) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back(name);
-  }
-  return names;
-}
-
-/// Returns the options of the command that runs, then those of every command, with their dashes.
-std::vector<std::string> OptionNames(const CLI::App& app) {
-  std::vector<const CLI::App*> owners;
-  for (const CLI::App* command : app.get_subcommands()) owners.push_back(command);
-  owners.push_back(&app);
-  std::vector<std::string> names;
-  for (const CLI::App* owner : owners) {
-    for (const std::string& name : KeyNames(*owner)) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(dashes + name);
   }
   return names;
 }
@@ -102,16 +90,15 @@ class CommandConfig : public CLI::ConfigTOML {
             key.source(),
             fmt::format("'{0}.{1}' is no option of {0}{2} keys are those of {0} --help without the "
                         "dashes, in a section named after a command or in none",
-                        running, name, DidYouMean(name, KeyNames(command))));
+                        running, name, DidYouMean(name, NamesOfOptions(command, ""))));
       }
-      std::vector<std::string> values;
+      CLI::ConfigItem item{{running}, name, {}};
       if (const toml::array* array = node.as_array()) {
-        for (const toml::node& value : *array) values.push_back(ValueOf(value));
+        for (const toml::node& value : *array) item.inputs.push_back(ValueOf(value));
       } else {
-        values.push_back(ValueOf(node));
+        item.inputs.push_back(ValueOf(node));
       }
-      if (values.empty()) continue;  // an array of nothing asks for nothing
-      selected.push_back({{running}, name, std::move(values)});
+      if (!item.inputs.empty()) selected.push_back(std::move(item));  // nothing asks for nothing
     }
   }
 
@@ -222,8 +209,12 @@ int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ost
     return Print(results.view(), CommandName(app), status, out, err);
   } catch (const CLI::ParseError& error) {
     const auto unknown = UnknownOption(app);
+    const auto running = app.get_subcommands();
+    std::vector<std::string> names;
+    if (!running.empty()) names = NamesOfOptions(*running.front(), "--");
+    std::ranges::move(NamesOfOptions(app, "--"), std::back_inserter(names));
     const std::string fault = unknown ? fmt::format("there is no option '{}'{}", OneLine(*unknown),
-                                                    DidYouMean(*unknown, OptionNames(app)))
+                                                    DidYouMean(*unknown, names))
                                       : OneLine(error.what()) + ";";
     return refuse(fmt::format("{} see {} --help", fault, CommandName(app)));
   } catch (const InputError& error) {

@@ -105,8 +105,10 @@ class OptionGroup {
   CLI::Option* AddFlag(const std::string& option, bool& value, const std::string& help) const;
   /// Adds a flag that may have a word of its own: "--strict{adequate}".
   CLI::Option* AddFlagWithWord(const std::string& option,
-                               std::function<void(const std::string&)> read,
-                               const std::string& help) const;
+                               const std::function<void(const std::string&)>& read,
+                               const std::string& help) const {
+    return Grouped(command_.add_flag(option, help)->each(read), "");
+  }
 
  private:
   CLI::Option* Grouped(CLI::Option* added, const std::string& type) const;

@@ -106,17 +106,6 @@ CLI::Option* OptionGroup::AddFlag(const std::string& option, bool& value,
   return Grouped(command_.add_flag(option, value, help)->check(check), "");
 }
 
-CLI::Option* OptionGroup::AddFlagWithWord(const std::string& option,
-                                          std::function<void(const std::string&)> read,
-                                          const std::string& help) const {
-  const auto text = std::make_shared<std::string>();
-  return Grouped(
-      command_.add_flag(option, *text, help)->each([text, read](const std::string& word) {
-        read(word);
-      }),
-      "");
-}
-
 std::vector<const CLI::Option*> OptionsOf(const CLI::App& command) {
   return command.get_options(
       [](const CLI::Option* option) { return !option->get_lnames().empty(); });

@@ -49,8 +49,8 @@ struct TrackedTest {
   loop::ReversalGate gate = {};
   std::size_t fits = 0;
   std::size_t flagged = 0;
-  std::size_t resumed = 0;  // fits that the table had already
-  std::map<std::string, std::size_t, std::less<>> flags = {};
+  std::size_t resumed = 0;                                     // fits that the table had already
+  std::map<std::string, std::size_t, std::less<>> flags = {};  // how many fits have each
   campaign::DissipatedEnergy energy = {};
   std::vector<campaign::Cycle> log = {};  // loops of the cycles 1, 10, 100, …
   std::vector<Evolution> evolutions = {};
@@ -65,8 +65,7 @@ struct TrackedTest {
   }
   /// Returns the number of fits with a flag.
   [[nodiscard]] std::size_t CountOf(std::string_view flag) const {
-    const auto found = flags.find(flag);
-    return found == flags.end() ? 0 : found->second;
+    return flags.contains(flag) ? flags.find(flag)->second : 0;
   }
   /// False where no fit converged.
   [[nodiscard]] bool established() const { return fits == 0 || CountOf("not_converged") < fits; }
@@ -78,26 +77,25 @@ Json QuantityRows(const TrackedTest& test) {
   Json quantities = Json::object();
   for (const Evolution& evolution : test.evolutions) {
     const campaign::CourseDescription& course = evolution.description;
-    Json steps = report::ListOf(course.steps, [](const campaign::Change& step) -> Json {
-      return {{"cycle", step.first_cycle},
-              {"before", step.from},
-              {"after", step.to},
-              {"p_value", step.p_value}};
-    });
-    Json trends = report::ListOf(course.trends, [](const campaign::Change& trend) -> Json {
-      return {{"first_cycle", trend.first_cycle},
-              {"last_cycle", trend.last_cycle},
-              {"from", trend.from},
-              {"to", trend.to},
-              {"p_value", trend.p_value}};
-    });
     quantities[std::string(evolution.quantity->name)] = {
         {"first", course.first},
         {"last", course.last},
         {"unit", evolution.unit},
         {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
-        {"steps", std::move(steps)},
-        {"trends", std::move(trends)}};
+        {"steps", report::ListOf(course.steps,
+                                 [](const campaign::Change& step) -> Json {
+                                   return {{"cycle", step.first_cycle},
+                                           {"before", step.from},
+                                           {"after", step.to},
+                                           {"p_value", step.p_value}};
+                                 })},
+        {"trends", report::ListOf(course.trends, [](const campaign::Change& trend) -> Json {
+           return {{"first_cycle", trend.first_cycle},
+                   {"last_cycle", trend.last_cycle},
+                   {"from", trend.from},
+                   {"to", trend.to},
+                   {"p_value", trend.p_value}};
+         })}};
   }
   return quantities;
 }
@@ -222,18 +220,15 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
 std::uint64_t SeedOf(const CLI::App& command) {
   constexpr auto kOfNoRow = std::to_array<std::string_view>(
       {"help", "output", "json", "report", "resume", "overwrite", "threads"});
-  std::uint64_t seed = 0xcbf29ce484222325U;
-  const auto add = [&seed](std::string_view text) {
-    for (const char character : text) {
-      seed = (seed ^ static_cast<unsigned char>(character)) * 0x100000001b3U;
-    }
-  };
+  std::string words;
   for (const CLI::Option* option : OptionsOf(command)) {  // not the files, whose content counts
     if (std::ranges::find(kOfNoRow, NameOf(*option)) != kOfNoRow.end()) continue;
-    add(NameOf(*option));
-    for (const std::string& value : option->results()) add("=" + value);
-    if (option->count() == 0) add("=" + option->get_default_str());
+    words += NameOf(*option);
+    for (const std::string& value : option->results()) words += "=" + value;
+    if (option->count() == 0) words += "=" + option->get_default_str();
   }
+  std::uint64_t seed = 0xcbf29ce484222325U;
+  for (const unsigned char letter : words) seed = (seed ^ letter) * 0x100000001b3U;
   return seed;
 }
 
@@ -258,25 +253,21 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
     throw InputError(fmt::format(
         "--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy));
   }
-  KeptCycles kept;
-  kept.bytes = header.size();
-  std::vector<std::string> batch;
+  KeptCycles kept{.bytes = header.size()};
+  std::vector<CycleFit> batch;
+  std::uintmax_t bytes = kept.bytes;
   // A line without a line feed was being written when a run was killed, and is no row.
   while (std::getline(file, line) && !file.eof()) {
-    batch.push_back(line);
-    if (batch.size() < campaign::kBatch) continue;
-    for (const std::string& row : batch) {
-      ++kept.fits;
-      kept.bytes += row.size() + 1;
-      try {
-        const CycleFit fit = campaign::ReadCycleTableRow(row, is_torsional);
-        kept.checksum = fit.checksum;
-        visit(fit);
-      } catch (const InputError& error) {
-        throw InputError(
-            fmt::format("--resume: {}:{}: {}: {}", path, kept.fits + 1, error.what(), kRemedy));
-      }
+    try {
+      batch.push_back(campaign::ReadCycleTableRow(line, is_torsional));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("--resume: {}:{}: {}: {}", path, kept.fits + batch.size() + 2,
+                                   error.what(), kRemedy));
     }
+    bytes += line.size() + 1;
+    if (batch.size() < campaign::kBatch) continue;
+    std::ranges::for_each(batch, visit);
+    kept = {kept.fits + batch.size(), bytes, batch.back().checksum};
     batch.clear();
   }
   return kept;
@@ -418,15 +409,14 @@ class TrackRun {
                       "its row {} was another: give those, another --output, or --overwrite",
                       options_.output, kept_->fits));
     }
-    has_write_failed_ = true;
     output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
     if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
   }
 
   /// Appends the rows of a batch.
   void Take(std::span<const CycleFit> fits) {
-    OpenTable();
     has_write_failed_ = true;
+    OpenTable();
     std::string rows;
     for (const CycleFit& fit : fits) {
       test_.energy.Add(fit);
@@ -443,9 +433,7 @@ class TrackRun {
     if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
     tracker_->Finish();
     if (kept_) OpenTable();  // also of a record that ends with it, or before
-    has_write_failed_ = true;
     if (output_) output_->Finish();
-    has_write_failed_ = false;
   }
 
   /// True if the table on disk, where there is one to go on with, is of this record and options.
