@@ -163,7 +163,10 @@ void AddContactOptions(CLI::App& command, ContactOptions& options,
 /// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
 
-/// Adds --sigma, --alpha, --slip-force and what describes a contact, --friction included.
+/// Adds --sigma, --alpha and --slip-force.
+void AddLawParameters(const OptionGroup& group, LawOptions& law);
+
+/// Adds these and what describes a contact, --friction included.
 /// @param request  must outlive the application
 void AddLawOptions(CLI::App& command, LawOptions& request);
 

@@ -12,7 +12,6 @@
 namespace mindahl::cli {
 
 using convert::LoopError;
-using convert::Parameter;
 using convert::TargetRow;
 
 namespace {
@@ -20,12 +19,10 @@ namespace {
 constexpr std::size_t kMostElements = 10'000;
 
 struct ConvertOptions {
-  std::string fit;              // file of `mindahl fit --json`: law and amplitude, unless given
-  std::optional<double> sigma;  // [N/m]
-  std::optional<double> alpha;  // default 1/3
-  std::optional<double> slip_force;  // [N]
-  std::optional<double> amplitude;   // X [m] of the contact's steady loop
-  std::string from;                  // "masing", "dahl" or "": that of the fit, else masing
+  std::string fit;  // file of `mindahl fit --json`: law and amplitude, unless given
+  LawOptions law;
+  std::optional<double> amplitude;  // X [m] of the contact's steady loop
+  std::string from;                 // "masing", "dahl" or "": that of the fit, else masing
   std::string to;
   convert::ConversionOptions options = {};
   convert::NormalContact normal = {};
@@ -55,22 +52,23 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
     const Json found = report::At(fit, place);
     if (!value && found.is_number()) value = found.get<double>();
   };
-  for (const auto& [value, name] : {std::pair(&request.sigma, "sigma"),
-                                    {&request.alpha, "alpha"},
-                                    {&request.slip_force, "slip_force"}}) {
+  for (const auto& [value, name] : {std::pair(&request.law.sigma, "sigma"),
+                                    {&request.law.alpha, "alpha"},
+                                    {&request.law.slip_force, "slip_force"}}) {
     const std::string place = fmt::format("/parameters/{}", name);
     const Json known = report::At(fit, place + "/identifiability");
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
     if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
   }
-  if (request.amplitude || !request.sigma || !request.slip_force) return;
+  const LawOptions& law = request.law;
+  if (request.amplitude || !law.sigma || !law.slip_force) return;
   take(request.amplitude, "/measured/amplitude");
   std::optional<double> rig;
   take(rig, "/parameters/rig_stiffness/value");
   if (!rig || !request.amplitude) return;
   // The rest of the amplitude is the rig's.
   request.amplitude = models::ContactAmplitude(
-      ModelOf(request), {*request.sigma, request.alpha.value_or(1.0 / 3), *request.slip_force},
+      ModelOf(request), {*law.sigma, law.alpha.value_or(1.0 / 3), *law.slip_force},
       {.stiffness = *rig}, *request.amplitude);
 }
 
@@ -97,35 +95,15 @@ std::string ErrorAtAmplitude(const LoopError& error, double amplitude) {
                                                  : "lost where the contact loses none");
 }
 
-Json ParameterRows(const std::vector<Parameter>& parameters) {
-  Json rows = Json::object();
-  for (const Parameter& parameter : parameters) {
-    rows[parameter.name] = {
-        {"value", parameter.value}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
-  }
-  return rows;
-}
-
-Json ElementRows(const convert::Conversion& conversion) {
-  Json rows = Json::array();
-  if (const auto* elements = std::get_if<methods::IwanElements>(&conversion.law)) {
-    for (std::size_t j = 0; j < elements->size(); ++j) {
-      rows.push_back(
-          {{"stiffness", elements->stiffness[j]}, {"slip_force", elements->slip_force[j]}});
-    }
-  }
-  return rows;
-}
-
 void RunConvert(ConvertOptions request, Console& console) {
   if (!request.fit.empty()) {
     TakeFit(ReadFit(request.fit), request);
-    Require(request.alpha, "--alpha", request);
+    Require(request.law.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
-  const models::BranchLaw law = {Require(request.sigma, "--sigma", request),
-                                 request.alpha.value_or(1.0 / 3),
-                                 Require(request.slip_force, "--slip-force", request)};
+  const models::BranchLaw law = {Require(request.law.sigma, "--sigma", request),
+                                 request.law.alpha.value_or(1.0 / 3),
+                                 Require(request.law.slip_force, "--slip-force", request)};
   const double amplitude = Require(request.amplitude, "--amplitude", request);
   request.options.amplitude = amplitude;
   const double tolerance = request.options.tolerance;
@@ -133,8 +111,18 @@ void RunConvert(ConvertOptions request, Console& console) {
   Validate(request.normal, target);
   const convert::Conversion made =
       convert::Convert({&ModelOf(request), law}, target, request.options);
-  const Json parameters = ParameterRows(ParametersOf(made, target, request.normal));
-  const Json elements = ElementRows(made);
+  Json parameters = Json::object();
+  for (const convert::Parameter& parameter : ParametersOf(made, target, request.normal)) {
+    parameters[parameter.name] = {
+        {"value", parameter.value}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
+  }
+  Json elements = Json::array();
+  if (const auto* jenkins = std::get_if<methods::IwanElements>(&made.law)) {
+    for (std::size_t j = 0; j < jenkins->size(); ++j) {
+      elements.push_back(
+          {{"stiffness", jenkins->stiffness[j]}, {"slip_force", jenkins->slip_force[j]}});
+    }
+  }
   const LoopError& error = made.at_amplitude;
   const std::string error_text = ErrorAtAmplitude(error, amplitude);
   const auto& within = made.within;
@@ -182,9 +170,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   const OptionGroup contact(command, "The contact");
   contact.Add("fit", options->fit,
               "what mindahl fit --json wrote: law and amplitude, unless given below", "FILE");
-  contact.AddQuantity("--sigma", options->sigma, "tangential stiffness [N/m]", "N/M", "N/m");
-  contact.Add("--alpha", options->alpha, "shape exponent [-], default 1/3", "ALPHA");
-  contact.AddQuantity("--slip-force", options->slip_force, "slip force Tc [N]", "N", "N");
+  AddLawParameters(contact, options->law);
   contact
       .Add("--from", options->from,
            "law of these parameters: of fit --model mindlin-dahl or --model dahl;\ndefault the "

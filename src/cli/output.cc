@@ -54,9 +54,6 @@ bool IsSameFile(const fs::path& first, const fs::path& second) {
   return place(first) == place(second);
 }
 
-/// An option and the path that it was given.
-using Output = std::pair<std::string, std::string>;
-
 void RequireWritable(const std::string& option, const std::string& path) {
   constexpr std::array<std::string_view, 11> kNotWritten = {
       ".parquet", ".pq", ".feather", ".arrow", ".xlsx", ".xls",
@@ -77,24 +74,21 @@ void RequireWritable(const std::string& option, const std::string& path) {
   }
 }
 
-/// Returns the options of a command and of the program whose value is called so.
-std::vector<const CLI::Option*> OptionsOfType(const CLI::App& command, std::string_view type) {
+/// Returns the options that were given, of a command and of the program, whose value is called so.
+std::vector<const CLI::Option*> GivenOf(const CLI::App& command,
+                                        std::initializer_list<std::string_view> types) {
   const auto is_given = [&](const CLI::Option* option) {
-    return option->count() > 0 && option->get_type_name() == type;
+    return option->count() > 0 && std::ranges::find(types, option->get_type_name()) != types.end();
   };
   std::vector<const CLI::Option*> options = command.get_options(is_given);
-  const std::vector<const CLI::Option*> of_program = command.get_parent()->get_options(is_given);
-  options.insert(options.end(), of_program.begin(), of_program.end());
+  std::ranges::copy(command.get_parent()->get_options(is_given), std::back_inserter(options));
   return options;
 }
 
 void RequireOutputs(const CLI::App& command) {
   const std::vector<std::string> inputs = InputsOf(command);
-  std::vector<const CLI::Option*> outputs = OptionsOfType(command, "PATH");
-  const std::vector<const CLI::Option*> directories = OptionsOfType(command, "DIR");
-  outputs.insert(outputs.end(), directories.begin(), directories.end());
-  std::vector<Output> checked;
-  for (const CLI::Option* each : outputs) {
+  std::vector<std::pair<std::string, std::string>> checked;  // options with their paths
+  for (const CLI::Option* each : GivenOf(command, {"PATH", "DIR"})) {
     const std::string option = "--" + NameOf(*each);
     const std::string& path = each->results().back();
     if (path.empty()) continue;
@@ -120,7 +114,7 @@ void RequireOutputs(const CLI::App& command) {
 
 std::vector<std::string> InputsOf(const CLI::App& command) {
   std::vector<std::string> inputs;
-  for (const CLI::Option* option : OptionsOfType(command, "FILE")) {
+  for (const CLI::Option* option : GivenOf(command, {"FILE"})) {
     inputs.insert(inputs.end(), option->results().begin(), option->results().end());
   }
   return inputs;

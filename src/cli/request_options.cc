@@ -113,13 +113,15 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
            "MU");
 }
 
+void AddLawParameters(const OptionGroup& group, LawOptions& law) {
+  group.AddQuantity("--sigma", law.sigma, "tangential stiffness sigma [N/m]", "N/M", "N/m");
+  group.Add("--alpha", law.alpha, "shape exponent [-], default 1/3 where the model leaves it free",
+            "ALPHA");
+  group.AddQuantity("--slip-force", law.slip_force, "slip force Tc [N]", "N", "N");
+}
+
 void AddLawOptions(CLI::App& command, LawOptions& request) {
-  const OptionGroup parameters(command, "Parameters");
-  parameters.AddQuantity("--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M",
-                         "N/m");
-  parameters.Add("--alpha", request.alpha,
-                 "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA");
-  parameters.AddQuantity("--slip-force", request.slip_force, "slip force Tc [N]", "N", "N");
+  AddLawParameters(OptionGroup(command, "Parameters"), request);
   AddContactOptions(command, request.contact);
   AddFrictionOption(command, request.contact);
 }

@@ -71,23 +71,21 @@ std::string ChoiceText(const std::vector<WorkPrecision>& points, std::size_t cho
 
 /// Returns the points as rows of text, CSV and JSON.
 Json PointRows(const std::vector<WorkPrecision>& points) {
-  Json rows = Json::array();
-  for (const WorkPrecision& point : points) {
+  return report::ListOf(points, [](const WorkPrecision& point) -> Json {
     const tradeoff::Approximation& approximation = point.approximation;
     const Method* method = methods::FindMethod(approximation.method);
     const bool has_steps = method != nullptr && !method->steps.empty();
     const bool is_adaptive = method != nullptr && method->adaptive;
-    rows.push_back({{"model", approximation.model},
-                    {"method", method == nullptr ? Json() : Json(approximation.method)},
-                    {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
-                    {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
-                    {"cost_ns_per_sample", point.cost},
-                    {"max_force_error", point.precision.max_force},
-                    {"rms_force_error", point.precision.rms_force},
-                    {"energy_error", report::NumberOrNull(point.precision.energy)},
-                    {"pareto", point.is_on_front}});
-  }
-  return rows;
+    return {{"model", approximation.model},
+            {"method", method == nullptr ? Json() : Json(approximation.method)},
+            {"steps", has_steps ? Json(approximation.resolution.steps) : Json()},
+            {"tolerance", is_adaptive ? Json(approximation.resolution.tolerance) : Json()},
+            {"cost_ns_per_sample", point.cost},
+            {"max_force_error", point.precision.max_force},
+            {"rms_force_error", point.precision.rms_force},
+            {"energy_error", NumberOrNull(point.precision.energy)},
+            {"pareto", point.is_on_front}};
+  });
 }
 
 MeasuredExcitation Measure(std::string_view name, const std::string& title,

@@ -27,7 +27,7 @@ namespace {
 /// Says how a quantity follows a parameter of the fit.
 struct Dependence {
   const ParameterEstimate* parameter;
-  double exponent = 0.0;  ///< of the parameter or, with a factor, of 1 + factor·parameter
+  double exponent = 0.0;  // of the parameter or, with a factor, of 1 + factor·parameter
   double factor = 0.0;
 
   /// Returns the logarithm of the quantity as far as it depends on a value of the parameter.
@@ -79,10 +79,10 @@ struct QuantityRow {
   std::string_view symbol;
   std::string_view unit;
   std::string_view parameter;
-  double exponent;  ///< of the parameter, unless the contact radius is given
+  double exponent;  // of the parameter, unless the contact radius is given
   Kind kind;
-  bool is_of_sphere = true;  ///< follows only where Hertz's law of the load is not denied
-  const char* why = "";      ///< inputs that it needs; "" for those of contact::MissingInputs()
+  bool is_of_sphere = true;  // follows only where Hertz's law of the load is not denied
+  const char* why = "";      // inputs that it needs; "" for those of contact::MissingInputs()
 };
 
 constexpr std::array kQuantities = {

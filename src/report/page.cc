@@ -217,7 +217,8 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
                                     TableHtml(fmt::format("models compared, rms in {}",
                                                           report.units.response),
                                               ComparedModels(report))),
-          SectionHtml("Details, in SI units", LinesHtml("", DetailLines(report))), ProvenanceHtml(provenance)));
+          SectionHtml("Details, in SI units", LinesHtml("", DetailLines(report))),
+          ProvenanceHtml(provenance)));
 }
 
 }  // namespace mindahl::report

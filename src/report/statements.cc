@@ -60,20 +60,15 @@ Shown WhatIsShown(const ParameterEstimate& estimate) {
 }
 
 std::string ValueText(const ParameterEstimate& estimate) {
+  const Shown shown = WhatIsShown(estimate);
+  const std::string_view unit = estimate.unit;
   constexpr int kDigits = 4;
-  switch (WhatIsShown(estimate)) {
-    case Shown::kValue:
-      return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95,
-                                  estimate.unit);
-    case Shown::kHeld:
-      return fmt::format("{} (held)", Quantity(estimate.value, estimate.unit));
-    case Shown::kLowerLimit:
-      return fmt::format("> {}", Quantity(*estimate.lower95, estimate.unit, kDigits));
-    case Shown::kUpperLimit:
-      return fmt::format("< {}", Quantity(*estimate.upper95, estimate.unit, kDigits));
-    case Shown::kNothing:
-      break;
+  if (shown == Shown::kValue) {
+    return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95, unit);
   }
+  if (shown == Shown::kHeld) return Quantity(estimate.value, unit) + " (held)";
+  if (shown == Shown::kLowerLimit) return "> " + Quantity(*estimate.lower95, unit, kDigits);
+  if (shown == Shown::kUpperLimit) return "< " + Quantity(*estimate.upper95, unit, kDigits);
   return "not determined";
 }
 
