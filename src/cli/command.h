@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +56,7 @@ void ShowFirst(CLI::App& command, std::vector<std::string> names);
 CLI::Validator OneOf(const std::vector<std::string_view>& words);
 /// Refuses all but whole numbers: CLI11 itself reads -1 as 2⁶⁴ − 1.
 CLI::Validator WholeNumber(std::uint64_t least, std::uint64_t most);
+inline constexpr std::uint64_t kMostSeed = std::numeric_limits<std::uint64_t>::max();
 /// Transforms a quantity with its unit, "50 N", to the number in `unit`.
 CLI::Validator InUnit(const std::string& unit);
 
@@ -81,6 +83,12 @@ class OptionGroup {
   CLI::Option* AddShown(const std::string& option, Value& value, const std::string& help,
                         const std::string& type = "") const {
     return Add(option, value, help, type)->capture_default_str();
+  }
+  /// Adds an option that takes a whole number.
+  template <typename Value>
+  CLI::Option* AddCount(const std::string& option, Value& value, const std::string& help,
+                        std::uint64_t least = 1, std::uint64_t most = 1'000'000'000) const {
+    return AddShown(option, value, help)->check(WholeNumber(least, most));
   }
   /// Adds an option whose words stand for values, the first for the one that it has.
   template <typename Value>

@@ -16,8 +16,6 @@ using convert::TargetRow;
 
 namespace {
 
-constexpr std::size_t kMostElements = 10'000;
-
 struct ConvertOptions {
   std::string fit;  // file of `mindahl fit --json`: law and amplitude, unless given
   LawOptions law;
@@ -186,8 +184,8 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->check(OneOf(NamesOf(convert::Targets(), &convert::TargetRow::name)));
   AddTolerance(result, options->options.tolerance,
                "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%");
-  result.AddShown("--elements", options->options.elements, "number of elements of --to iwan")
-      ->check(WholeNumber(1, kMostElements));
+  result.AddCount("--elements", options->options.elements, "number of elements of --to iwan", 1,
+                  10'000);
   result.AddShown("--beta", options->options.beta,
                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta", "BETA");
   result.AddQuantity("--normal-load", options->normal.normal_load,

@@ -373,8 +373,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   loop.AddQuantity("--amplitude", options->amplitudes,
                    "amplitude X [m], repeatable; default 13 around the onset of slip", "X", "m");
   loop.AddShown("--cycles", options->protocol.cycles, "cycles of the sine, >= 1", "M");
-  loop.AddShown("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle")
-      ->check(WholeNumber(4, 1'000'000));
+  loop.AddCount("--samples-per-cycle", options->protocol.samples_per_cycle, "samples of each cycle",
+                4, 1'000'000);
   loop.AddChoice("--initial-state", options->initial_states,
                  {{"both", options->initial_states},
                   {"virgin", {InitialState::kVirgin}},

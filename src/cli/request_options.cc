@@ -143,59 +143,57 @@ std::string_view UnitOf(std::string_view parameter) {
   return term == nullptr ? "-" : term->unit;
 }
 
-double ParseNumber(std::string_view text, std::string_view option, std::string_view form,
-                   std::string_view unit = "-") {
-  if (const std::optional<double> value = ParseQuantity(text, unit)) return *value;
-  throw InputError(fmt::format("{}: '{}' is not a number{}: write {}", option, text,
-                               unit == "-" ? "" : fmt::format(" or a quantity in {}", unit), form));
+/// What a text is read for.
+struct Asked {
+  std::string_view option;
+  std::string_view form;  // how to write it, for messages
+  std::string_view unit = "-";
+};
+
+double ParseNumber(std::string_view text, const Asked& asked) {
+  if (const std::optional<double> value = ParseQuantity(text, asked.unit)) return *value;
+  throw InputError(fmt::format(
+      "{}: '{}' is not a number{}: write {}", asked.option, text,
+      asked.unit == "-" ? "" : fmt::format(" or a quantity in {}", asked.unit), asked.form));
 }
 
 /// Returns "left<separator>right".
 std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
-                                                    std::string_view option,
-                                                    std::string_view form) {
+                                                    const Asked& asked) {
   const std::size_t at = text.find(separator);
-  if (at == std::string_view::npos || at == 0 || at + 1 == text.size()) {
-    throw InputError(fmt::format("{}: '{}' is incomplete: write {}", option, text, form));
+  if (at != std::string_view::npos && at > 0 && at + 1 < text.size()) {
+    return {text.substr(0, at), text.substr(at + 1)};
   }
-  return {text.substr(0, at), text.substr(at + 1)};
+  throw InputError(fmt::format("{}: '{}' is incomplete: write {}", asked.option, text, asked.form));
 }
 
 [[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
   throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
 }
 
-/// Reads NAME=VALUE, each NAME once.
-template <typename Value, typename Parse>
-void ReadAssignments(const std::vector<std::string>& texts, std::string_view option,
-                     std::string_view form, std::map<std::string, Value>& assignments,
-                     Parse parse) {
-  for (const std::string& text : texts) {
-    const auto [name, value] = Split(text, '=', option, form);
-    if (!assignments.emplace(name, parse(value, option, form, UnitOf(name))).second) {
-      ThrowTwice(option, name);
-    }
-  }
-}
-
-Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form,
-                       std::string_view unit) {
-  const auto [lower, upper] = Split(text, ':', option, form);
-  const Interval interval = {ParseNumber(lower, option, form, unit),
-                             ParseNumber(upper, option, form, unit)};
+Interval ParseInterval(std::string_view text, const Asked& asked) {
+  const auto [lower, upper] = Split(text, ':', asked);
+  const Interval interval = {ParseNumber(lower, asked), ParseNumber(upper, asked)};
   if (interval.lower < interval.upper) return interval;
   throw InputError(
-      fmt::format("{}: '{}' is empty: the first number must be the smaller", option, text));
+      fmt::format("{}: '{}' is empty: the first number must be the smaller", asked.option, text));
 }
 
-loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
-                                 std::string_view form) {
-  const auto [first, last] = Split(text, ':', option, form);
+identification::Prior ParsePrior(std::string_view text, const Asked& asked) {
+  const UncertainValue prior = ParseUncertainValue(text, asked.option, asked.unit);
+  if (prior.standard_error > 0) return {prior.value, prior.standard_error};
+  throw InputError(
+      fmt::format("{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value",
+                  asked.option, text));
+}
+
+loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
+  const auto [first, last] = Split(text, ':', asked);
   const auto count = [&](std::string_view digits) {
     const auto number = NumberIn<std::size_t>(digits);
     if (number && *number >= 1) return *number;
-    throw InputError(
-        fmt::format("{}: '{}' is not a whole number from 1 on: write {}", option, digits, form));
+    throw InputError(fmt::format("{}: '{}' is not a whole number from 1 on: write {}", asked.option,
+                                 digits, asked.form));
   };
   return {.first = count(first), .last = count(last)};
 }
@@ -216,7 +214,7 @@ void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
   fit.covariates.push_back(text.substr(0, at));
   if (at == std::string::npos || text.substr(at + 1) == kFitIt) return;
   Hold("--covariate", identification::NameOfCovariate(fit.covariates.back()),
-       ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm), fit);
+       ParseNumber(std::string_view(text).substr(at + 1), {"--covariate", kForm}), fit);
 }
 
 /// Reads fit, a number, or a number with its standard uncertainty.
@@ -237,15 +235,15 @@ void ReadRig(const std::string& text, identification::FitOptions& fit) {
 /// Reads "cycles=2:9" and the like, of `--select`; or, of its older names, "2:9" alone.
 void ReadSelection(std::string_view what, std::string_view range, const std::string& option,
                    FitRequest& request) {
-  const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
+  const Asked counted{option, "LO:HI, counted from 1, e.g. 2:5"};
   if (what == "cycles") {
-    request.fit.preparation.cycles = ParseCountRange(range, option, counted);
+    request.fit.preparation.cycles = ParseCountRange(range, counted);
   } else if (what == "samples") {
-    request.fit.preparation.samples = ParseCountRange(range, option, counted);
+    request.fit.preparation.samples = ParseCountRange(range, counted);
   } else if (what == "time") {
-    request.time_window = ParseInterval(range, option, "LO:HI in seconds", "s");
+    request.time_window = ParseInterval(range, {option, "LO:HI in seconds", "s"});
   } else if (what == "load") {
-    request.fit.preparation.load_window = ParseInterval(range, option, "LO:HI in newtons", "N");
+    request.fit.preparation.load_window = ParseInterval(range, {option, "LO:HI in newtons", "N"});
   } else {
     RequireOneOf("--select", what,
                  std::vector<std::string_view>{"cycles", "samples", "time", "load"});
@@ -260,7 +258,7 @@ void AddSelections(CLI::App& command, FitRequest& request) {
           [&request](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
               const auto [what, range] =
-                  Split(text, '=', "--select", "cycles=LO:HI, time, load or samples");
+                  Split(text, '=', {"--select", "cycles=LO:HI, time, load or samples"});
               ReadSelection(what, range, fmt::format("--select {}", what), request);
             }
           },
@@ -395,12 +393,16 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   group.Add("--terms", options.terms, DescribeTerms(), "none|auto|NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
+  const auto add_assignments = [&](const char* option, auto& target, const char* type,
                                    const char* form, auto parse, const std::string& help) {
     group.AddRead<std::vector<std::string>>(
-        name,
-        [&target, name, form, parse](const std::vector<std::string>& texts) {
-          ReadAssignments(texts, name, form, target, parse);
+        option,
+        [&target, option, form, parse](const std::vector<std::string>& texts) {
+          for (const std::string& text : texts) {
+            const auto [name, value] = Split(text, '=', {option, form});
+            const Asked asked{option, form, UnitOf(name)};
+            if (!target.emplace(name, parse(value, asked)).second) ThrowTwice(option, name);
+          }
         },
         help, type);
   };
@@ -411,16 +413,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   add_assignments("--bound", fit.bounds, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2", &ParseInterval,
                   "keep a parameter between two values");
   add_assignments(
-      "--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
-      [](std::string_view value, std::string_view option, std::string_view, std::string_view unit) {
-        const UncertainValue prior = ParseUncertainValue(value, option, unit);
-        if (prior.standard_error > 0) {
-          return identification::Prior{prior.value, prior.standard_error};
-        }
-        throw InputError(fmt::format(
-            "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
-            value));
-      },
+      "--prior", fit.priors, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%", &ParsePrior,
       "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
   group.AddShown("--confidence", fit.confidence, "confidence of every interval [-]", "C");
   group.AddQuantity("--force-noise", fit.force_noise,

@@ -1,7 +1,6 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -26,6 +25,7 @@ struct SimulateOptions {
   std::string model = "mindlin";
   LawOptions law;
   models::ExcitationOptions excitation{.cycles = 1.0};
+  std::string waveform = "sine";
   std::optional<double> lambda;
   std::optional<double> amplitude;
   std::string path;                 // a file with the motion, instead
@@ -50,6 +50,7 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     return motion;
   }
   models::ExcitationOptions excitation = options.excitation;
+  excitation.waveform = *models::FindWaveform(options.waveform);
   if (options.lambda.has_value() == options.amplitude.has_value()) {
     throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
   }
@@ -127,19 +128,14 @@ std::vector<std::string_view> SimulatedModels() {
 
 void AddDriveOptions(CLI::App& command, SimulateOptions& request) {
   const OptionGroup group(command, "Excitation");
-  std::vector<std::pair<std::string, models::Waveform>> waveforms;
-  for (const auto& name : models::WaveformNames()) {
-    waveforms.emplace_back(name, *models::FindWaveform(name));
-  }
-  group.AddChoice("--waveform", request.excitation.waveform, std::move(waveforms),
-                  "imposed displacement");
+  const auto waveforms = models::WaveformNames();
+  group.AddShown("--waveform", request.waveform, "imposed displacement")
+      ->check(OneOf({waveforms.begin(), waveforms.end()}));
   group.Add("--lambda", request.lambda, "amplitude over the gross-slip displacement [-]", "L");
   group.AddQuantity("--amplitude", request.amplitude, "amplitude [m]", "M", "m");
   group.AddShown("--cycles", request.excitation.cycles, "cycles [-]");
-  group
-      .AddShown("--samples-per-cycle", request.excitation.samples_per_cycle,
-                "samples in a cycle; multiples of 4 put samples on the extremes")
-      ->check(WholeNumber(4, 1'000'000'000));
+  group.AddCount("--samples-per-cycle", request.excitation.samples_per_cycle,
+                 "samples in a cycle; multiples of 4 put samples on the extremes", 4);
   group.AddShown("--frequency", request.excitation.frequency, "frequency [Hz]");
   group.AddShown("--growth", request.excitation.growth,
                  "growing sine: last amplitude over the first [-]");
@@ -182,9 +178,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   noise.AddQuantity("--noise-force", options->force_noise, "standard deviation [N]", "N", "N");
   noise.AddQuantity("--noise-displacement", options->displacement_noise, "standard deviation [m]",
                     "M", "m");
-  noise
-      .AddShown("--seed", options->excitation.seed, "seed of the noise and of the random waveform")
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  noise.AddCount("--seed", options->excitation.seed, "seed of the noise and of the random waveform",
+                 0, kMostSeed);
 
   const OptionGroup method(command, "Method");
   method.AddShown("--method", options->method, MethodHelp())

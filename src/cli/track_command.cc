@@ -487,12 +487,9 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddModelOptions(command, options->fit);
   AddContactOptions(command, options->fit.contact);
   const OptionGroup cycles(command, "Cycles");
-  cycles
-      .AddShown("--average", options->track.together,
-                "number of consecutive cycles that are fitted together")
-      ->check(WholeNumber(1, 1'000'000));
-  cycles.AddShown("--every", options->track.every, "fit only one cycle of this many")
-      ->check(WholeNumber(1, 1'000'000'000));
+  cycles.AddCount("--average", options->track.together,
+                  "number of consecutive cycles that are fitted together", 1, 1'000'000);
+  cycles.AddCount("--every", options->track.every, "fit only one cycle of this many");
   cycles.AddChoice("--broken-rows", options->fit.columns.skip_broken_rows,
                    {{"refuse", false}, {"skip", true}},
                    "refuse: a row without a number in a needed column ends the run; skip:\nit is "

@@ -1,5 +1,3 @@
-#include <limits>
-
 #include "cli/command.h"
 #include "mindahl/identification/mapping_validation.h"
 
@@ -67,7 +65,6 @@ void RunValidate(const Validation& validation, Console& console) {
 }  // namespace
 
 void AddValidateCommand(CLI::App& app, Console& console) {
-  constexpr std::uint64_t kMostCases = 1'000'000'000;
   const auto options = std::make_shared<Validation>();
   CLI::App& command = AddCommand(
       app, "validate",
@@ -77,10 +74,8 @@ void AddValidateCommand(CLI::App& app, Console& console) {
       "status 3 when a case misses its tolerance.",
       {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   const OptionGroup plain(command, kPlainGroup);
-  plain.AddShown("--cases", options->options.cases, "contacts to draw")
-      ->check(WholeNumber(1, kMostCases));
-  plain.AddShown("--seed", options->options.seed, "seed of the random numbers")
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  plain.AddCount("--cases", options->options.cases, "contacts to draw");
+  plain.AddCount("--seed", options->options.seed, "seed of the random numbers", 0, kMostSeed);
   plain.Add("--json", options->json_path, "report as JSON; - for standard output", "PATH");
   OnRun(command, [options, &console] { RunValidate(*options, console); });
 }

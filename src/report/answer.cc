@@ -462,9 +462,7 @@ std::string Wrapped(std::string_view text) {
 std::string LinesText(const std::vector<Line>& lines) {
   std::string text;
   for (const Line& line : lines) {
-    const std::size_t width = CharactersIn(line.label);
-    text += line.label + std::string(width < kLabel ? kLabel - width : 1, ' ') +
-            Wrapped(line.text) + '\n';
+    text += fmt::format("{:<{}} {}\n", line.label, kLabel - 1, Wrapped(line.text));
   }
   return text;
 }

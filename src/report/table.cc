@@ -2,8 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -53,12 +53,6 @@ std::string CellCsv(const Json& value) {
   return value.is_number() ? value.dump() : io::CsvCell(CellText(value));
 }
 
-/// Puts a cell into its column: numbers to the right.
-void AddCell(std::string& line, const std::string& cell, std::size_t width, bool is_right) {
-  const std::string blanks(width - CharactersIn(cell), ' ');
-  line += is_right ? "  " + blanks + cell : "  " + cell + blanks;
-}
-
 }  // namespace
 
 std::string CellText(const Json& value, int digits) {
@@ -92,7 +86,10 @@ std::string TableText(const Json& rows, int digits) {
     name.resize(std::min(name.size(), kNameLines));
     name.insert(name.begin(), kNameLines - name.size(), "");  // stands right above the cells
     column.insert(column.begin(), name.begin(), name.end());
-    for (std::size_t k = 0; k < lines.size(); ++k) AddCell(lines[k], column[k], width, is_right);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      lines[k] += is_right ? fmt::format("  {:>{}}", column[k], width)
+                           : fmt::format("  {:<{}}", column[k], width);
+    }
   }
   std::string text;
   for (std::string& line : lines) {
@@ -139,27 +136,28 @@ std::string ResidualsCsv(const Report& report) {
   const bool is_of_force = report.fit.response == loop::Channel::kForce;
   const bool is_timed = std::ranges::none_of(
       report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
-  std::vector<double> file;
-  std::vector<std::vector<double>> cells;  // one list a column
+  std::map<std::string, std::vector<double>> cells;  // by what a column holds
+  const auto append = [&](const char* what, const std::vector<double>& values) {
+    cells[what].insert(cells[what].end(), values.begin(), values.end());
+  };
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const loop::Record& record = report.records[r].record;
     const identification::RecordFit& fit = report.fit.records[r];
-    file.insert(file.end(), record.size(), static_cast<double>(r + 1));
-    const std::array columns = {&record.time, &record.displacement, &record.force,
-                                is_of_force ? &fit.fitted_force : &fit.fitted_displacement,
-                                &fit.residual};
-    cells.resize(columns.size());
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      cells[k].insert(cells[k].end(), columns[k]->begin(), columns[k]->end());
-    }
+    append("file", std::vector<double>(record.size(), static_cast<double>(r + 1)));
+    append("time", record.time);
+    append("displacement", record.displacement);
+    append("force", record.force);
+    append("fitted", is_of_force ? fit.fitted_force : fit.fitted_displacement);
+    append("residual", fit.residual);
   }
-  std::vector<io::CsvColumn> columns = {
-      {WithUnit("displacement", units.displacement), cells[1]},
-      {WithUnit("force", units.force), cells[2]},
-      {WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", units.response), cells[3]},
-      {WithUnit("residual", units.response), cells[4]}};
-  if (is_timed) columns.insert(columns.begin(), {"time [s]", cells[0]});
-  if (report.records.size() > 1) columns.insert(columns.begin(), {"file", file});
+  std::vector<io::CsvColumn> columns;
+  if (report.records.size() > 1) columns.push_back({"file", cells["file"]});
+  if (is_timed) columns.push_back({"time [s]", cells["time"]});
+  columns.push_back({WithUnit("displacement", units.displacement), cells["displacement"]});
+  columns.push_back({WithUnit("force", units.force), cells["force"]});
+  columns.push_back({WithUnit(is_of_force ? "fitted_force" : "fitted_displacement", units.response),
+                     cells["fitted"]});
+  columns.push_back({WithUnit("residual", units.response), cells["residual"]});
   return io::CsvText(columns);
 }
 
