@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -114,87 +111,9 @@ UncertainValue Propagated(const KnownContact& known, const Compute& compute) {
   return result;
 }
 
-std::optional<UncertainValue>& ModulusOf(KnownContact& known, int body) {
-  return body == 1 ? known.body_1.youngs_modulus : known.body_2.youngs_modulus;
-}
-
-/// Returns 1 or 2, the body whose E is unknown while all else is known; else 0.
-int BodyOfUnknownModulus(const KnownContact& known) {
-  if (!known.body_1.poisson_ratio || !known.body_2.poisson_ratio) return 0;
-  if (known.body_1.youngs_modulus.has_value() == known.body_2.youngs_modulus.has_value()) return 0;
-  return known.body_1.youngs_modulus ? 2 : 1;
-}
-
-/// Returns the known properties with E of a body by the stiffness, which grows with it; empty where
-/// it would have to be more than rigid.
-std::optional<KnownContact> WithModulusOfStiffness(KnownContact known, int body, double stiffness) {
-  // Beyond these times the other body's a body is rigid, or as soft as none, to every digit.
-  constexpr double kFarther = 1e18;
-  const double other = ModulusOf(known, 3 - body).value();
-  const auto excess = [&](double log_modulus) {
-    ModulusOf(known, body) = std::exp(log_modulus);
-    return std::log(MindlinTangentialStiffness(HertzRadiusOf(known), ComplianceOf(known)) /
-                    stiffness);
-  };
-  const double lower = std::log(other / kFarther);
-  const double upper = std::log(other * kFarther);
-  const double at_lower = excess(lower);
-  const double at_upper = excess(upper);
-  if (!(at_lower < 0) || !(at_upper > 0)) return std::nullopt;
-  std::uintmax_t most = 200;
-  const auto [below, above] = boost::math::tools::toms748_solve(
-      excess, lower, upper, at_lower, at_upper, boost::math::tools::eps_tolerance<double>(), most);
-  ModulusOf(known, body) = std::exp(std::midpoint(below, above));
-  return known;
-}
-
-/// Returns what is known with the ν of both bodies, where it is one and all that is known of the
-/// materials, in the first: the larger of its two errors stands for both.
-std::optional<KnownContact> WithCommonPoissonRatio(KnownContact known) {
-  std::optional<UncertainValue>& first = known.body_1.poisson_ratio;
-  const std::optional<UncertainValue> second =
-      std::exchange(known.body_2.poisson_ratio, std::nullopt);
-  if (known.body_1.youngs_modulus || known.body_2.youngs_modulus || !first || !second) {
-    return std::nullopt;
-  }
-  if (first->value != second->value) return std::nullopt;
-  first->standard_error = std::max(first->standard_error, second->standard_error);
-  return known;
-}
-
-/// Returns one of the last three quantities, what a smooth sphere of known radius tells of its
-/// materials; empty where the inputs do not determine it.
-/// @param one_ratio  as from WithCommonPoissonRatio()
-std::optional<double> MaterialOf(ContactQuantity quantity, double stiffness,
-                                 const KnownContact& known, bool one_ratio) {
-  if (!known.normal_load || !KnowsRadii(known)) return std::nullopt;
-  const double load_radius = known.normal_load->value * EquivalentRadiusOf(known);
-  const auto wanted = [&](double compliance, double effective_modulus) {
-    return quantity == ContactQuantity::kSphereCompliance ? compliance : effective_modulus;
-  };
-  if (KnowsCompliance(known)) {
-    if (AreElastic(known) || quantity != ContactQuantity::kSphereEffectiveModulus) {
-      return std::nullopt;
-    }
-    return 0.75 * load_radius / std::pow(0.125 * stiffness * ComplianceOf(known), 3);
-  }
-  if (const int body = BodyOfUnknownModulus(known); body != 0) {
-    std::optional<KnownContact> whole = WithModulusOfStiffness(known, body, stiffness);
-    if (!whole) return std::nullopt;
-    return quantity == ContactQuantity::kSphereYoungsModulus
-               ? ModulusOf(*whole, body)->value
-               : wanted(ComplianceOf(*whole), EffectiveModulusOf(*whole));
-  }
-  if (quantity == ContactQuantity::kSphereYoungsModulus || !one_ratio) return std::nullopt;
-  const double ratio = *known.body_1.poisson_ratio;
-  const double product = 2 * (2 - ratio) / (1 - ratio);  // G*E*
-  const double compliance = std::sqrt(384 * load_radius / product / std::pow(stiffness, 3));
-  return wanted(compliance, product / compliance);
-}
-
 /// Returns a quantity by the values of what is known; empty where they do not determine it.
 std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double slip_force,
-                              const KnownContact& known, bool one_ratio) {
+                              const KnownContact& known) {
   const bool has_compliance = KnowsCompliance(known);
   const double fitted_radius = has_compliance ? 0.125 * stiffness * ComplianceOf(known) : 0.0;
   const double radius = known.contact_radius ? known.contact_radius->value : fitted_radius;
@@ -224,12 +143,8 @@ std::optional<double> ValueOf(ContactQuantity quantity, double stiffness, double
     case ContactQuantity::kHertzPressure:
       if (!KnowsHertz(known)) return std::nullopt;
       return HertzMaximumPressure(known.normal_load->value, HertzRadiusOf(known));
-    case ContactQuantity::kSphereCompliance:
-    case ContactQuantity::kSphereEffectiveModulus:
-    case ContactQuantity::kSphereYoungsModulus:
-      break;
   }
-  return MaterialOf(quantity, stiffness, known, one_ratio);
+  return std::nullopt;
 }
 
 // Names of the missing ones, in words.
@@ -352,12 +267,11 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
   RequirePositive("tangential stiffness [N/m]", stiffness);
   RequirePositive("slip force [N]", slip_force);
   Validate(known);
-  const std::optional<KnownContact> common = WithCommonPoissonRatio(known);
   const auto value_at = [&](const KnownContact& at) {
-    return ValueOf(quantity, stiffness, slip_force, at, common.has_value());
+    return ValueOf(quantity, stiffness, slip_force, at);
   };
-  if (!value_at(common.value_or(known))) return std::nullopt;
-  return Propagated(common.value_or(known), [&](const KnownContact& at) {
+  if (!value_at(known)) return std::nullopt;
+  return Propagated(known, [&](const KnownContact& at) {
     return value_at(at).value_or(std::numeric_limits<double>::infinity());
   });
 }

@@ -137,7 +137,7 @@ TEST(TangentialComplianceOfAKnownContact, IsTheGivenOneElseThatOfItsBodies) {
 }
 
 TEST(IdentifyContact, DeterminesNothingIfNothingIsKnown) {
-  for (int quantity = 0; quantity <= static_cast<int>(Quantity::kSphereYoungsModulus); ++quantity) {
+  for (int quantity = 0; quantity <= static_cast<int>(Quantity::kHertzPressure); ++quantity) {
     EXPECT_FALSE(Identify(static_cast<Quantity>(quantity), {}));
   }
 }
@@ -158,109 +158,6 @@ TEST(IdentifyContact, KeepsGivenRadiusSeparateFromHertzRadius) {
   ExpectValue(Identify(Quantity::kMaximumPressure, known), 0.25 * truth.maximum_pressure);
   ExpectValue(Identify(Quantity::kEquivalentRadius, known), 8.0 * truth.equivalent_radius);
   EXPECT_EQ(Identify(Quantity::kHertzPressure, known)->value, truth.maximum_pressure);
-}
-
-// --- the materials of a smooth sphere
-
-// A root found to the last bits of ln E, which is 25 here.
-constexpr double kRoot = 100 * kEpsilon;
-const Body kGlassSeat{70e9, 0.22, -0.2};
-
-std::optional<UncertainValue> OfSphere(Quantity quantity, const ExactContact& truth,
-                                       const KnownContact& known) {
-  return IdentifyContact(quantity, truth.dahl.tangential_stiffness, truth.dahl.slip_force, known);
-}
-
-TEST(SmoothSphere, HasTheModulusOfOneBodyFromRadiiAndTheOther) {
-  const ExactContact truth = Solve(kSteel, kGlassSeat, kNormalLoad);
-  for (const int body : {1, 2}) {
-    KnownContact known = Known(kSteel, kGlassSeat);
-    (body == 1 ? known.body_1 : known.body_2).youngs_modulus.reset();
-    ExpectValue(OfSphere(Quantity::kSphereYoungsModulus, truth, known),
-                (body == 1 ? kSteel : kGlassSeat).youngs_modulus, kRoot);
-    ExpectValue(OfSphere(Quantity::kSphereCompliance, truth, known), truth.tangential_compliance,
-                kRoot);
-    ExpectValue(OfSphere(Quantity::kSphereEffectiveModulus, truth, known), truth.effective_modulus,
-                kRoot);
-  }
-}
-
-TEST(SmoothSphere, HasTheModulusOfABodyThatIsAThousandTimesSofterOrStiffer) {
-  for (const double modulus : {1e6, 1e9, 1e14}) {
-    const Body body{modulus, 0.45, kInfinity};
-    KnownContact known = Known(kSteel, body);
-    known.body_2.youngs_modulus.reset();
-    // σ of a body that is stiffer than the other hardly depends on E: rounding is magnified.
-    ExpectValue(OfSphere(Quantity::kSphereYoungsModulus, Solve(kSteel, body, kNormalLoad), known),
-                modulus, (1 + modulus / kSteel.youngs_modulus) * kRoot);
-  }
-}
-
-TEST(SmoothSphere, HasNoModulusBeyondThatOfARigidBody) {
-  constexpr double kBeyondEveryBody = 1e30;
-  const ExactContact rigid = Solve(kSteel, {kBeyondEveryBody, 0.3, 0.1}, kNormalLoad);
-  KnownContact known = Known(kSteel, {1, 0.3, 0.1});
-  known.body_2.youngs_modulus.reset();
-  EXPECT_FALSE(IdentifyContact(Quantity::kSphereYoungsModulus,
-                               1.001 * rigid.dahl.tangential_stiffness, 1.0, known));
-}
-
-TEST(SmoothSphere, HasItsComplianceFromRadiiAndOnePoissonRatioWhateverTheModuli) {
-  for (const double poisson_ratio : {-0.5, 0.0, 0.3, 0.5}) {
-    for (const double ratio : {1e-4, 1.0, 30.0}) {
-      const Body first{210e9, poisson_ratio, 0.05};
-      const Body second{210e9 * ratio, poisson_ratio, 0.3};
-      const ExactContact truth = Solve(first, second, kNormalLoad);
-      KnownContact known = Known(first, second);
-      known.body_1.youngs_modulus.reset();
-      known.body_2.youngs_modulus.reset();
-      ExpectValue(OfSphere(Quantity::kSphereCompliance, truth, known), truth.tangential_compliance,
-                  kRoot);
-      ExpectValue(OfSphere(Quantity::kSphereEffectiveModulus, truth, known),
-                  truth.effective_modulus, kRoot);
-      EXPECT_FALSE(OfSphere(Quantity::kSphereYoungsModulus, truth, known));
-    }
-  }
-}
-
-TEST(SmoothSphere, HasItsEffectiveModulusFromRadiiAndAGivenCompliance) {
-  const ExactContact truth = Solve(kSteel, kGlassSeat, kNormalLoad);
-  KnownContact known = Known(kSteel, kGlassSeat);
-  known.body_1.youngs_modulus.reset();
-  known.tangential_compliance = truth.tangential_compliance;
-  ExpectValue(OfSphere(Quantity::kSphereEffectiveModulus, truth, known), truth.effective_modulus,
-              kRoot);
-  EXPECT_FALSE(OfSphere(Quantity::kSphereCompliance, truth, known)) << "it is given";
-}
-
-TEST(SmoothSphere, SaysNothingOfMaterialsThatAreKnownOrOfTwoPoissonRatios) {
-  const ExactContact truth = Solve(kSteel, kGlassSeat, kNormalLoad);
-  KnownContact known = Known(kSteel, kGlassSeat);
-  EXPECT_FALSE(OfSphere(Quantity::kSphereEffectiveModulus, truth, known));
-  known.body_1.youngs_modulus.reset();
-  known.body_2.youngs_modulus.reset();
-  EXPECT_FALSE(OfSphere(Quantity::kSphereCompliance, truth, known));
-}
-
-// All that is known of the materials is that both have one ν: the larger of its two errors is
-// carried, whichever body has it, as if both changed together.
-TEST(SmoothSphere, CarriesTheLargerErrorOfACommonPoissonRatio) {
-  constexpr double kStep = 1e-4;
-  const ExactContact truth = Solve(kSteel, kSteel, kNormalLoad);
-  const double nu = kSteel.poisson_ratio;
-  const auto with = [&](UncertainValue first, UncertainValue second) {
-    KnownContact known = Known(kSteel, kSteel);
-    known.body_1 = {.poisson_ratio = first, .radius = kSteel.radius};
-    known.body_2 = {.poisson_ratio = second, .radius = kSteel.radius};
-    return *OfSphere(Quantity::kSphereCompliance, truth, known);
-  };
-  const double more = with(nu * (1 + kStep), nu * (1 + kStep));
-  const double less = with(nu * (1 - kStep), nu * (1 - kStep));
-  const UncertainValue larger{nu, kStep * nu};
-  const UncertainValue smaller{nu, kStep * nu / 3};
-  for (const UncertainValue& of : {with(larger, smaller), with(smaller, larger)}) {
-    EXPECT_NEAR(of.standard_error / (std::abs(more - less) / 2), 1.0, 1e-6);
-  }
 }
 
 // --- uncertain inputs
@@ -334,12 +231,6 @@ TEST(UncertainInputs, ActThroughGivenRadiusAndCompliance) {
   known.tangential_compliance = Relative(truth.tangential_compliance, 0.006);
   ExpectErrors(known, {Quantity::kContactRadius, Quantity::kTangentialCompliance,
                        Quantity::kMaximumPressure, Quantity::kStiffnessRatio});
-}
-
-TEST(UncertainInputs, ActOnTheModulusOfOneBody) {
-  KnownContact known = UncertainBodies();
-  known.body_2.youngs_modulus.reset();
-  ExpectErrors(known, {Quantity::kSphereEffectiveModulus});
 }
 
 TEST(UncertainInputs, ActOnAPredictedContact) {

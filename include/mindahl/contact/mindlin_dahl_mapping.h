@@ -97,11 +97,6 @@ enum class ContactQuantity {
   /// and N, else of a given a and a known G*
   kStiffnessRatio,
   kHertzPressure,  ///< p₀ [Pa] of Hertz; needs E, ν and R of both bodies, and N
-  // The next three need a smooth sphere of known radius whose stiffness grows with the load as
-  // Hertz predicts:
-  kSphereCompliance,        ///< G* [1/Pa] where it is not known
-  kSphereEffectiveModulus,  ///< E* [Pa] where it is not known
-  kSphereYoungsModulus,     ///< E [Pa] of the one body whose E is not known
 };
 
 /// Returns, in words ("the normal load"), the inputs that one of the first five quantities still
@@ -112,18 +107,6 @@ std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantit
 ///
 /// Knowledge may be redundant. What is given directly wins over what follows from other inputs: G*
 /// over the materials, of which E* still comes, and a given a over σG*/8 in ρ and p₀.
-///
-/// A smooth sphere of equivalent radius ρ makes known of its materials
-///
-/// | known | identified |
-/// |---|---|
-/// | G* | E* = 3Nρ/(4a³), a = σG*/8 |
-/// | E of one body, ν of both | the other E, of which σ = 8a/G* with Hertz's a; G* and E* |
-/// | one ν for both bodies | G*E* = 2(2 − ν)/(1 − ν), so G* = √(384Nρ/(G*E*·σ³)); E* |
-///
-/// With one ν the product G*E* is the same whatever the two E are, since both compliances are sums
-/// of 1/E: it is why no modulus is needed. E of a body exists where σ is less than against a rigid
-/// body in its place.
 ///
 /// The standard error is that of the inputs, to first order (GUM, JCGM 100:2008, eq. 13), each
 /// counted once however many ways it enters: E of a body is in G*, in E* and so in Hertz's a. σ and
