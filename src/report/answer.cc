@@ -13,13 +13,6 @@
 
 namespace mindahl::report {
 
-using identification::AdequacyVerdict;
-using identification::Finding;
-using identification::FitResult;
-using identification::Identifiability;
-using identification::ParameterEstimate;
-using identification::RecordFit;
-
 namespace {
 
 /// Returns "a 0.251 mm (0.250 … 0.252)"; empty where it does not follow.

@@ -18,9 +18,6 @@ namespace mindahl::report {
 using Kind = contact::ContactQuantity;
 using contact::KnownContact;
 using contact::UncertainValue;
-using identification::FitResult;
-using identification::ParameterEstimate;
-using identification::ParameterStatus;
 
 namespace {
 

@@ -15,10 +15,6 @@
 // Makes the JSON of a fit. docs/schema/fit.json says what each of its members is, and in what unit.
 namespace mindahl::report {
 
-using identification::ParameterEstimate;
-using identification::ParameterStatus;
-using identification::RecordFit;
-
 namespace {
 
 Json ColumnJson(const io::ChosenColumn* column) {
@@ -58,7 +54,7 @@ Json LeftOutJson(const Report& report) {
 bool IsAtOwnLimit(const ParameterEstimate& estimate) {
   return (estimate.status == ParameterStatus::kAtLowerBound ||
           estimate.status == ParameterStatus::kAtUpperBound) &&
-         estimate.identifiability == identification::Identifiability::kNotIdentifiable;
+         estimate.identifiability == Identifiability::kNotIdentifiable;
 }
 
 Json Parameters(const Report& report) {
@@ -260,7 +256,7 @@ std::string Document(std::string_view schema, const Json& members) {
 }
 
 Json DocumentOf(const Report& report) {
-  const identification::FitResult& fit = report.fit;
+  const FitResult& fit = report.fit;
   const identification::ResidualStatistics& residuals = fit.residuals;
   const auto if_fitted = [&](double value) {
     return report.failed() ? Json() : NumberOrNull(value);

@@ -14,7 +14,6 @@
 
 namespace mindahl::report {
 
-using identification::ParameterEstimate;
 using io::PlotPanel;
 using io::PlotSeries;
 using io::PlotStyle;
@@ -41,7 +40,7 @@ constexpr std::size_t kMostNamed = 8;   // a legend of many files would be longe
 
 /// Returns where the last cycle of a record begins that is too long for all of its fit to be drawn:
 /// a line through some of its samples would cut corners.
-std::size_t FirstDrawn(const identification::RecordFit& fit) {
+std::size_t FirstDrawn(const RecordFit& fit) {
   constexpr std::size_t kMostSamples = 2000;
   const auto& reversals = fit.reversals;
   const bool is_long = fit.fitted_force.size() > kMostSamples && reversals.size() >= 4;
@@ -58,7 +57,7 @@ io::Plot ToPlot(const Report& report) {
   std::vector<PlotSeries> lines;
   for (std::size_t r = 0; r < records; ++r) {
     const loop::Record& record = report.records[r].record;
-    const identification::RecordFit& fit = report.fit.records[r];
+    const RecordFit& fit = report.fit.records[r];
     const std::string label = LabelOf(report, r);
     const bool is_named = records <= kMostNamed || r == 0 || r + 1 == records;
     const auto add = [&](std::vector<PlotSeries>& to, std::string name, PlotStyle style,

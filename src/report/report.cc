@@ -16,10 +16,6 @@
 
 namespace mindahl::report {
 
-using identification::Identifiability;
-using identification::ParameterEstimate;
-using identification::ParameterStatus;
-
 namespace {
 
 void Require(const ReportInput& input) {
@@ -49,7 +45,7 @@ void TranslateToTorque(Report& report) {
 
 /// Withdraws what a curve says that goes through all samples, as there are no more of them than
 /// free parameters.
-void RequireMoreSamplesThanParameters(identification::FitResult& fit) {
+void RequireMoreSamplesThanParameters(FitResult& fit) {
   const auto free = static_cast<std::size_t>(
       std::ranges::count(fit.parameters, ParameterStatus::kFree, &ParameterEstimate::status));
   if (fit.residuals.samples == 0 || fit.residuals.samples > free) return;
@@ -64,7 +60,7 @@ void RequireMoreSamplesThanParameters(identification::FitResult& fit) {
 }
 
 void CollectWarnings(Report& report) {
-  for (const identification::Finding& finding : report.fit.findings) {
+  for (const Finding& finding : report.fit.findings) {
     if (finding.severity == identification::Severity::kNote) continue;
     report.warnings.push_back({std::string(finding.code), WarningText(finding, report)});
   }
@@ -136,10 +132,10 @@ std::string ImpossibleContact(const Report& report) {
 /// does not describe them: in partial slip they differ by the amplitudes too.
 std::string DifferentLoads(const Report& report) {
   if (report.fit.records.size() < 2 || report.fit.normal_load) return "";
-  if (report.fit.adequacy.verdict != identification::AdequacyVerdict::kInadequate) return "";
+  if (report.fit.adequacy.verdict != AdequacyVerdict::kInadequate) return "";
   std::vector<double> half_gaps;
   half_gaps.reserve(report.fit.records.size());
-  for (const identification::RecordFit& record : report.fit.records) {
+  for (const RecordFit& record : report.fit.records) {
     if (!record.facts.half_gap) return "";
     half_gaps.push_back(std::abs(*record.facts.half_gap));
   }

@@ -13,12 +13,6 @@
 
 namespace mindahl::report {
 
-using identification::Finding;
-using identification::FitResult;
-using identification::Identifiability;
-using identification::ParameterEstimate;
-using identification::ParameterStatus;
-
 std::string NameOf(std::span<const std::string> files) {
   if (files.empty()) return "";
   std::string name = std::filesystem::path(files.front()).filename().string();
@@ -207,7 +201,7 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
   if (place == "confidence") return fmt::format("{:.0f} %", 100 * fit.confidence);
   if (place == "message") return fit.solver.message;
   if (place == "remedy") {  // none of what the model misses
-    const bool is_noise = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
+    const bool is_noise = fit.adequacy.verdict == AdequacyVerdict::kAdequate;
     return is_noise ? "; more samples or less noise" : "";
   }
   const std::size_t colon = place.find(':');

@@ -12,19 +12,27 @@
 // Makes the words that text and page share, without an end of line.
 namespace mindahl::report {
 
+using identification::AdequacyVerdict;
+using identification::Finding;
+using identification::FitResult;
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+using identification::RecordFit;
+
 // What the reports call the values of an enumeration.
-constexpr std::string_view Name(identification::ParameterStatus status) {
+constexpr std::string_view Name(ParameterStatus status) {
   return std::array{"free", "fixed", "at_lower_bound", "at_upper_bound"}.at(
       static_cast<std::size_t>(status));
 }
-constexpr std::string_view Name(identification::Identifiability verdict) {
+constexpr std::string_view Name(Identifiability verdict) {
   return std::array{"identifiable", "effective", "bounded_below", "not_identifiable"}.at(
       static_cast<std::size_t>(verdict));
 }
 constexpr std::string_view Name(models::InitialState state) {
   return std::array{"virgin", "steady"}.at(static_cast<std::size_t>(state));
 }
-constexpr std::string_view Name(identification::AdequacyVerdict verdict) {
+constexpr std::string_view Name(AdequacyVerdict verdict) {
   return std::array{"adequate", "doubtful", "inadequate"}.at(static_cast<std::size_t>(verdict));
 }
 constexpr std::string_view Name(identification::Use use) {
@@ -48,7 +56,7 @@ inline constexpr std::string_view kBad = "bad";
 /// @param verdict  as VerdictWord()
 std::string_view JudgementOf(std::string_view verdict);
 /// Returns kGood only of what may be quoted as it stands.
-std::string_view JudgementOf(const identification::ParameterEstimate& estimate);
+std::string_view JudgementOf(const ParameterEstimate& estimate);
 
 /// Says how much of a parameter is shown: no number that the record does not determine, nor where
 /// the search stopped at a limit.
@@ -59,14 +67,13 @@ enum class Shown {
   kUpperLimit,  ///< the upper end alone
   kNothing,
 };
-Shown WhatIsShown(const identification::ParameterEstimate& estimate);
+Shown WhatIsShown(const ParameterEstimate& estimate);
 
 /// Returns "48.14 N/µm (48.07 … 48.22)", "0.333 (held)", "> 12 N" or "not determined".
-std::string ValueText(const identification::ParameterEstimate& estimate);
+std::string ValueText(const ParameterEstimate& estimate);
 
 /// Returns the same behind a symbol: "σ 48.14 N/µm (48.07 … 48.22)".
-std::string ParameterText(std::string_view symbol,
-                          const identification::ParameterEstimate& estimate);
+std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate);
 
 /// Returns "5.6 %" of 0.056; no share is said to less than a hundredth of a per cent.
 std::string PercentText(double share);
@@ -85,11 +92,11 @@ std::string ChanceText(double p_value, int digits = 3);
 
 /// Describes a finding in at most some twenty words, without an end of line, naming no parameter:
 /// what was found and, where something can be done, what to do; the code alone where it is unknown.
-std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
+std::string Sentence(const Finding& finding, const FitResult& fit,
                      const Units& units = kUnitsOfForce);
 
 /// Returns the same behind the names of its parameters.
-std::string WarningText(const identification::Finding& finding, const Report& report);
+std::string WarningText(const Finding& finding, const Report& report);
 
 /// A line of the answer, which the text prints and the page shows.
 struct Line {
