@@ -92,34 +92,61 @@ bool AreSteps(std::span<const LoadRun> runs, const SmoothLoad& load) {
          LoadStepRules::kShare * static_cast<double>(load.values.size());
 }
 
+/// The loads of a record that are constant for so many turning points.
+struct ConstantLoads {
+  SmoothLoad load;
+  std::vector<std::size_t> reversals;
+  std::vector<LoadRun> runs;
+
+  [[nodiscard]] ConstantLoad PieceOf(const LoadRun& run) const {
+    const auto turn = std::ranges::lower_bound(reversals, run.first);
+    const std::size_t first = run.first == 0 ? 0 : *std::next(turn);
+    return {.first = first, .last = run.last, .normal_load = run.load};
+  }
+};
+
+ConstantLoads FindConstantLoads(const RecordView& record) {
+  ConstantLoads loads;
+  if (record.normal_load.empty()) return loads;
+  loads.load = {WithoutSpikes(record.normal_load), NoiseByDifferences(record.normal_load, 1)};
+  loads.reversals =
+      FindReversals(record.displacement, ChooseReversalGate(record.displacement).gate);
+  const auto next_turn = [&](std::size_t sample) {
+    return std::ranges::lower_bound(loads.reversals, sample);
+  };
+  for (std::size_t i = 0; i < record.size();) {
+    const LoadRun run = RunFrom(loads.load, i);
+    const auto turns = static_cast<std::size_t>(next_turn(run.last) - next_turn(run.first));
+    if (run.load > 0 && turns >= LoadStepRules::kTurns) loads.runs.push_back(run);
+  }
+  return loads;
+}
+
 }  // namespace
 
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record) {
-  if (record.normal_load.empty()) return {};
-  const SmoothLoad load{WithoutSpikes(record.normal_load),
-                        NoiseByDifferences(record.normal_load, 1)};
-  const std::vector<std::size_t> reversals =
-      FindReversals(record.displacement, ChooseReversalGate(record.displacement).gate);
-  const auto next_turn = [&](std::size_t sample) {
-    return std::ranges::lower_bound(reversals, sample);
-  };
-  std::vector<LoadRun> runs;
-  for (std::size_t i = 0; i < load.values.size();) {
-    const LoadRun run = RunFrom(load, i);
-    const auto turns = static_cast<std::size_t>(next_turn(run.last) - next_turn(run.first));
-    if (run.load > 0 && turns >= LoadStepRules::kTurns) runs.push_back(run);
-  }
+  const ConstantLoads loads = FindConstantLoads(record);
   std::vector<ConstantLoad> pieces;
-  if (!AreSteps(runs, load)) return pieces;
-  for (const LoadRun& run : runs) {
-    const std::size_t first = run.first == 0 ? 0 : *std::next(next_turn(run.first));
-    pieces.push_back({.first = first, .last = run.last, .normal_load = run.load});
-  }
+  if (!AreSteps(loads.runs, loads.load)) return pieces;
+  for (const LoadRun& run : loads.runs) pieces.push_back(loads.PieceOf(run));
   return pieces;
+}
+
+std::optional<ConstantLoad> FindSettledLoad(const RecordView& record) {
+  const ConstantLoads loads = FindConstantLoads(record);
+  const auto longest = std::ranges::max_element(
+      loads.runs, {}, [](const LoadRun& run) { return run.last - run.first; });
+  if (longest == loads.runs.end()) return std::nullopt;
+  const ConstantLoad piece = loads.PieceOf(*longest);
+  const bool is_whole = piece.first == 0 && piece.last == record.size();
+  const bool is_short = static_cast<double>(piece.last - piece.first) <
+                        LoadStepRules::kShare * static_cast<double>(record.size());
+  return is_whole || is_short ? std::nullopt : std::optional(piece);
 }
 
 namespace {
 
+constexpr std::string_view kLoadRamp = "load ramp";
 constexpr std::string_view kTravel = "travel";
 constexpr std::string_view kRest = "rest";
 
@@ -234,7 +261,7 @@ double UsualStroke(std::span<const double> displacement, double gate) {
 void CutBefore(std::string_view reason, std::size_t first, TestPart& test) {
   if (first <= test.first) return;
   test.left_out.push_back({.reason = reason, .first = test.first, .last = first});
-  test.begins_cycled = test.begins_cycled || reason == kTravel;
+  test.begins_cycled = test.begins_cycled || reason != kRest;
   test.first = first;
 }
 
@@ -244,7 +271,9 @@ void CutAfter(std::string_view reason, std::size_t last, TestPart& test) {
   test.last = last;
 }
 
-void LeaveOutTravel(std::span<const double> displacement, TestPart& test) {
+void LeaveOutTravel(std::span<const double> all, TestPart& test) {
+  const std::size_t from = test.first;
+  const std::span<const double> displacement = all.subspan(from, test.last - from);
   const std::optional<RepeatedStrokes> strokes = FindRepeatedStrokes(displacement);
   if (!strokes) return;
   const double travel = TestPartRules::kTravel * strokes->range;
@@ -255,10 +284,10 @@ void LeaveOutTravel(std::span<const double> displacement, TestPart& test) {
   const auto begin = std::make_reverse_iterator(std::next(turn(strokes->first)));
   const auto before = Outside(displacement, std::ranges::subrange(begin, points.rend()), *strokes,
                               travel, points.size());
-  if (before) CutBefore(kTravel, *before, test);
+  if (before) CutBefore(kTravel, from + *before, test);
   const auto after = Outside(displacement, std::ranges::subrange(turn(strokes->last), points.end()),
                              *strokes, travel, points.size());
-  if (after) CutAfter(kTravel, *after + 1, test);
+  if (after) CutAfter(kTravel, from + *after + 1, test);
 }
 
 void LeaveOutRests(std::span<const double> displacement, TestPart& test) {
@@ -281,11 +310,15 @@ void LeaveOutRests(std::span<const double> displacement, TestPart& test) {
 
 }  // namespace
 
-TestPart FindTestPart(std::span<const double> displacement) {
-  TestPart test{.last = displacement.size()};
-  if (displacement.empty()) return test;
-  LeaveOutTravel(displacement, test);
-  LeaveOutRests(displacement, test);
+TestPart FindTestPart(const RecordView& record) {
+  TestPart test{.last = record.size()};
+  if (record.size() == 0) return test;
+  if (const std::optional<ConstantLoad> settled = FindSettledLoad(record)) {
+    CutBefore(kLoadRamp, settled->first, test);
+    CutAfter(kLoadRamp, settled->last, test);
+  }
+  LeaveOutTravel(record.displacement, test);
+  LeaveOutRests(record.displacement, test);
   std::ranges::sort(test.left_out, {}, &LeftOut::first);
   return test;
 }

@@ -132,7 +132,7 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
   if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return left_out;
   bool all_cycled = true;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::TestPart test = loop::FindTestPart(records[r].record.displacement);
+    const loop::TestPart test = loop::FindTestPart(records[r].record);
     for (const loop::LeftOut& part : test.left_out) {
       left_out.push_back({.file = names[r],
                           .samples = part.last - part.first,

@@ -136,5 +136,32 @@ TEST(LoadSteps, AreNotSeenInALoadThatChangesSlowlyOrSwingsNorWhereTheyAreSmall) 
   EXPECT_TRUE(FindLoadSteps(without).empty());
 }
 
+double RampUpAndDown(double cycle) {
+  return cycle < 2 ? 10 + 20 * cycle : cycle < 14 ? 50.0 : 50 - 20 * (cycle - 14);
+}
+
+TEST(SettledLoad, IsThatBetweenRampsFromTheSecondTurnOn) {
+  const Record record = WithNoise(Cycled(15, RampUpAndDown), 0.001);
+  const auto piece = FindSettledLoad(record);
+  ASSERT_TRUE(piece);
+  // Within 1 % to either side, and the noise, of 50 N the ramps of 20 N a cycle are for 0.05
+  // cycles.
+  EXPECT_NEAR(static_cast<double>(piece->first), 2.0 * kCycle + kSecondTurn, 0.05 * kCycle);
+  EXPECT_NEAR(static_cast<double>(piece->last), 14.0 * kCycle, 0.05 * kCycle);
+  EXPECT_NEAR(piece->normal_load / 50, 1, 0.001);
+  EXPECT_TRUE(FindLoadSteps(record).empty());
+}
+
+TEST(SettledLoad, IsNoneOfALoadThatIsConstantThroughoutOrForTooLittle) {
+  EXPECT_FALSE(FindSettledLoad(Cycled(15, [](double) { return 50.0; })));
+  EXPECT_FALSE(FindSettledLoad(Cycled(15, [](double cycle) { return 20 + 80 * cycle / 15; })));
+  // Of 15 cycles 8 are under 50 N, less than three fifths.
+  EXPECT_FALSE(
+      FindSettledLoad(Cycled(15, [](double cycle) { return cycle < 7 ? 15 + 5 * cycle : 50.0; })));
+  Record unloaded = Cycled(15, RampUpAndDown);
+  unloaded.normal_load.clear();
+  EXPECT_FALSE(FindSettledLoad(unloaded));
+}
+
 }  // namespace
 }  // namespace mindahl::loop::load_steps_test

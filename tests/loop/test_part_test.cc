@@ -1,4 +1,5 @@
 #include "mindahl/loop/segments.h"
+#include "mindahl/models/friction_model.h"
 #include "support/histories.h"
 #include "support/prelude.h"
 
@@ -7,8 +8,9 @@ namespace {
 
 using ::testing::Field;
 
-constexpr std::size_t kCycle = 100;  // samples
-constexpr double kReach = 1e-3;      // [m]
+constexpr std::size_t kCycle = 100;                    // samples
+constexpr double kReach = 1e-3;                        // [m], 1.3 times gross slip
+constexpr models::BranchLaw kLaw{8e4, 1.0 / 3, 40.0};  // δc = 0.75 mm
 // The test begins and ends at a turning point, and the last stroke may be one with the travel that
 // goes on in its direction: at most a cycle and a quarter of the sine are lost at an end.
 constexpr std::size_t kLost = kCycle + kCycle / 4;
@@ -42,17 +44,24 @@ std::vector<double> Joined(const std::vector<std::vector<double>>& parts) {
   return all;
 }
 
-bool IsWhole(const std::vector<double>& displacement) {
-  const TestPart test = FindTestPart(displacement);
-  return test.left_out.empty() && test.first == 0 && test.last == displacement.size() &&
+Record WithForce(std::vector<double> displacement) {
+  Record record;
+  record.displacement = std::move(displacement);
+  record.force = testing::Respond(testing::Model("mindlin-dahl"), kLaw, record.displacement);
+  return record;
+}
+
+bool IsWhole(const Record& record) {
+  const TestPart test = FindTestPart(record);
+  return test.left_out.empty() && test.first == 0 && test.last == record.size() &&
          !test.begins_cycled;
 }
 
 TEST(TestPart, IsTheWholeOfARecordOfOneTest) {
   for (const double cycles : {0.75, 1.25, 2.0, 5.0, 20.4}) {
-    EXPECT_TRUE(IsWhole(Sine(cycles))) << cycles;
+    EXPECT_TRUE(IsWhole(WithForce(Sine(cycles)))) << cycles;
   }
-  EXPECT_EQ(FindTestPart({}).last, 0U);
+  EXPECT_EQ(FindTestPart(Record()).last, 0U);
 }
 
 TEST(TestPart, KeepsAmplitudesThatGrowFallOrComeInTurn) {
@@ -62,7 +71,7 @@ TEST(TestPart, KeepsAmplitudesThatGrowFallOrComeInTurn) {
       [](double cycle) { return cycle < 3 ? 0.15 : 1.0; },
       [](double cycle) { return static_cast<int>(cycle) % 2 == 0 ? 1.0 : 0.4; }};
   for (const OfCycle& amplitude : amplitudes) {
-    EXPECT_TRUE(IsWhole(Sine(8, amplitude)));
+    EXPECT_TRUE(IsWhole(WithForce(Sine(8, amplitude))));
   }
 }
 
@@ -71,7 +80,7 @@ TEST(TestPart, KeepsAMeanThatWandersAndARandomMotion) {
   for (std::size_t i = 0; i < wandering.size(); ++i) {
     wandering[i] += 0.8 * kReach * static_cast<double>(i) / static_cast<double>(wandering.size());
   }
-  EXPECT_TRUE(IsWhole(wandering));
+  EXPECT_TRUE(IsWhole(WithForce(wandering)));
   Generator generator(5);
   for (int record = 0; record < 50; ++record) {
     std::vector<double> places = {0.0};
@@ -80,7 +89,7 @@ TEST(TestPart, KeepsAMeanThatWandersAndARandomMotion) {
       const std::vector<double> way = Way(places.back(), next, 40);
       places.insert(places.end(), way.begin() + 1, way.end());
     }
-    const TestPart test = FindTestPart(places);  // a small first swing may be a rest
+    const TestPart test = FindTestPart(WithForce(places));  // a small first swing may be a rest
     EXPECT_THAT(test.left_out, Each(Field(&LeftOut::reason, "rest"))) << record;
   }
 }
@@ -94,7 +103,7 @@ TEST(TestPart, LeavesOutATravelBeforeOrAfterOfAnyLengthAndDirection) {
           Joined({Way(far, 0.0, 150), std::vector<double>(rest, 0.0)});
       const std::vector<double> after =
           Joined({std::vector<double>(rest, 0.0), Way(0.0, far, 150), {far}});
-      const TestPart test_part = FindTestPart(Joined({before, test, after}));
+      const TestPart test_part = FindTestPart(WithForce(Joined({before, test, after})));
       EXPECT_TRUE(test_part.begins_cycled) << length;
       EXPECT_GE(test_part.first, before.size()) << length;
       EXPECT_LE(test_part.first, before.size() + kLost) << length;
@@ -111,7 +120,7 @@ TEST(TestPart, LeavesOutTheFallOfASpecimenThatBreaks) {
   std::vector<double> cycles =
       Sine(30, [](double cycle) { return cycle < 27 ? 1.0 : 1 + (cycle - 27) * (cycle - 27); });
   const std::vector<double> fall = Way(cycles.back(), -40 * kReach, 20);
-  const TestPart test = FindTestPart(Joined({cycles, fall}));
+  const TestPart test = FindTestPart(WithForce(Joined({cycles, fall})));
   EXPECT_EQ(test.first, 0U);
   EXPECT_FALSE(test.begins_cycled);
   EXPECT_LE(test.last, 28 * kCycle);
@@ -122,7 +131,7 @@ TEST(TestPart, IsFoundInADisplacementWithNoise) {
   Generator generator(7);
   std::vector<double> displacement = Joined({Way(-20 * kReach, 0.0, 300), Sine(6)});
   for (double& place : displacement) place += 0.01 * kReach * testing::Normal(generator);
-  const TestPart test = FindTestPart(displacement);
+  const TestPart test = FindTestPart(WithForce(displacement));
   EXPECT_GE(test.first, 300U);
   EXPECT_LE(test.first, 300U + kLost);
   EXPECT_EQ(test.last, displacement.size());
@@ -130,8 +139,8 @@ TEST(TestPart, IsFoundInADisplacementWithNoise) {
 
 TEST(TestPart, LeavesOutRestsButForTheSampleThatTheMotionBeginsFrom) {
   const std::vector<double> test = Sine(3);
-  const TestPart part = FindTestPart(
-      Joined({std::vector<double>(90, 0.0), test, std::vector<double>(40, test.back())}));
+  const TestPart part = FindTestPart(WithForce(
+      Joined({std::vector<double>(90, 0.0), test, std::vector<double>(40, test.back())})));
   EXPECT_EQ(part.first, 90U);  // the sine's own first sample is at rest too, and stays
   EXPECT_EQ(part.last, 90U + test.size());
   EXPECT_FALSE(part.begins_cycled);
@@ -142,10 +151,24 @@ TEST(TestPart, LeavesOutRestsButForTheSampleThatTheMotionBeginsFrom) {
 TEST(TestPart, KeepsADwellOfHalfAStroke) {
   // Usual strokes of 50 samples; the sine's own first sample rests too.
   const auto rested = [](std::size_t samples) {
-    return Joined({std::vector<double>(samples, 0.0), Sine(5)});
+    return WithForce(Joined({std::vector<double>(samples, 0.0), Sine(5)}));
   };
   EXPECT_TRUE(IsWhole(rested(kCycle / 4 - 1)));
   EXPECT_FALSE(IsWhole(rested(kCycle / 4)));
+}
+
+TEST(TestPart, LeavesOutTheRampsOfALoad) {
+  Record record = WithForce(Sine(20));
+  record.normal_load.assign(record.size(), 50.0);
+  for (std::size_t i = 0; i < 2 * kCycle; ++i) {
+    record.normal_load[i] = 50.0 * static_cast<double>(i) / (2.0 * kCycle);
+  }
+  const TestPart test = FindTestPart(record);
+  EXPECT_GE(test.first, 2 * kCycle);  // at the second turning point under the load
+  EXPECT_LE(test.first, 4 * kCycle);
+  EXPECT_TRUE(test.begins_cycled);
+  ASSERT_EQ(test.left_out.size(), 1U);
+  EXPECT_EQ(test.left_out.front().reason, "load ramp");
 }
 
 }  // namespace

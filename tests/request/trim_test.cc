@@ -24,6 +24,18 @@ Record Cycles(double cycles, Generator& generator) {
   return record;
 }
 
+/// Under a load [N] that ramps up over three cycles, and its force with it.
+Record UnderARampingLoad(double cycles, Generator& generator) {
+  Record record = Cycles(cycles, generator);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
+    const double share = std::min(1.0, 0.4 + 0.2 * cycle);
+    record.normal_load.push_back(100 * share);
+    record.force[i] *= share;  // no contact's law: what --trim is to keep away from the fit
+  }
+  return record;
+}
+
 /// As the program fits it.
 report::Report ReportOf(const Record& record) {
   FitRequest request;
@@ -34,6 +46,17 @@ report::Report ReportOf(const Record& record) {
   request.files = {"a.csv"};
   request.trim = true;
   return FitRecords(request, {file});
+}
+
+TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
+  Generator generator(8);
+  const Record record = UnderARampingLoad(20, generator);
+  const report::Report report = ReportOf(record);
+  EXPECT_EQ(report.fit.normal_load, 100.0);
+  EXPECT_EQ(report.fit.FindFinding("load_followed"), nullptr);
+  EXPECT_NEAR(report.fit.law.slip_force / kLaw.slip_force, 1, 0.005);
+  // The ramp ends after three cycles, a turn is a quarter past each half, and the second counts.
+  EXPECT_EQ(report.records.front().record.size(), record.size() - (3 * kCycle + 3 * kCycle / 4));
 }
 
 TEST(TrimmedFit, HasSignGapAndScaleOfTheTestAndNamesTheRowsOfATravel) {

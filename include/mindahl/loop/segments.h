@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -33,9 +34,18 @@ struct ConstantLoad {
 /// Cost: n log n at most (ChooseReversalGate).
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record);
 
+/// Finds the piece of a record whose load ramps up at its start, or down at its end, that is under
+/// one constant load: constant, and begun, as a piece of FindLoadSteps(), with three fifths of the
+/// samples.
+/// @param record  likewise
+/// @returns empty where the record has no load, or none that is constant for so long, or is under
+///   one from its first sample to its last
+/// Cost: likewise.
+std::optional<ConstantLoad> FindSettledLoad(const RecordView& record);
+
 /// Successive samples [first, last) at an end of a record that are not part of its test.
 struct LeftOut {
-  std::string_view reason;  ///< "travel" or "rest"
+  std::string_view reason;  ///< "load ramp", "travel" or "rest"
   std::size_t first = 0;
   std::size_t last = 0;
 };
@@ -49,8 +59,10 @@ struct TestPart {
   bool begins_cycled = false;
 };
 
-/// Finds the part of a record that is its test, from the displacement alone:
+/// Finds the part of a record that is its test, from the record alone:
 ///
+///  - load ramp: of a record whose load is constant for three fifths of its samples, those before
+///    and after (FindSettledLoad);
 ///  - travel: approach, parking, the fall of a broken specimen. The widest strokes that others
 ///    repeat - four or more of one range, to a tenth, that fill their time and that no jump between
 ///    two samples makes - are the test's. From them outwards amplitude and mean may change slowly;
@@ -59,9 +71,9 @@ struct TestPart {
 ///  - rest: the displacement stays within 1 % of half its range, or within the noise that makes no
 ///    reversal, for longer than half a usual stroke. One sample of it stays.
 ///
-/// @param displacement  [m], finite
+/// @param record  finite, see Validate
 /// @returns the whole record where nothing is left out
 /// Cost: n log n at most, as ChooseReversalGate().
-TestPart FindTestPart(std::span<const double> displacement);
+TestPart FindTestPart(const RecordView& record);
 
 }  // namespace mindahl::loop

@@ -38,7 +38,7 @@ struct LeftOut {
   std::size_t samples = 0;
   std::size_t first = 0;  ///< first line in the file, 1-based; 0 where they are not in a row
   std::size_t last = 0;
-  std::string why;  ///< "rest", "travel", "faults", "selection" …
+  std::string why;  ///< "rest", "travel", "load ramp", "faults", "selection" …
 };
 
 /// Holds the inputs of a report.
