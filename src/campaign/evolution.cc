@@ -76,19 +76,17 @@ Noise NoiseOf(Bins bins) {
   constexpr std::size_t kLongest = 8;
   constexpr std::size_t kBlocks = 16;
   constexpr double kMedianOfChiSquared = 0.455;  // with one degree of freedom
-  constexpr double kExact = 1e-3;                // of the largest value: less is no scatter
+  constexpr double kExact = 1e-3;                // of a value: less is no scatter
   const std::size_t length = std::clamp<std::size_t>(bins.size() / kBlocks, 1, kLongest);
   std::vector<Course::Bin> blocks;
-  double largest = 0.0;
-  double greatest_weight = 0.0;
+  double exact = 0.0;
   for (std::size_t i = 0; i < bins.size(); ++i) {
     if (i % length > 0) {
       blocks.back().Merge(bins[i]);
     } else {
       blocks.push_back(bins[i]);
     }
-    largest = std::max(largest, std::abs(bins[i].value));
-    greatest_weight = std::max(greatest_weight, bins[i].weight);
+    exact = std::max(exact, bins[i].weight * std::pow(kExact * bins[i].value, 2));
   }
   std::vector<double> squares;
   for (std::size_t k = 2; k < blocks.size(); ++k) {
@@ -98,7 +96,7 @@ Noise NoiseOf(Bins bins) {
   }
   const double degrees = static_cast<double>(squares.size()) / 2;
   const double variance = boost::math::statistics::median(squares) / kMedianOfChiSquared;
-  return {std::max(variance, greatest_weight * std::pow(kExact * largest, 2)), degrees};
+  return {std::max(variance, exact), degrees};
 }
 
 /// A part of a time history that a line describes.
@@ -199,7 +197,9 @@ std::optional<Change> StepBetween(const Segment& before, const Segment& after, c
 
 std::optional<CourseDescription> Describe(const Course& course) {
   if (course.bins().empty()) return std::nullopt;
-  CourseDescription description{.first = course.first(), .last = course.last()};
+  const double mean = LineThrough(course.bins()).level;
+  CourseDescription description{
+      .first = course.first(), .last = course.last(), .from = mean, .to = mean};
   const std::vector<Course::Bin> bins = WithoutOutliers(course.bins());
   if (bins.size() < 2 * kLeastBins) return description;
   const Noise noise = NoiseOf(course.bins());
@@ -227,7 +227,11 @@ std::optional<CourseDescription> Describe(const Course& course) {
     }
     before = &segment;
   }
-  if (description.changed()) description.settled_at = SettledAt(segments);
+  if (!description.changed()) return description;
+  description.settled_at = SettledAt(segments);
+  constexpr std::size_t kOfAnEnd = 3;
+  description.from = LineThrough(course.bins().first(kOfAnEnd)).level;
+  description.to = LineThrough(course.bins().last(kOfAnEnd)).level;
   return description;
 }
 
@@ -310,8 +314,8 @@ std::string FromTo(const std::vector<double>& values, const std::string& unit) {
 /// Returns the first value and the last, and between them the one that is
 /// farthest beyond both, if that is by more than half of what they differ.
 std::vector<double> Milestones(const CourseDescription& course) {
-  const auto [low, high] = std::minmax(course.first, course.last);
-  double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.first));
+  const auto [low, high] = std::minmax(course.from, course.to);
+  double farthest = std::max((high - low) / 2, kSmallestStep * std::abs(course.from));
   std::optional<double> extreme;
   for (const auto* changes : {&course.trends, &course.steps}) {
     for (const Change& change : *changes) {
@@ -323,8 +327,8 @@ std::vector<double> Milestones(const CourseDescription& course) {
       }
     }
   }
-  if (!extreme) return {course.first, course.last};
-  return {course.first, *extreme, course.last};
+  if (!extreme) return {course.from, course.to};
+  return {course.from, *extreme, course.to};
 }
 
 io::PlotPanel EvolutionPanel(const Evolution& evolution) {
@@ -367,11 +371,12 @@ std::vector<Evolution> BeginEvolutions(bool is_torsional) {
 }
 
 void AddTo(std::span<Evolution> evolutions, const CycleFit& fit) {
-  if (fit.HasFlag("not_converged")) return;
   for (Evolution& evolution : evolutions) {
     const TrackedQuantity& quantity = *evolution.quantity;
     const std::optional<double>& value = fit[quantity.name];
-    if (!value || fit.HasFlag(quantity.open_flag)) continue;
+    ++evolution.fits;
+    if (!value || fit.HasFlag(quantity.open_flag) || fit.HasFlag("not_converged")) continue;
+    ++evolution.known;
     // A value without an error is exact, held or without noise: then all have
     // one weight.
     const std::optional<double>& error = fit[quantity.error];
@@ -416,22 +421,24 @@ std::string Headline(std::span<const Evolution> evolutions) {
     const bool is_force = quantity.name == "friction_coefficient" ||
                           quantity.name == "slip_force" || quantity.name == "half_gap";
     if (is_force && std::exchange(has_force, true)) continue;
-    const std::string change = RelativeChange(course.first, course.last);
+    const std::string change = RelativeChange(course.from, course.to);
     const bool in_percent = quantity.name == "sigma" && !change.empty();
     text += fmt::format("{}{} ", text.empty() ? "" : "; ", quantity.symbol);
-    constexpr std::size_t kFewRows = 20;  // no test of a change has power over so few
-    const std::string first = report::Quantity(course.first, evolution.unit, 3);
-    if (!course.changed() && evolution.course.bins().size() < kFewRows) {
-      const bool is_one = first == report::Quantity(course.last, evolution.unit, 3);
-      text += is_one ? first : FromTo({course.first, course.last}, evolution.unit);
+    // One value stands for all where they differ by scatter only.
+    const std::string level = report::Quantity(course.from, evolution.unit, 3);
+    if (!course.changed() && !evolution.is_tested()) {
+      const bool is_one = report::Quantity(course.first, evolution.unit, 3) ==
+                          report::Quantity(course.last, evolution.unit, 3);
+      text += is_one ? level : FromTo({course.first, course.last}, evolution.unit);
       text += ", in too few rows to test";
     } else if (!course.changed()) {
-      // The first and the last cycle differ by scatter only, so one value
-      // stands for both.
-      text += first + " throughout, but for scatter";
+      text += level + (evolution.is_known() ? " throughout, but for scatter" : "");
     } else {
       const std::vector<double> values = Milestones(course);
       text += in_percent && values.size() == 2 ? change : FromTo(values, evolution.unit);
+    }
+    if (!evolution.is_known()) {
+      text += fmt::format(" where it is known, in {} of {} rows", evolution.known, evolution.fits);
     }
     if (course.settled_at) text += fmt::format(", settled at cycle {}", *course.settled_at);
   }

@@ -80,6 +80,7 @@ Json QuantityRows(const TrackedTest& test) {
     quantities[std::string(evolution.quantity->name)] = {
         {"first", course.first},
         {"last", course.last},
+        {"known", evolution.known},
         {"unit", evolution.unit},
         {"settled_at", course.settled_at ? Json(*course.settled_at) : Json()},
         {"steps", report::ListOf(course.steps,
@@ -159,6 +160,8 @@ std::string ToText(const TrackedTest& test, const Json& quantities) {
   if (test.evolutions.empty()) return text;
   text += '\n' + report::TableText(quantities);
   const std::vector<std::string> changes = campaign::ChangeStatements(test.evolutions);
+  const bool is_tested = std::ranges::any_of(test.evolutions, &campaign::Evolution::is_tested);
+  if (changes.empty() && !is_tested) return text;
   if (changes.empty()) return text + "\nNo step of 2 % and no trend of 1 % is beyond chance.\n";
   return text + fmt::format("\nChanges beyond chance:\n  {}\n", fmt::join(changes, "\n  "));
 }

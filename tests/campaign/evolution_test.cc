@@ -10,6 +10,8 @@ namespace {
 /// A quantity by its name, described by hand.
 Evolution Of(std::string_view name, std::string unit, CourseDescription description) {
   Evolution evolution{.unit = std::move(unit), .description = std::move(description)};
+  evolution.description.from = evolution.description.first;
+  evolution.description.to = evolution.description.last;
   evolution.quantity = &*std::ranges::find(TrackedQuantities(), name, &TrackedQuantity::name);
   for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
     evolution.course.Add(cycle, cycle % 2 == 0 ? 5e7 : 4e7);
@@ -54,6 +56,36 @@ TEST(Headline, SaysWhatIsFarBeyondFirstAndLast) {
                     .steps = {},
                     .trends = {{1, 150, 60.2, 90.2, 1e-20}, {151, 300, 90.2, 60.3, 1e-20}}})}),
             "Tc 60.5 → 90.2 → 60.1 N");
+}
+
+TEST(Headline, SaysInHowManyRowsAQuantityIsKnown) {
+  std::vector<Evolution> seized = {Of("slip_force", "N", {.first = 59.9, .last = 60.1})};
+  seized.front().fits = 198;
+  seized.front().known = 99;
+  EXPECT_EQ(Headline(seized), "Tc 59.9 N where it is known, in 99 of 198 rows");
+}
+
+TEST(Describe, FindsADropThatMakesTheErrorsAsMuchLess) {
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
+    const double gain = cycle <= 50 ? 1.0 : 1e-3;
+    course.Add(cycle, gain * (cycle % 3 == 0 ? 59.9 : 60.05), 1 / (gain * gain));
+  }
+  const CourseDescription drop = *Describe(course);
+  ASSERT_THAT(drop.steps, SizeIs(1));
+  EXPECT_EQ(drop.steps[0].first_cycle, 51U);
+}
+
+TEST(Describe, StandsForAnUnchangedQuantityByItsMean) {
+  Course course;
+  course.Add(1, 0.476, 1e-3);  // hardly determined
+  for (std::size_t cycle = 2; cycle <= 60; ++cycle) {
+    course.Add(cycle, cycle % 2 == 0 ? 0.599 : 0.601, 1.0);
+  }
+  const CourseDescription description = *Describe(course);
+  EXPECT_FALSE(description.changed());
+  EXPECT_NEAR(description.from, 0.6, 1e-3);
+  EXPECT_EQ(description.first, 0.476);
 }
 
 TEST(Headline, NeverFallsByMoreThanAHundredPercent) {

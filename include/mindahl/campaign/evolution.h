@@ -65,6 +65,10 @@ struct Change {
 struct CourseDescription {
   double first = 0.0;  ///< value of the first cycle, as the table has it
   double last = 0.0;   ///< value of the last cycle
+  /// Weighted means of the first three bins and of the last three; without a
+  /// change that of all.
+  double from = 0.0;
+  double to = 0.0;
   /// First cycle from which on the quantity stays within 5 % of its whole change around where it
   /// ends; empty where it has no step and no trend, or until the last tenth of the test.
   std::optional<std::size_t> settled_at = std::nullopt;
@@ -77,7 +81,7 @@ struct CourseDescription {
 /// Divides a time history into straight segments: in two where the F test of two lines against one
 /// rejects the one with a chance below 1 %, corrected for the number of places; each part likewise,
 /// up to eight segments. The noise that this is judged by is that of neighbouring values, whatever
-/// the lines miss, but no less than 0.1 % of the largest value. Steps are between segments, trends
+/// the lines miss, but no less than 0.1 % of the values. Steps are between segments, trends
 /// along one by Student's test of its slope. No value is stated that no cycle had.
 /// @returns nothing for a time history without a value
 std::optional<CourseDescription> Describe(const Course& course);
@@ -100,6 +104,16 @@ struct Evolution {
   std::string unit = {};  ///< in the record
   Course course = {};
   CourseDescription description = {};
+  std::size_t fits = 0;   ///< that were added
+  std::size_t known = 0;  ///< of these, those that determine it
+
+  /// True if no more than one fit in twenty leaves it open.
+  [[nodiscard]] bool is_known() const { return 20 * (fits - known) <= fits; }
+  /// True if there are enough values for a test of a change.
+  [[nodiscard]] bool is_tested() const {
+    constexpr std::size_t kFewest = 20;
+    return course.bins().size() >= kFewest;
+  }
 };
 
 /// Returns the evolutions of all of them before the first cycle.
