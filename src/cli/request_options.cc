@@ -143,7 +143,7 @@ std::string_view UnitOf(std::string_view parameter) {
   return term == nullptr ? "-" : term->unit;
 }
 
-/// What a text is read for.
+/// Holds the option that a text is read for.
 struct Asked {
   std::string_view option;
   std::string_view form;  // how to write it, for messages
