@@ -42,7 +42,7 @@ struct SolvedFit {
   DisplacementErrors displacement_errors;
   Noise noise = {};
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
-  /// Of the other initial state, where it is nearly as likely.
+  /// Holds the contact of the other initial state, where it is nearly as likely.
   std::optional<Rival> other_state = {};
   /// The records that `best` is a problem of, where turning points were put in.
   std::optional<TurningPointFit> turned = {};
