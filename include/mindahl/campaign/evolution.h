@@ -104,8 +104,8 @@ struct Evolution {
   std::string unit = {};  ///< in the record
   Course course = {};
   CourseDescription description = {};
-  std::size_t fits = 0;   ///< that were added
-  std::size_t known = 0;  ///< of these, those that determine it
+  std::size_t fits = 0;   ///< number of fits that were added
+  std::size_t known = 0;  ///< number of these that determine it
 
   /// True if no more than one fit in twenty leaves it open.
   [[nodiscard]] bool is_known() const { return 20 * (fits - known) <= fits; }
