@@ -53,7 +53,7 @@ NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request,
 
 NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
                             const std::vector<Array>& arrays, const request::FitRequest& request) {
-  std::vector<io::NamedColumn> table;
+  std::vector<io::TableColumn> table;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::span<const double> values = SpanOf(arrays.at(k));
     table.push_back({names[k], {values.begin(), values.end()}});

@@ -375,16 +375,10 @@ class TrackRun {
       test_.unused_samples += tracker_->NextFile();
       times_ = {};
     }
-    const io::LeftOutRows left_out = stream.left_out();
+    const io::LeftOutRows& left_out = stream.left_out();
     if (left_out.count == 0) return;
-    const bool skips = options_.fit.columns.skip_broken_rows;
-    if (skips) test_.broken_rows += left_out.count;
-    test_.notes.push_back(
-        skips ? fmt::format("{}: {} broken row{} skipped, the first: {}", file, left_out.count,
-                            left_out.count == 1 ? "" : "s", left_out.fault)
-              : fmt::format("{}: {} rows have no number in a column that is used and are left out, "
-                            "the first in line {}",
-                            file, left_out.count, left_out.first_line));
+    if (options_.fit.columns.skip_broken_rows) test_.broken_rows += left_out.count;
+    test_.notes.push_back(left_out.InWords());
   }
 
   /// Takes over what the table has already, where that is asked for.

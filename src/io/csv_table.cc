@@ -32,19 +32,23 @@ void RequireMemory(std::uintmax_t rows, std::uintmax_t bytes, std::uintmax_t mos
 
 }  // namespace
 
+std::string LeftOutRows::InWords() const {
+  return fmt::format("{} row{} left out, the first: {}", count, count == 1 ? " is" : "s are",
+                     fault);
+}
+
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const TableColumn& of = columns.at(column);
   if (of.values.empty()) {
     Refuse("{}:{}:{}: column {} holds no numbers", file,
            lines.empty() ? header_line : lines.front(), column + 1, column + 1);
   }
-  if (!of.fault.empty()) throw InputError(of.fault);
+  if (!of.broken.empty()) throw InputError(of.broken);
   if (!of.missing.empty()) throw InputError(of.missing);
   return of.values;
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding,
-                      bool skip_broken) {
+CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding) {
   const std::string name = NameOfInput(path);
   LinePieces pieces(path, encoding);
   std::string_view text = pieces.Next();
@@ -53,53 +57,40 @@ CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& enco
   const std::uintmax_t most = MemoryOfProcess();
   if (!is_no_file) RequireMemory(0, size, most, name);
   const Layout layout = FindLayout(text, name);
-  LeftOutRows skipped;
-  TableReader reader(layout, skip_broken ? &skipped : nullptr);
+  TableReader reader(layout);
   for (text.remove_prefix(layout.data_offset); !text.empty(); text = pieces.Next()) {
     reader.Read(text);
-    if (!reader.fault().empty()) break;
     RequireMemory(reader.table().rows(), pieces.bytes(), most, name);
   }
-  if (reader.fault().empty()) reader.Finish();
-  if (!reader.fault().empty()) throw InputError(reader.fault());
+  reader.Finish();
   CsvTable table = std::move(reader.table());
   if (!table.blocks.empty()) {
     table.notes.push_back(
         fmt::format("{}:{}: the header is repeated {} times: the blocks are joined", name,
                     table.header_line, table.blocks.size()));
   }
-  if (skipped.count > 0) {
-    table.notes.push_back(fmt::format("{} broken row{} left out, the first: {}", skipped.count,
-                                      skipped.count == 1 ? " is" : "s are", skipped.fault));
-  }
   if (!pieces.note().empty()) table.notes.insert(table.notes.begin(), pieces.note());
   return table;
 }
 
-CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {
-  CsvTable table;
-  table.file = std::move(source);
-  table.header_line = 1;
+CsvTable TableOfColumns(std::vector<TableColumn> columns, std::string source) {
   if (columns.empty() || columns.front().values.empty()) {
-    Refuse("{}: there is no {}", table.file, columns.empty() ? "column" : "row");
+    Refuse("{}: there is no {}", source, columns.empty() ? "column" : "row");
   }
   const std::size_t rows = columns.front().values.size();
-  for (const NamedColumn& column : columns) {
-    if (column.values.size() == rows) continue;
-    Refuse("{}: '{}' has {} rows and '{}' {}: give as many of both", table.file,
-           columns.front().name, rows, column.name, column.values.size());
-  }
-  for (NamedColumn& column : columns) {
-    TableColumn& added = table.columns.emplace_back();
-    const auto hole =
-        std::ranges::find_if(column.values, [](double value) { return std::isnan(value); });
-    if (hole != column.values.end()) {
-      added.missing = fmt::format("{}:{}:{}: holds no number", table.file,
-                                  hole - column.values.begin() + 1, table.columns.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    TableColumn& column = columns[k];
+    if (column.values.size() != rows) {
+      Refuse("{}: '{}' has {} rows and '{}' {}: give as many of both", source, columns.front().name,
+             rows, column.name, column.values.size());
     }
-    added.name = std::move(column.name);
-    added.values = std::move(column.values);
+    for (std::size_t row = 0; row < rows; ++row) {
+      if (std::isfinite(column.values[row])) continue;
+      std::string& said = std::isnan(column.values[row]) ? column.missing : column.broken;
+      if (said.empty()) said = fmt::format("{}:{}:{}: holds no number", source, row + 1, k + 1);
+    }
   }
+  CsvTable table{.file = std::move(source), .columns = std::move(columns), .header_line = 1};
   table.lines.resize(rows);
   std::iota(table.lines.begin(), table.lines.end(), std::size_t{1});
   return table;

@@ -16,7 +16,7 @@
 namespace mindahl::io {
 namespace {
 
-bool IsNumber(double value) { return !std::isnan(value); }
+bool IsNumber(double value) { return std::isfinite(value); }
 
 /// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
 std::string ImpliedTimeUnit(std::string_view word, double first) {
@@ -41,7 +41,7 @@ void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
     double above = 0.0;
     bool is_register = true;
     for (const double value : names.table().columns[column].values) {
-      if (std::isnan(value)) continue;
+      if (!IsNumber(value)) continue;
       is_register = is_register && value >= 0 && value < 2 * bit && value == std::floor(value);
       if (value < bit) below = std::max(below, value);
       if (value >= bit) above = std::max(above, value);
@@ -61,9 +61,8 @@ void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
 class RecordBuilder {
  public:
   /// Assigns the columns, by the rows that the table has.
-  /// @param left_out  counts the rows without a number in a column that is used
-  RecordBuilder(const ColumnNames& names, const RecordColumns& asked, LeftOutRows& left_out)
-      : skip_broken_(asked.skip_broken_rows), left_out_(left_out) {
+  RecordBuilder(const ColumnNames& names, const RecordColumns& asked)
+      : skip_broken_(asked.skip_broken_rows) {
     const CsvTable& table = names.table();
     const std::optional<double>& rate = asked.sample_rate;
     if (rate && (!(*rate > 0) || !std::isfinite(*rate))) {
@@ -99,28 +98,22 @@ class RecordBuilder {
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
 
   /// Appends the rows of a table, up to one that is refused; those without a number in a column
-  /// that is used are left out.
-  /// @returns the fault of that row; "" where there is none
+  /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
+  /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples);
-  /// Returns what is said of rows left out that are more than one in a hundred; "" where they are
-  /// fewer, or broken rows are skipped.
-  [[nodiscard]] std::string TooManyLeftOut() const;
+  [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
 
  private:
   ChosenColumn Choose(const ColumnNames& names, Role role, Expression sum, const std::string& text);
   void FindOrigin(const ColumnNames& names, Expression& time);
   bool Follows(double& time, const Unit& unit);
-  struct Fault {
-    bool is_missing;
-    std::string message;
-  };
-  Fault FaultOf(const CsvTable& table, std::size_t row) const;
+  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
 
   RecordFile file_;
   std::vector<Quantity> quantities_;
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
-  LeftOutRows& left_out_;
+  LeftOutRows left_out_;
   std::size_t rows_ = 0;      // seen so far
   double interval_ = 0.0;     // [s] between rows, in place of a column of times
   double time_origin_ = 0.0;  // in the unit of the time
@@ -208,12 +201,13 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
     const bool is_whole =
         std::ranges::all_of(values, [row](const auto& of) { return std::isfinite(of[row]); });
     if (!is_whole || (time != nullptr && !Follows((*time)[row], quantities_[2].unit))) {
-      const auto [is_missing, fault] = FaultOf(table, row);
+      bool is_missing = false;
+      const std::string fault = FaultOf(table, row, is_missing);
       if (!is_missing && !skip_broken_) {
         refusal = fault;
         break;
       }
-      left_out_.Add(table.lines[row], fault);
+      if (left_out_.count++ == 0) left_out_.fault = fault;
       continue;
     }
     if (kept < row) {
@@ -231,14 +225,10 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
     std::vector<double>& of = *to.at(static_cast<std::size_t>(quantities_[k].role));
     of.insert(of.end(), values[k].begin(), values[k].begin() + static_cast<std::ptrdiff_t>(kept));
   }
-  return refusal;
-}
-
-std::string RecordBuilder::TooManyLeftOut() const {
   // One in a hundred, rounded up from a hundred on.
   constexpr std::size_t kOneIn = 100;
   const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
-  if (skip_broken_ || left_out_.count <= most) return "";
+  if (!refusal.empty() || skip_broken_ || left_out_.count <= most) return refusal;
   return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
                      left_out_.fault, left_out_.count, rows_);
 }
@@ -253,25 +243,23 @@ bool RecordBuilder::Follows(double& time, const Unit& unit) {
   return std::isfinite(time);
 }
 
-/// Describes what is wrong with a row.
-RecordBuilder::Fault RecordBuilder::FaultOf(const CsvTable& table, std::size_t row) const {
+/// Describes what is wrong with a row; of cells, the first of their column that are at fault so.
+std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
   for (const std::size_t column : wanted_) {
     const TableColumn& of = table.columns[column];
-    if (!std::isnan(of.values[row])) continue;
-    const bool is_missing = of.fault.empty() || of.fault_row != row;
-    return {is_missing, is_missing && !of.missing.empty() ? of.missing : of.fault};
+    if (IsNumber(of.values[row])) continue;
+    is_missing = std::isnan(of.values[row]);
+    return is_missing ? of.missing : of.broken;
   }
   for (const Quantity& quantity : quantities_) {
-    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return {false, fault};
+    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
   }
   const Quantity& time = quantities_[2];  // the only fault that is left
-  return {false,
-          fmt::format(
-              "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; "
-              "sort the rows, split the file where a clock starts again, or rename the column if "
-              "it holds no time",
-              table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
-              time_above_, time.unit.symbol)};
+  return fmt::format(
+      "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
+      "rows, split the file where a clock starts again, or rename the column if it holds no time",
+      table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
+      time_above_, time.unit.symbol);
 }
 
 namespace {
@@ -394,22 +382,15 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
 }  // namespace
 
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
-  LeftOutRows left_out;
   const ColumnNames names(table);
-  RecordBuilder builder(names, columns, left_out);
+  RecordBuilder builder(names, columns);
   Samples samples;
   std::string fault = builder.Add(table, samples);
-  if (fault.empty()) fault = builder.TooManyLeftOut();
   RecordFile& file = builder.file();
-  file.left_out = left_out;
+  file.left_out = builder.left_out();
   if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
   if (!fault.empty()) throw InputError(fault);
-  if (file.left_out.count > 0) {
-    file.notes.push_back(fmt::format(
-        "{}: {} of {} rows have no number in a column that is used and are left out, the first in "
-        "line {}",
-        table.file, file.left_out.count, table.rows(), file.left_out.first_line));
-  }
+  if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
   AddCovariates(names, columns.covariates, file);
@@ -417,7 +398,7 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
 }
 
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
-  CsvTable table = ReadCsvTable(path, columns.encoding, columns.skip_broken_rows);
+  CsvTable table = ReadCsvTable(path, columns.encoding);
   if (!columns.with.empty()) {
     AddColumnsOf(table, ReadCsvTable(columns.with, columns.encoding), columns.time);
   }
@@ -444,8 +425,8 @@ struct RecordStream::State {
       : pieces(path, columns.encoding),
         rows(pieces.Next()),
         layout(FindLayout(rows, NameOfInput(path))),
-        builder(ColumnNames(FirstRows()), columns, left_out),
-        reader(layout, columns.skip_broken_rows ? &left_out : nullptr, builder.wanted()) {
+        builder(ColumnNames(FirstRows()), columns),
+        reader(layout, builder.wanted()) {
     if (!columns.with.empty()) {
       Refuse("--with: a record that is read in pieces is of one file: join them before");
     }
@@ -458,15 +439,13 @@ struct RecordStream::State {
   /// those at fault is for Next() to say.
   CsvTable FirstRows() const {
     constexpr std::size_t kJudged = LinePieces::kPiece / 8;  // [bytes]
-    LeftOutRows skipped;
-    TableReader first(layout, &skipped);
+    TableReader first(layout);
     const std::string_view data = rows.substr(layout.data_offset);
     first.Read(data.substr(0, std::min(data.find('\n', kJudged), data.size() - 1) + 1));
     return std::move(first.table());
   }
 
   LinePieces pieces;
-  LeftOutRows left_out;
   std::string_view rows;  // of the first piece
   Layout layout;
   RecordBuilder builder;
@@ -481,7 +460,7 @@ RecordStream::~RecordStream() = default;
 const RecordFile& RecordStream::layout() const { return state_->builder.file(); }
 
 bool RecordStream::Next(Samples& samples) {
-  auto& [pieces, left_out, rows, layout, builder, reader, refusal] = *state_;
+  auto& [pieces, rows, layout, builder, reader, refusal] = *state_;
   for (const auto column : loop::kRecordColumns) (samples.*column).clear();
   samples.lines.clear();
   while (samples.lines.empty()) {
@@ -491,14 +470,12 @@ bool RecordStream::Next(Samples& samples) {
     reader.Read(text);
     if (text.empty()) reader.Finish();
     refusal = builder.Add(reader.table(), samples);
-    if (refusal.empty()) refusal = reader.fault();
-    if (refusal.empty()) refusal = builder.TooManyLeftOut();
     if (text.empty() && refusal.empty()) return false;
   }
   return true;
 }
 
-LeftOutRows RecordStream::left_out() const { return state_->left_out; }
+const LeftOutRows& RecordStream::left_out() const { return state_->builder.left_out(); }
 
 std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
 

@@ -39,7 +39,7 @@ ColumnNames::Column ObservedIn(std::span<const double> values) {
   double fall = 0.0;
   std::size_t holes = 0;
   for (const double value : values) {
-    if (std::isnan(value)) {
+    if (!std::isfinite(value)) {
       ++holes;
       continue;
     }
@@ -346,7 +346,7 @@ class RoleAssigner {
     for (std::size_t column = 0; column < names_.size(); ++column) {
       if (EvidenceFor(names_[column], role) <= 0 || names_[column].is_numeric) continue;
       const TableColumn& of = names_.table().columns[column];
-      if (!of.values.empty() && !of.fault.empty()) throw InputError(of.fault);
+      if (!of.values.empty() && !of.broken.empty()) throw InputError(of.broken);
       Refuse(
           "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
           file_, names_.Label(column), rules.name, rules.option);

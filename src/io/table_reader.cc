@@ -2,20 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <cmath>
+#include <limits>
 
 #include "io/source.h"
 
 namespace mindahl::io {
+namespace {
 
-TableReader::TableReader(const Layout& layout, LeftOutRows* skipped,
-                         const std::vector<std::size_t>& wanted)
+constexpr double kBroken = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TableReader::TableReader(const Layout& layout, const std::vector<std::size_t>& wanted)
     : layout_(layout),
       table_(layout.header),
-      skipped_(skipped),
       is_wanted_(wanted.empty() ? layout.holds_numbers : std::vector<bool>(layout.columns())),
       values_(layout.columns()),
       last_clock_(layout.columns()),
+      faults_(layout.columns()),
       line_(layout.data_line - 1) {
   for (const std::size_t column : wanted) is_wanted_[column] = true;
 }
@@ -25,7 +30,7 @@ void TableReader::Clear() {
   table_.blocks.clear();
   for (TableColumn& column : table_.columns) {
     column.values.clear();
-    column.fault.clear();
+    column.broken.clear();
     column.missing.clear();
   }
 }
@@ -34,17 +39,9 @@ std::string TableReader::At(std::size_t column, std::string_view fault) const {
   return fmt::format("{}:{}:{}: {}", table_.file, row_line_, column + 1, fault);
 }
 
-void TableReader::RefuseRow(const std::string& fault) {
-  if (skipped_ != nullptr) {
-    skipped_->Add(row_line_, fault);
-  } else {
-    fault_ = fault;
-  }
-}
-
 void TableReader::Read(std::string_view text) {
   const bool has_quotes = text.find('"') != std::string_view::npos;
-  while (!text.empty() && fault_.empty()) {
+  while (!text.empty()) {
     row_line_ = line_ + 1;
     const std::string_view row = TakeRow(text, line_, has_quotes);
     const bool may_be_none = row.empty() || row.front() <= '#';  // a blank is below '#'
@@ -53,40 +50,22 @@ void TableReader::Read(std::string_view text) {
 }
 
 void TableReader::ReadRow(std::string_view row) {
-  cell_faults_.clear();
-  if (!ReadCells(row)) return;
-  EndGap();
-  if (!fault_.empty()) return;
-  for (CellFault& cell : cell_faults_) {
-    TableColumn& column = table_.columns[cell.column];
-    std::string& first = cell.is_missing ? column.missing : column.fault;
-    if (!first.empty()) continue;
-    first = std::move(cell.message);
-    if (!cell.is_missing) column.fault_row = table_.rows();
-  }
-  table_.lines.push_back(row_line_);
-  for (std::size_t column = 0; column < values_.size(); ++column) {
-    if (is_wanted_[column]) table_.columns[column].values.push_back(values_[column]);
-  }
-}
-
-/// Reads the values of a row.
-/// @returns false where it is none: it is at fault, or part of a header
-bool TableReader::ReadCells(std::string_view row) {
   CellCursor cells(row, layout_.delimiter);
   bool has_content = false;
-  std::size_t column = 0;
-  for (; column < values_.size() && cells.has_next(); ++column) {
-    if (!is_wanted_[column]) {
+  bool is_whole = true;
+  std::size_t count = 0;
+  for (; count < values_.size() && cells.has_next(); ++count) {
+    if (!is_wanted_[count]) {
       has_content = cells.Skip() || has_content;
       continue;
     }
-    double& value = values_[column];
-    const std::string_view number = mark_ == ',' ? std::string_view() : cells.TakeNumber(value);
+    const std::string_view number =
+        mark_ == ',' ? std::string_view() : cells.TakeNumber(values_[count]);
     if (number.empty()) {
       const std::string_view text = cells.Take();
       has_content = has_content || !text.empty();
-      value = ValueOf(column, text);
+      ReadCell(count, text);
+      is_whole = is_whole && std::isfinite(values_[count]);
     } else {
       has_content = true;
       if (mark_ == '\0' && layout_.has_decimal_comma() && number.find('.') != number.npos) {
@@ -95,81 +74,93 @@ bool TableReader::ReadCells(std::string_view row) {
       }
     }
   }
-  if (has_content && cell_faults_.empty() && column == values_.size() && !cells.has_next()) {
-    return true;
-  }
-  const std::size_t count = column;
-  std::string too_many;
-  for (; cells.has_next(); ++column) {
+  std::string fault;  // of the row
+  for (std::size_t column = count; cells.has_next(); ++column) {
     const std::string_view text = cells.Take();
-    if (text.empty() || !too_many.empty()) continue;
-    too_many = At(
-        column, fmt::format("'{}' is one cell too many: the table has {} column{}{}",
-                            ForMessage(text), layout_.columns(), layout_.columns() == 1 ? "" : "s",
-                            layout_.delimiter == ','
-                                ? "; leave out commas that separate thousands, and separate the "
-                                  "columns by ';' or tabs where commas are decimal marks"
-                                : ""));
+    if (text.empty() || !fault.empty()) continue;
+    fault = At(column,
+               fmt::format("'{}' is one cell too many: the table has {} column{}{}",
+                           ForMessage(text), layout_.columns(), layout_.columns() == 1 ? "" : "s",
+                           layout_.delimiter == ','
+                               ? "; leave out commas that separate thousands, and separate the "
+                                 "columns by ';' or tabs where commas are decimal marks"
+                               : ""));
   }
   if (cells.is_open()) {
-    RefuseRow(
-        fmt::format("{}:{}: a quotation mark opened here is never closed", table_.file, row_line_));
-    return false;
+    fault =
+        fmt::format("{}:{}: a quotation mark opened here is never closed", table_.file, row_line_);
+  } else if (!has_content && fault.empty()) {
+    return;
   }
-  if (!has_content && too_many.empty()) return false;
   for (std::size_t missing = count; missing < values_.size(); ++missing) {
     if (!is_wanted_[missing]) continue;
-    values_[missing] = Cell().value;
-    cell_faults_.push_back(
-        {missing, false,
-         At(missing, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
-                                 count == 1 ? "" : "s", layout_.columns()))});
+    is_whole = false;
+    values_[missing] = kBroken;
+    faults_[missing] =
+        At(missing, fmt::format("the row has {} cell{} of {}: complete it or remove it", count,
+                                count == 1 ? "" : "s", layout_.columns()));
   }
-  if ((!cell_faults_.empty() || !too_many.empty()) && BelongsToHeader(row)) return false;
-  if (!too_many.empty()) RefuseRow(too_many);
-  return too_many.empty();
+  if ((!is_whole || !fault.empty()) && !cells.is_open() && BelongsToHeader(row)) return;
+  EndGap();
+  if (!fault.empty()) return AddFaulty(row_line_, fault);
+  table_.lines.push_back(row_line_);
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    if (!is_wanted_[k]) continue;
+    TableColumn& column = table_.columns[k];
+    column.values.push_back(values_[k]);
+    if (is_whole || std::isfinite(values_[k])) continue;
+    std::string& first = std::isnan(values_[k]) ? column.missing : column.broken;
+    if (first.empty()) first = faults_[k];
+  }
+}
+
+void TableReader::AddFaulty(std::size_t line, const std::string& fault) {
+  table_.lines.push_back(line);
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    if (!is_wanted_[k]) continue;
+    table_.columns[k].values.push_back(kBroken);
+    if (table_.columns[k].broken.empty()) table_.columns[k].broken = fault;
+  }
 }
 
 /// Reads a cell that is not plainly a number.
-double TableReader::ValueOf(std::size_t column, std::string_view text) {
-  Cell cell = ReadCell(text, layout_.has_decimal_comma());
-  const bool has_mark = cell.kind == Cell::Kind::kNumber && cell.decimal_mark != '\0';
-  if (has_mark && layout_.has_decimal_comma() && cell.decimal_mark != mark_) {
-    if (mark_ != '\0') {
-      cell_faults_.push_back(
-          {column, false,
-           At(column, fmt::format("'{}' has the decimal mark '{}' and line {} has '{}': use one "
-                                  "throughout",
-                                  ForMessage(text), cell.decimal_mark, mark_line_, mark_))});
-      return Cell().value;
-    }
-    mark_ = cell.decimal_mark;
-    mark_line_ = row_line_;
-  }
+void TableReader::ReadCell(std::size_t column, std::string_view text) {
+  const Cell cell = io::ReadCell(text, layout_.has_decimal_comma());
+  const TableColumn& of = table_.columns[column];
+  values_[column] = cell.value;
   if (cell.kind == Cell::Kind::kClock) {
     // A time of day without a date that is 12 h or more before the last is of the next day.
     double& last = last_clock_[column];
-    while (cell.value < kDay && cell.value + kDay / 2 < last) {
-      cell.value += kDay;
-    }
-    last = cell.value;
+    while (values_[column] < kDay && values_[column] + kDay / 2 < last) values_[column] += kDay;
+    last = values_[column];
     table_.columns[column].is_clock = true;
   } else if (cell.kind != Cell::Kind::kNumber) {
     const bool is_missing = cell.kind == Cell::Kind::kMissing;
-    const TableColumn& of = table_.columns[column];
-    const bool is_first = (is_missing ? of.missing : of.fault).empty();
-    cell_faults_.push_back(
-        {column, is_missing, is_first ? At(column, DescribeCellFault(text, cell.kind)) : ""});
+    if (!is_missing) values_[column] = kBroken;
+    // Of most cells that are at fault nothing is said.
+    if ((is_missing ? of.missing : of.broken).empty()) {
+      faults_[column] = At(column, DescribeCellFault(text, cell.kind));
+    }
+  } else if (cell.decimal_mark != '\0' && layout_.has_decimal_comma()) {
+    if (mark_ == '\0') {
+      mark_ = cell.decimal_mark;
+      mark_line_ = row_line_;
+    }
+    if (cell.decimal_mark == mark_) return;
+    values_[column] = kBroken;
+    faults_[column] =
+        At(column, fmt::format("'{}' has the decimal mark '{}' and line {} has '{}': use one "
+                               "throughout",
+                               ForMessage(text), cell.decimal_mark, mark_line_, mark_));
   }
-  return cell.value;
 }
 
 /// True for a row of text that repeats the header, or may be above a header that is repeated.
 bool TableReader::BelongsToHeader(std::string_view row) {
   const std::string_view text = Trimmed(row);
   if ((!layout_.names_row.empty() && text == Trimmed(layout_.names_row)) ||
-      (gap_ && gap_->empty() && text == Trimmed(layout_.units_row))) {
-    gap_.emplace();
+      (gap_ && gap_->fault.empty() && text == Trimmed(layout_.units_row))) {
+    gap_ = {row_line_, ""};
     return true;
   }
   // Its first column of numbers has a text.
@@ -180,22 +171,24 @@ bool TableReader::BelongsToHeader(std::string_view row) {
   }
   const std::string first(cells.has_next() ? cells.Take() : std::string_view());
   if (column == layout_.columns() ||
-      ReadCell(first, layout_.has_decimal_comma()).kind != Cell::Kind::kText) {
+      io::ReadCell(first, layout_.has_decimal_comma()).kind != Cell::Kind::kText) {
     return false;
   }
-  if (gap_ && !gap_->empty()) return true;
-  gap_ = At(column, DescribeCellFault(first, Cell::Kind::kText));
+  if (gap_ && !gap_->fault.empty()) return true;
+  gap_ = {row_line_, At(column, DescribeCellFault(first, Cell::Kind::kText))};
   if (!layout_.names_row.empty()) {
-    *gap_ += fmt::format("; a further block of rows must have the columns of line {} above it",
-                         table_.header_line);
+    gap_->fault += fmt::format(
+        "; a further block of rows must have the columns of line {} above "
+        "it",
+        table_.header_line);
   }
   return true;
 }
 
 /// Ends the text above a row of numbers, or the file, which repeated the header or is at fault.
 void TableReader::EndGap() {
-  if (gap_ && gap_->empty()) table_.blocks.push_back(table_.rows());
-  if (gap_ && !gap_->empty()) RefuseRow(*gap_);
+  if (gap_ && gap_->fault.empty()) table_.blocks.push_back(table_.rows());
+  if (gap_ && !gap_->fault.empty()) AddFaulty(gap_->line, gap_->fault);
   gap_.reset();
 }
 

@@ -164,7 +164,7 @@ TEST_F(TrackCommand, KeepsFinishedCyclesIfARowIsBrokenAndSkipsItWhereAsked) {
   EXPECT_EQ(skipped["input"]["broken_rows"], 1);
   EXPECT_EQ(skipped["fits"], kCycles);
   EXPECT_THAT(skipped["notes"].get<std::vector<std::string>>(),
-              Contains(HasSubstr("broken.csv: 1 broken row")));
+              Contains(HasSubstr("1 row is left out, the first: broken.csv:15001:2: 'oops'")));
   Write("broken.csv", text_);
   ExpectCompleted(part, whole, "broken.csv");
 }

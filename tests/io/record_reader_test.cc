@@ -294,7 +294,7 @@ TEST(ImposedDisplacement, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::string Said(const std::vector<NamedColumn>& columns) {
+std::string Said(const std::vector<TableColumn>& columns) {
   return MessageOf<InputError>([&] { RecordOf(TableOfColumns(columns, "frame")); });
 }
 

@@ -119,7 +119,7 @@ def test_track_warns_of_rows_that_it_skipped(long_record, tmp_path):
     broken.write_text("\n".join(lines) + "\n")
     with pytest.raises(mindahl.InputError, match=r"broken\.csv:701:2: 'oops'"):
         mindahl.track(broken)
-    with pytest.warns(mindahl.FitWarning, match=r"1 broken row skipped.*broken\.csv:701:2"):
+    with pytest.warns(mindahl.FitWarning, match=r"1 row is left out, the first: .*broken\.csv:701:2"):
         tracked = mindahl.track(broken, broken_rows="skip")
     assert len(tracked["cycle"]) == 29
 

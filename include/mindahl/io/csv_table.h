@@ -10,40 +10,29 @@
 
 namespace mindahl::io {
 
-/// A column that is in memory already.
-struct NamedColumn {
-  std::string name{};            ///< header cell with its unit: "x [um]"
-  std::vector<double> values{};  ///< NaN where there is no number
-};
-
 /// The name of standard input where a file is asked for; ./- is a file of that name.
 inline constexpr std::string_view kStandardInput = "-";
 
-/// Rows that were left out, and the fault of the first.
+/// Rows that were left out, as a column that is used has no number there, and the fault of the
+/// first.
 struct LeftOutRows {
   std::size_t count = 0;
-  std::size_t first_line = 0;  ///< in the file, 1-based
-  std::string fault = {};      ///< "file:line:column: …"
+  std::string fault = {};  ///< "file:line:column: …"
 
-  void Add(std::size_t line, const std::string& of_row) {
-    if (count++ > 0 && line >= first_line) return;
-    first_line = line;
-    fault = of_row;
-  }
+  /// "2 rows are left out, the first: loop.csv:3:1: …"
+  [[nodiscard]] std::string InWords() const;
 };
 
 /// A column of a table.
 struct TableColumn {
-  std::string name;  ///< header cell as written, "" without one
-  std::string unit;  ///< cell of the units row, "" without one
-  /// One a row, NaN where the cell holds no number; none in a column of text.
-  std::vector<double> values;
+  std::string name{};  ///< header cell as written, "" without one
+  /// One a row; none in a column of text. NaN where the cell is empty or holds a mark of a missing
+  /// number, infinite where it or its row is at fault otherwise.
+  std::vector<double> values = {};
+  std::string unit = {};  ///< cell of the units row, "" without one
   bool is_clock = false;  ///< its numbers are times of day [s]
-  /// Holds, of the first cell that is meant as a number and none, and of the first that is missing:
-  /// "file:line:column: …", and its row.
-  std::string fault = {};
-  std::string missing = {};
-  std::size_t fault_row = 0;
+  /// Say of the first NaN, and of the first infinite value: "file:line:column: …".
+  std::string missing = {}, broken = {};
   /// The same of the first cell with a mark that seems to separate thousands.
   std::string grouped = {};
 };
@@ -53,11 +42,11 @@ struct TableColumn {
 struct CsvTable {
   std::string file;
   std::vector<TableColumn> columns;
-  std::vector<std::size_t> lines;   ///< the physical line of each row
-  std::vector<std::size_t> blocks;  ///< rows below a header that is repeated among them
-  std::size_t header_line = 0;      ///< physical line of the header, 0 when there is none
+  std::vector<std::size_t> lines = {};   ///< the physical line of each row
+  std::vector<std::size_t> blocks = {};  ///< rows below a header that is repeated among them
+  std::size_t header_line = 0;           ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
-  std::vector<std::string> notes;  ///< sentences on what was assumed of the file, a sentence each
+  std::vector<std::string> notes = {};  ///< what was assumed of the file, a sentence each
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
   /// Returns the numbers of a column, one a row, valid as long as the table.
@@ -89,18 +78,16 @@ struct CsvTable {
 /// @param path         kStandardInput reads that, called "standard input" in messages
 /// @param encoding     as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS, GB18030 or
 ///   Windows-1252 by the first bytes, with a note of the latter three
-/// @param skip_broken  rows with a cell too many and text among the rows are left out
 /// @throws InputError also when the file cannot be read: one whose fit needs more memory than the
 ///   process may have, or that holds a zero byte or a line of more than 16 MiB, is read no further
-CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {},
-                      bool skip_broken = false);
+CsvTable ReadCsvTable(const std::filesystem::path& path, const std::string& encoding = {});
 
 /// Returns a table of columns that are in memory, to be read as a file with these names in its
 /// first line is; its lines are the rows, counted from 1.
-/// @param columns  of one length, at least one
+/// @param columns  of one length, at least one; their names, with units, and numbers
 /// @param source   where they are from, for messages
 /// @throws InputError where lengths differ, and where there is no column or no row
-CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source);
+CsvTable TableOfColumns(std::vector<TableColumn> columns, std::string source);
 
 /// One column to write. The values must outlive the call that writes them.
 struct CsvColumn {

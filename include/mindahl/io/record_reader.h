@@ -137,9 +137,8 @@ class RecordStream {
   ///   read
   bool Next(Samples& samples);
 
-  /// Returns the rows left out so far: those that are skipped, and those whose cell in a column
-  /// that is used is empty or holds no number.
-  [[nodiscard]] LeftOutRows left_out() const;
+  /// Returns the rows left out so far.
+  [[nodiscard]] const LeftOutRows& left_out() const;
 
   /// Returns the number of bytes read so far.
   [[nodiscard]] std::uintmax_t bytes() const;
