@@ -20,8 +20,8 @@ class ExpressionReader {
   ExpressionReader(std::string_view text, const ColumnNames& names, Role role, std::string where)
       : rest_(text), names_(names), role_(role), where_(std::move(where)) {}
 
-  Expression Read() {
-    Expression expression;
+  Quantity Read() {
+    Quantity expression{.role = role_};
     do {
       double factor = 1.0;
       while (rest_.starts_with('-') || rest_.starts_with('+')) {
@@ -108,30 +108,33 @@ class ExpressionReader {
 
 }  // namespace
 
-Expression ColumnNames::Read(const std::string& given, Role role) const {
+Quantity ColumnNames::Read(const std::string& given, Role role) const {
   std::string_view text = Trimmed(given);
-  if (text.empty()) return {};
+  Quantity quantity{.role = role};
+  if (text.empty()) return quantity;
   const std::string where = fmt::format("{}: {} {}", table_.file, RulesOf(role).option, given);
   if (!NumberIn<std::size_t>(text)) {
-    if (const auto named = Named(text, role)) return {.terms = {{*named, 1.0}}, .unit = ""};
+    if (const auto named = Named(text, role)) {
+      quantity.terms = {{*named, 1.0}};
+      return quantity;
+    }
   }
   std::string unit;
   if (const std::size_t open = text.rfind('['); text.ends_with(']') && open != text.npos) {
     unit = Trimmed(text.substr(open + 1, text.size() - open - 2));
     text = Trimmed(text.substr(0, open));
   }
-  Expression expression;
   if (const auto number = NumberIn<std::size_t>(text)) {
     if (*number < 1 || *number > size()) {
       Refuse("{}: there is no column {}: the file has {} column{}", where, text, size(),
              size() == 1 ? "" : "s");
     }
-    expression.terms = {{*number - 1, 1.0}};
+    quantity.terms = {{*number - 1, 1.0}};
   } else if (!text.empty()) {
-    expression = ExpressionReader(text, *this, role, where).Read();
+    quantity = ExpressionReader(text, *this, role, where).Read();
   }
-  expression.unit = std::move(unit);
-  return expression;
+  quantity.given_unit = std::move(unit);
+  return quantity;
 }
 
 }  // namespace mindahl::io

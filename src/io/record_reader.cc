@@ -18,20 +18,6 @@ namespace {
 
 bool IsNumber(double value) { return std::isfinite(value); }
 
-/// The unit that a time has without stating it: "millis", or that of a stamp since 1970.
-std::string ImpliedTimeUnit(std::string_view word, double first) {
-  if (word == "ms" || word == "millis" || word == "msec") return "ms";
-  if (word == "micros") return "us";
-  if (word == "nanos") return "ns";
-  constexpr double kFrom2001 = 1e9;  // [s] since 1970, to 2100
-  constexpr double kTo2100 = 4.1e9;
-  for (const auto& [scale, unit] :
-       {std::pair(1.0, "s"), std::pair(1e3, "ms"), std::pair(1e6, "us"), std::pair(1e9, "ns")}) {
-    if (first >= kFrom2001 * scale && first <= kTo2100 * scale) return unit;
-  }
-  return "";
-}
-
 /// Refuses numbers of a register whose highest bit is a sign: none lies in the upper half of those
 /// below it, and there are some on both sides.
 void RequireNoSignBit(const ColumnNames& names, const Quantity& quantity) {
@@ -72,18 +58,15 @@ class RecordBuilder {
       Refuse("{}: --time and --sample-rate exclude each other", table.file);
     }
     file_.notes = table.notes;
-    Roles roles = AssignRoles(names, asked, file_.notes);
-    file_.is_torsional = roles.is_torsional;
-    const auto choose = [&](Role role) {
-      return Choose(names, role, std::move(roles[role]), asked.*RulesOf(role).given);
-    };
-    file_.displacement = choose(Role::kDisplacement);
-    file_.force = choose(Role::kForce);
-    if (Expression& time = roles[Role::kTime]; !time.terms.empty()) {
-      FindOrigin(names, time);
-      file_.time = choose(Role::kTime);
+    for (Quantity& quantity : AssignRoles(names, asked, file_.notes)) {
+      ChosenColumn column = Choose(names, quantity, asked.*RulesOf(quantity.role).given);
+      if (quantity.role == Role::kDisplacement) file_.displacement = std::move(column);
+      if (quantity.role == Role::kForce) file_.force = std::move(column);
+      if (quantity.role == Role::kTime) file_.time = std::move(column);
+      if (quantity.role == Role::kNormalLoad) file_.normal_load = std::move(column);
+      quantities_.push_back(std::move(quantity));
     }
-    if (!roles[Role::kNormalLoad].terms.empty()) file_.normal_load = choose(Role::kNormalLoad);
+    file_.is_torsional = quantities_.front().unit.dimension == Dimension::kAngle;
     if (file_.time) return;
     interval_ = rate ? 1.0 / *rate : table.interval;
     if (table.interval > 0 && !rate) {
@@ -104,8 +87,7 @@ class RecordBuilder {
   [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
 
  private:
-  ChosenColumn Choose(const ColumnNames& names, Role role, Expression sum, const std::string& text);
-  void FindOrigin(const ColumnNames& names, Expression& time);
+  ChosenColumn Choose(const ColumnNames& names, const Quantity& quantity, const std::string& text);
   bool Follows(double& time, const Unit& unit);
   std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
 
@@ -114,68 +96,34 @@ class RecordBuilder {
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
   LeftOutRows left_out_;
-  std::size_t rows_ = 0;      // seen so far
-  double interval_ = 0.0;     // [s] between rows, in place of a column of times
-  double time_origin_ = 0.0;  // in the unit of the time
-  JoinedTimes times_;         // of the blocks, in their unit
+  std::size_t rows_ = 0;   // seen so far
+  double interval_ = 0.0;  // [s] between rows, in place of a column of times
+  JoinedTimes times_;      // of the blocks, in their unit
   double last_time_ = -std::numeric_limits<double>::infinity();
   double time_above_ = 0.0;  // the one before the last
 };
 
-ChosenColumn RecordBuilder::Choose(const ColumnNames& names, Role role, Expression sum,
+/// @param text  by which it was chosen
+ChosenColumn RecordBuilder::Choose(const ColumnNames& names, const Quantity& quantity,
                                    const std::string& text) {
-  const bool is_plain = sum.is_plain();
-  const Quantity& added =
-      quantities_.emplace_back(names.InUnit(role, std::move(sum), file_.is_torsional, file_.notes));
+  const Role role = quantity.role;
+  const bool is_plain = quantity.is_plain();
+  const std::size_t first = quantity.first_column();
   if (is_plain && (role == Role::kDisplacement || role == Role::kForce)) {
-    RequireNoSignBit(names, added);
+    RequireNoSignBit(names, quantity);
   }
   const std::vector<TableColumn>& columns = names.table().columns;
-  if (const std::size_t first = added.first_column(); is_plain && !columns[first].grouped.empty()) {
+  if (is_plain && !columns[first].grouped.empty()) {
     Refuse("{}{} '#{}*1 [{}]'", columns[first].grouped, RulesOf(role).option, first + 1,
-           added.unit.symbol);
+           quantity.unit.symbol);
   }
-  for (const Expression::Term& term : added.sum.terms) {
+  for (const Quantity::Term& term : quantity.terms) {
     if (columns[term.column].values.empty()) static_cast<void>(names.table().Numbers(term.column));
     if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
   }
-  return {.name = is_plain ? columns[added.first_column()].name : text,
-          .index = added.first_column() + 1,
-          .unit = added.unit.symbol};
-}
-
-/// Finds from where the time counts, and its unit where it states none.
-void RecordBuilder::FindOrigin(const ColumnNames& names, Expression& time) {
-  const std::size_t first = time.terms.front().column;
-  const bool is_as_written = time.terms.front().weight == 1.0 && !time.is_scaled;
-  const TableColumn& column = names.table().columns[first];
-  const auto number = std::ranges::find_if(column.values, IsNumber);
-  const double start = number == column.values.end() ? 0.0 : *number;
-  const auto note = [&](std::string_view what) {
-    file_.notes.push_back(
-        fmt::format("{}: time {} {}", names.table().file, names.Label(first), what));
-  };
-  if (column.is_clock) {
-    time.unit = "s";
-    time_origin_ = kDay * std::floor(start / kDay);
-    note("holds times of day: taken as seconds since midnight of the first one's day");
-  } else if (const std::string stated = is_as_written ? names.UnitOf(first, "--time") : "";
-             !stated.empty()) {
-    const auto unit = FindUnit(stated);
-    if (unit && ImpliedTimeUnit("", start) == unit->symbol) time_origin_ = start;
-  } else if (time.unit.empty() && is_as_written) {
-    time.unit = ImpliedTimeUnit(names[first].name.evidence.word, start);
-    if (time.unit.empty()) {
-      time.unit = "s";
-      note(fmt::format("names no unit: taken as s; --time '{} [s]' says so", first + 1));
-    } else if (ImpliedTimeUnit("", start) == time.unit) {
-      time_origin_ = start;
-      note(fmt::format("holds stamps since 1970 in {}: taken as seconds since the first",
-                       time.unit));
-    } else {
-      note(fmt::format("names no unit: taken as {}", time.unit));
-    }
-  }
+  return {.name = is_plain ? columns[first].name : text,
+          .index = first + 1,
+          .unit = quantity.unit.symbol};
 }
 
 std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
@@ -236,7 +184,7 @@ std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
 /// Converts a time.
 /// @returns false where it is before the last
 bool RecordBuilder::Follows(double& time, const Unit& unit) {
-  time = times_.Next(time - time_origin_);
+  time = times_.Next(time);
   time_above_ = std::exchange(last_time_, time);
   if (time < time_above_) return false;
   time = unit.ToSi(time);
@@ -287,7 +235,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) return false;
     if (!changes && !may_be_constant) return false;
-    const std::string unit = names.UnitOf(column, "");
+    const std::string unit = names.UnitOf(column, Role::kOther);
     file.covariates.push_back({.name = name, .index = column + 1, .unit = unit});
     file.record.covariates.push_back({.name = name, .unit = unit, .values = std::move(values)});
     is_read[column] = true;
@@ -311,7 +259,7 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   if (file.normal_load) is_read[file.normal_load->index - 1] = true;
   const std::size_t most = choices.size() + kMostOtherColumns;
   for (std::size_t column = 0; column < names.size() && file.covariates.size() < most; ++column) {
-    if (is_read[column] || names[column].is_clock || !names.StatesOneUnit(column)) continue;
+    if (is_read[column] || names[column].is_clock || !names[column].other_unit.empty()) continue;
     add(column, names.NameOf(column), false);
   }
 }
@@ -319,15 +267,15 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
 /// Returns the times of a table, by which another is joined to it; none where it has none.
 std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
-  Expression time = names.Read(given, Role::kTime);
+  Quantity time = names.Read(given, Role::kTime);
   if (time.terms.empty()) {
     const std::optional<std::size_t> best = names.Best(Role::kTime);
     if (!best) return {};
     time.terms = {{*best, 1.0}};
   }
-  if (names[time.terms.front().column].is_clock) time.unit = "s";
   std::vector<std::string> notes;
-  return names.InUnit(Role::kTime, std::move(time), false, notes).Numbers(table);
+  names.FindUnitOf(time, false, notes);
+  return time.Numbers(table);
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
@@ -407,17 +355,17 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 
 std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column) {
   const ColumnNames names(table);
-  Expression columns = names.Read(column, Role::kDisplacement);
-  if (columns.terms.empty()) {
+  Quantity displacement = names.Read(column, Role::kDisplacement);
+  if (displacement.terms.empty()) {
     const bool first_is_another = names.Best(Role::kTime) == 0U || names.Best(Role::kForce) == 0U;
     const auto best = first_is_another ? names.Best(Role::kDisplacement) : std::nullopt;
-    columns.terms = {{best.value_or(0), 1.0}};
+    displacement.terms = {{best.value_or(0), 1.0}};
   }
-  const auto dimension = columns.unit.empty() ? names[columns.terms.front().column].dimension
-                                              : DimensionOf(columns.unit);
-  const bool is_torsional = dimension == Dimension::kAngle || dimension == Dimension::kTorque;
+  const bool is_torsional =
+      names[displacement.first_column()].IsAngular(displacement.given_unit) == true;
   std::vector<std::string> notes;  // SI is the documented default here
-  return names.InUnit(Role::kDisplacement, std::move(columns), is_torsional, notes).Numbers(table);
+  names.FindUnitOf(displacement, is_torsional, notes);
+  return displacement.Numbers(table);
 }
 
 struct RecordStream::State {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <ranges>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "core/text.h"
+#include "io/cells.h"
 
 namespace mindahl::io {
 namespace {
@@ -31,18 +31,17 @@ constexpr std::array kRolesOfRecord = {Role::kDisplacement, Role::kForce, Role::
                                        Role::kNormalLoad};
 
 /// Returns how a column's numbers behave.
-ColumnNames::Column ObservedIn(std::span<const double> values) {
+ColumnNames::Column ObservedIn(const std::vector<double>& values) {
   constexpr double kGoodPart = 0.4;
   double least = std::numeric_limits<double>::infinity();
   double greatest = -least;
   double rise = 0.0;
   double fall = 0.0;
-  std::size_t holes = 0;
+  double first = 0.0;
+  std::size_t numbers = 0;
   for (const double value : values) {
-    if (!std::isfinite(value)) {
-      ++holes;
-      continue;
-    }
+    if (!std::isfinite(value)) continue;
+    if (numbers++ == 0) first = value;
     least = std::min(least, value);
     greatest = std::max(greatest, value);
     rise = std::max(rise, value - least);
@@ -50,12 +49,13 @@ ColumnNames::Column ObservedIn(std::span<const double> values) {
   }
   return {
       .name = {},
-      .is_numeric = !values.empty() && 2 * holes <= values.size(),
+      .is_numeric = !values.empty() && 2 * numbers >= values.size(),
       .is_constant = rise == 0 && fall == 0,
       .trend = fall == 0   ? int{rise > 0}
                : rise == 0 ? -1
                            : 0,
-      .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least)};
+      .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least),
+      .first = first};
 }
 
 /// Returns the evidence that a column has a role: 0 is none. A unit counts more than a word.
@@ -88,18 +88,27 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
   return found > kLesser && evidence.is_lesser ? found - kLesser : found;
 }
 
-/// Returns whether a column is an angle or a torque, or else a length or a force, by the unit or
-/// else the name; empty where neither says.
-std::optional<bool> IsAngular(const ColumnNames& names, std::size_t column, std::string_view unit) {
-  const auto dimension = unit.empty() ? names[column].dimension : DimensionOf(unit);
-  if (dimension == Dimension::kAngle || dimension == Dimension::kTorque) return true;
-  if (dimension == Dimension::kLength || dimension == Dimension::kForce) return false;
-  return names[column].name.evidence.is_angular ? std::optional(true) : std::nullopt;
-}
-
 std::string SiUnit(Dimension dimension) {
   const std::string symbols = UnitSymbols(dimension);
   return symbols.substr(0, symbols.find(','));
+}
+
+/// Returns the unit in which a number is a stamp since 1970, "" where it is none.
+std::string UnitOfStamp(double number) {
+  constexpr double kFrom2001 = 1e9;  // [s] since 1970, to 2100
+  constexpr double kTo2100 = 4.1e9;
+  for (const auto& [scale, unit] :
+       {std::pair(1.0, "s"), std::pair(1e3, "ms"), std::pair(1e6, "us"), std::pair(1e9, "ns")}) {
+    if (number >= kFrom2001 * scale && number <= kTo2100 * scale) return unit;
+  }
+  return "";
+}
+
+/// Returns the unit that a time has without stating it: "millis", or that of a stamp.
+std::string ImpliedTimeUnit(std::string_view word, double first) {
+  if (word == "ms" || word == "millis" || word == "msec") return "ms";
+  if (word == "micros") return "us";
+  return word == "nanos" ? "ns" : UnitOfStamp(first);
 }
 
 class RoleAssigner {
@@ -107,7 +116,7 @@ class RoleAssigner {
   RoleAssigner(const ColumnNames& names, std::vector<std::string>& notes)
       : names_(names), file_(names.table().file), notes_(notes), taken_(names.size()) {}
 
-  Roles Assign(const RecordColumns& asked) {
+  std::vector<Quantity> Assign(const RecordColumns& asked) && {
     for (const Role role : kRolesOfRecord) TakeGiven(asked.*RulesOf(role).given, role);
     const bool finds_displacement = IsMissing(Role::kDisplacement);
     const bool finds_force = IsMissing(Role::kForce);
@@ -133,21 +142,26 @@ class RoleAssigner {
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, may_be_time ? 100 : 1);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement, 100);
     RequireForce();
-    RequireOneKind();
+    const bool is_torsional = RequireOneKind();
+    std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
+    for (Quantity& quantity : roles_) {
+      names_.FindUnitOf(quantity, is_torsional, notes_);
+      if (quantity.role == Role::kTime) names_.SetOriginOf(quantity, notes_);
+    }
     return std::move(roles_);
   }
 
  private:
-  bool IsMissing(Role role) { return roles_[role].terms.empty(); }
-  std::size_t ColumnOf(Role role) { return roles_[role].terms.front().column; }
+  Quantity& Of(Role role) { return roles_.at(static_cast<std::size_t>(role)); }
+  bool IsMissing(Role role) { return Of(role).terms.empty(); }
+  std::size_t ColumnOf(Role role) { return Of(role).first_column(); }
   void Take(std::size_t column, Role role) {
     taken_[column] = true;
-    roles_[role].terms = {{column, 1.0}};
+    Of(role).terms = {{column, 1.0}};
   }
 
   void TakeGiven(const std::string& text, Role role) {
-    roles_[role] = names_.Read(text, role);
-    for (const Expression::Term& term : roles_[role].terms) {
+    for (const Quantity::Term& term : roles_.emplace_back(names_.Read(text, role)).terms) {
       if (taken_[term.column]) {
         Refuse("{}: {} is chosen for the {} and for another quantity: choose two columns", file_,
                names_.Label(term.column), RulesOf(role).name);
@@ -165,7 +179,7 @@ class RoleAssigner {
           "{}: time {} {}: left out", file_, names_.Label(named),
           names_[named].is_numeric ? "has a unit that is none of a time" : "holds no numbers"));
     }
-    const std::string& unit = roles_[role].unit;
+    const std::string& unit = Of(role).given_unit;
     if (unit.empty()) return;
     Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
            unit, RulesOf(role).name);
@@ -201,74 +215,71 @@ class RoleAssigner {
                                name(column) == stem + "n" + stamp.substr(stem.size());
       if (!is_of_stamp || taken_[column] || !names_[column].is_numeric) continue;
       taken_[column] = true;
-      roles_[Role::kTime].terms.push_back({column, 1e-9});
+      Of(Role::kTime).terms.push_back({column, 1e-9});
       notes_.push_back(fmt::format("{}: time {} with the nanoseconds of {}", file_,
                                    names_.Label(seconds), names_.Label(column)));
       return;
     }
   }
 
-  struct Candidate {
-    std::optional<std::size_t> column;
-    int evidence = 0;
-    std::optional<bool> is_angular;
-  };
-
   /// Returns the columns that may have a role: the one that is given, else those with evidence; of
-  /// these, those that go to and fro, if any does. There is always one, perhaps without a column.
-  std::vector<Candidate> CandidatesFor(Role role) {
-    const auto candidate = [&](std::size_t column, int evidence) {
-      return Candidate{column, evidence, IsAngular(names_, column, roles_[role].unit)};
-    };
-    if (!IsMissing(role)) return {candidate(ColumnOf(role), 0)};
-    std::vector<Candidate> found;
+  /// these, those that go to and fro, if any does. There is always one, perhaps none.
+  std::vector<std::optional<std::size_t>> CandidatesFor(Role role) {
+    if (!IsMissing(role)) return {ColumnOf(role)};
     std::vector<std::size_t> columns;
     int most_moving = 0;
+    int most_resting = 0;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const int evidence = EvidenceFor(names_[column], role);
       if (taken_[column] || !names_[column].is_numeric || evidence <= 0) continue;
-      found.push_back(candidate(column, evidence));
       columns.push_back(column);
-      if (names_[column].goes_to_and_fro) most_moving = std::max(most_moving, evidence);
+      int& most = names_[column].goes_to_and_fro ? most_moving : most_resting;
+      most = std::max(most, evidence);
     }
-    if (found.empty()) return {Candidate{}};
-    if (most_moving == 0) return found;
-    const auto rests = [&](const Candidate& of) { return !names_[*of.column].goes_to_and_fro; };
-    if (std::ranges::any_of(
-            found, [&](const Candidate& of) { return rests(of) && of.evidence >= most_moving; })) {
+    if (columns.empty()) return {std::nullopt};
+    if (most_moving > 0 && most_resting >= most_moving) {
       notes_.push_back(fmt::format("{}: {}: one that goes to and fro is taken", file_,
                                    names_.MayEachBe(role, columns)));
     }
-    std::erase_if(found, rests);
-    return found;
+    if (most_moving > 0) {
+      std::erase_if(columns, [&](std::size_t column) { return !names_[column].goes_to_and_fro; });
+    }
+    return {columns.begin(), columns.end()};
   }
 
   /// Takes the displacement and the force of the most evidence that go together.
   void FindPair() {
     constexpr int kMismatch = 40;
-    const std::vector<Candidate> displacements = CandidatesFor(Role::kDisplacement);
-    const std::vector<Candidate> forces = CandidatesFor(Role::kForce);
-    if (!displacements.front().column && LeftColumns().empty()) ThrowNoColumn(Role::kDisplacement);
-    int most = std::numeric_limits<int>::min();
+    constexpr std::array kPair = {Role::kDisplacement, Role::kForce};
+    const auto displacements = CandidatesFor(kPair[0]);
+    if (!displacements.front() && LeftColumns().empty()) ThrowNoColumn(kPair[0]);
+    int most = -kMismatch;
     std::array<std::set<std::size_t>, 2> best;
-    for (const Candidate& x : displacements) {
-      for (const Candidate& f : forces) {
-        if (x.column && x.column == f.column) continue;
-        const bool differs = x.is_angular && f.is_angular && x.is_angular != f.is_angular;
-        const int evidence = x.evidence + f.evidence - (differs ? kMismatch : 0);
+    for (const std::optional<std::size_t> force : CandidatesFor(kPair[1])) {
+      for (const std::optional<std::size_t> displacement : displacements) {
+        if (displacement && displacement == force) continue;
+        int evidence = 0;
+        std::array<std::optional<bool>, 2> is_angular;
+        for (const std::size_t k : {0, 1}) {
+          const std::optional<std::size_t> column = k == 0 ? displacement : force;
+          if (!column) continue;
+          if (IsMissing(kPair[k])) evidence += EvidenceFor(names_[*column], kPair[k]);
+          is_angular[k] = names_[*column].IsAngular(Of(kPair[k]).given_unit);
+        }
+        const auto& [turns, twists] = is_angular;
+        if (turns && twists && turns != twists) evidence -= kMismatch;
         if (evidence < most) continue;
         if (evidence > std::exchange(most, evidence)) best = {};
-        if (x.column) best[0].insert(*x.column);
-        if (f.column) best[1].insert(*f.column);
+        if (displacement) best[0].insert(*displacement);
+        if (force) best[1].insert(*force);
       }
     }
     // The only column with evidence has it of both.
-    if (most == std::numeric_limits<int>::min()) best[0].insert(*displacements.front().column);
-    for (const Role role : {Role::kDisplacement, Role::kForce}) {
-      const std::set<std::size_t>& columns = best.at(static_cast<std::size_t>(role));
-      if (!IsMissing(role) || columns.empty()) continue;
-      if (columns.size() > 1) names_.ThrowAmbiguous(role, {columns.begin(), columns.end()});
-      Take(*columns.begin(), role);
+    if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
+    for (const std::size_t k : {0, 1}) {
+      if (!IsMissing(kPair[k]) || best[k].empty()) continue;
+      if (best[k].size() > 1) names_.ThrowAmbiguous(kPair[k], {best[k].begin(), best[k].end()});
+      Take(*best[k].begin(), kPair[k]);
     }
   }
 
@@ -323,10 +334,10 @@ class RoleAssigner {
   /// Refuses a coefficient of friction as the force, also a friction without a unit and below 2
   /// beside a load in newton. Whoever gives it a unit is believed.
   void RequireForce() {
-    const Expression& force = roles_[Role::kForce];
-    const std::size_t column = ColumnOf(Role::kForce);
+    const Quantity& force = Of(Role::kForce);
+    const std::size_t column = force.first_column();
     const ColumnNames::Column& of = names_[column];
-    if (!force.unit.empty() || force.is_scaled || of.dimension) return;
+    if (!force.given_unit.empty() || force.is_scaled || of.dimension) return;
     const auto is_load = [&](std::size_t other) {
       return names_[other].dimension == Dimension::kForce;
     };
@@ -344,9 +355,11 @@ class RoleAssigner {
       if (names_[column].name.evidence.is_coefficient) ThrowCoefficient(column);
     }
     for (std::size_t column = 0; column < names_.size(); ++column) {
-      if (EvidenceFor(names_[column], role) <= 0 || names_[column].is_numeric) continue;
       const TableColumn& of = names_.table().columns[column];
+      const bool may_be = EvidenceFor(names_[column], role) > 0;
+      if ((!may_be && !of.name.empty()) || names_[column].is_numeric) continue;
       if (!of.values.empty() && !of.broken.empty()) throw InputError(of.broken);
+      if (!may_be) continue;
       Refuse(
           "{}: {} holds no numbers: the {} needs one in every row, or name another column with {}",
           file_, names_.Label(column), rules.name, rules.option);
@@ -362,7 +375,7 @@ class RoleAssigner {
   /// those of the other role go to and fro.
   void RequireMoving(Role role, Role other, int least_evidence) {
     const std::size_t column = ColumnOf(role);
-    if (!roles_[role].unit.empty() || EvidenceFor(names_[column], role) >= least_evidence ||
+    if (!Of(role).given_unit.empty() || EvidenceFor(names_[column], role) >= least_evidence ||
         names_[column].trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
     }
@@ -374,30 +387,32 @@ class RoleAssigner {
         RulesOf(role).name, RulesOf(role).option, names_.Listing());
   }
 
-  void RequireOneKind() {
-    const std::size_t displacement = ColumnOf(Role::kDisplacement);
-    const std::size_t force = ColumnOf(Role::kForce);
-    const auto turns = IsAngular(names_, displacement, roles_[Role::kDisplacement].unit);
-    const auto twists = IsAngular(names_, force, roles_[Role::kForce].unit);
-    roles_.is_torsional = turns == true || twists == true;
-    if (!roles_.is_torsional || (turns != false && twists != false)) return;
+  /// @returns true for a torque against an angle
+  bool RequireOneKind() {
+    const auto is_angular = [&](Role role) {
+      return names_[ColumnOf(role)].IsAngular(Of(role).given_unit);
+    };
+    const auto turns = is_angular(Role::kDisplacement);
+    const auto twists = is_angular(Role::kForce);
+    const bool is_torsional = turns == true || twists == true;
+    if (!is_torsional || (turns != false && twists != false)) return is_torsional;
     const auto unit = [&](Role role) {
       const std::string stated =
-          roles_[role].unit.empty() ? names_.UnitOf(ColumnOf(role), "") : roles_[role].unit;
+          Of(role).given_unit.empty() ? names_.UnitOf(ColumnOf(role), role) : Of(role).given_unit;
       return stated.empty() ? SiUnit(RulesOf(role).angular) : stated;
     };
     Refuse(
         "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
         "choose other columns, or give their units, as in --force '{} [N]'",
-        file_, names_.Label(displacement), unit(Role::kDisplacement), names_.Label(force),
-        unit(Role::kForce), force + 1);
+        file_, names_.Label(ColumnOf(Role::kDisplacement)), unit(Role::kDisplacement),
+        names_.Label(ColumnOf(Role::kForce)), unit(Role::kForce), ColumnOf(Role::kForce) + 1);
   }
 
   const ColumnNames& names_;
   const std::string& file_;
   std::vector<std::string>& notes_;
   std::vector<bool> taken_;
-  Roles roles_;
+  std::vector<Quantity> roles_;  // in the order of Role
 };
 
 }  // namespace
@@ -405,8 +420,8 @@ class RoleAssigner {
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
 
 double Quantity::ValueIn(const CsvTable& table, std::size_t row) const {
-  double value = sum.offset;
-  for (const auto& [column, weight] : sum.terms) {
+  double value = offset;
+  for (const auto& [column, weight] : terms) {
     value += weight * table.columns[column].values[row];
   }
   return value;
@@ -414,14 +429,14 @@ double Quantity::ValueIn(const CsvTable& table, std::size_t row) const {
 
 std::vector<double> Quantity::Values(const CsvTable& table) const {
   std::vector<double> values = table.columns[first_column()].values;
-  for (std::size_t row = 0; row < values.size() && !sum.is_plain(); ++row) {
+  for (std::size_t row = 0; row < values.size() && !(is_plain() && offset == 0); ++row) {
     values[row] = ValueIn(table, row);
   }
   return values;
 }
 
 std::vector<double> Quantity::Numbers(const CsvTable& table) const {
-  for (const Expression::Term& term : sum.terms) static_cast<void>(table.Numbers(term.column));
+  for (const Term& term : terms) static_cast<void>(table.Numbers(term.column));
   std::vector<double> values = Values(table);
   for (std::size_t row = 0; row < values.size(); ++row) {
     values[row] = unit.ToSi(values[row]);
@@ -438,13 +453,22 @@ std::string Quantity::TooLarge(const CsvTable& table, std::size_t row) const {
                      unit.symbol);
 }
 
+std::optional<bool> ColumnNames::Column::IsAngular(std::string_view given_unit) const {
+  const auto of_unit = given_unit.empty() ? dimension : DimensionOf(given_unit);
+  if (of_unit == Dimension::kAngle || of_unit == Dimension::kTorque) return true;
+  if (of_unit == Dimension::kLength || of_unit == Dimension::kForce) return false;
+  return name.evidence.is_angular ? std::optional(true) : std::nullopt;
+}
+
 ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
   columns_.reserve(table.columns.size());
   for (const TableColumn& column : table.columns) {
     columns_.push_back(ObservedIn(column.values));
     Column& added = columns_.back();
     added.name = SplitColumnName(column.name);
-    added.unit = added.name.unit.empty() ? WithoutBrackets(column.unit) : added.name.unit;
+    const std::string_view of_row = WithoutBrackets(column.unit);
+    added.unit = added.name.unit.empty() ? of_row : added.name.unit;
+    if (!of_row.empty() && of_row != added.unit) added.other_unit = of_row;
     added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
   }
@@ -484,25 +508,20 @@ std::optional<std::size_t> ColumnNames::Best(Role role, const std::vector<bool>&
 }
 
 std::size_t ColumnNames::Chosen(const std::string& text, Role role) const {
-  const Expression chosen = Read(text, role);
+  const Quantity chosen = Read(text, role);
   if (!chosen.is_plain()) {
     Refuse("{}: {} {}: must be one column", table_.file, RulesOf(role).option, text);
   }
-  return chosen.terms.front().column;
+  return chosen.first_column();
 }
 
-bool ColumnNames::StatesOneUnit(std::size_t column) const {
-  const std::string& unit = columns_[column].name.unit;
-  const std::string_view of_row = WithoutBrackets(table_.columns[column].unit);
-  return unit.empty() || of_row.empty() || unit == of_row;
-}
-
-std::string ColumnNames::UnitOf(std::size_t column, std::string_view option) const {
+std::string ColumnNames::UnitOf(std::size_t column, Role role) const {
   const std::string& unit = columns_[column].unit;
-  if (StatesOneUnit(column)) return unit;
-  Refuse("{}: {} has the unit '{}' in its name and '{}' below it: choose its unit{}", Header(),
-         Label(column), unit, WithoutBrackets(table_.columns[column].unit),
-         option.empty() ? "" : fmt::format(" with {} '{} [{}]'", option, column + 1, unit));
+  const std::string& other_unit = columns_[column].other_unit;
+  if (other_unit.empty()) return unit;
+  Refuse(
+      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit with {} '{} [{}]'",
+      Header(), Label(column), unit, other_unit, RulesOf(role).option, column + 1, unit);
 }
 
 std::string ColumnNames::NameOf(std::size_t column) const {
@@ -550,56 +569,67 @@ std::string ColumnNames::Header() const {
   return fmt::format("{}:{}", table_.file, table_.header_line);
 }
 
-Quantity ColumnNames::InUnit(Role role, Expression sum, bool is_torsional,
+void ColumnNames::FindUnitOf(Quantity& quantity, bool is_torsional,
                              std::vector<std::string>& notes) const {
-  const auto& [name, option, linear, angular, given] = RulesOf(role);
+  const auto& [name, option, linear, angular, given] = RulesOf(quantity.role);
   const Dimension dimension = is_torsional ? angular : linear;
-  const std::size_t first = sum.terms.front().column;
-  const auto is_of_role = [&](const std::optional<Unit>& unit) {
-    return unit && (unit->dimension == linear || unit->dimension == dimension);
-  };
-  const auto require_no_pressure = [&](const std::string& symbol, const std::string& where) {
-    if (DimensionOf(symbol) != Dimension::kPressure) return;
-    Refuse(
-        "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is an "
-        "additional force, for which there is --covariate",
-        where, Label(first), symbol, name);
-  };
-  if (!sum.unit.empty()) {
-    if (const auto unit = FindUnit(sum.unit); is_of_role(unit))
-      return {role, std::move(sum), *unit};
-    require_no_pressure(sum.unit, table_.file);
-    Refuse("{}: the {} unit '{}' is not known: must be one of {}", table_.file, name,
-           ForMessage(sum.unit), UnitSymbols(dimension));
-  }
-  const std::string stated = UnitOf(first, option);
-  const std::string si = SiUnit(dimension);
-  for (const Expression::Term& term : sum.terms) {
-    if (UnitOf(term.column, option) == stated) continue;
+  const std::size_t first = quantity.first_column();
+  const Column& of = columns_[first];
+  const bool is_clock = quantity.role == Role::kTime && of.is_clock;
+  std::string symbol = is_clock ? "s" : quantity.given_unit;
+  const bool is_given = !symbol.empty();
+  if (!is_given) symbol = UnitOf(first, quantity.role);
+  std::string assumed = SiUnit(dimension);
+  for (const Quantity::Term& term : quantity.terms) {
+    if (is_given || UnitOf(term.column, quantity.role) == symbol) continue;
     Refuse(
         "{}: {} and {} are not in one unit: scale them, and give the unit of the sum in brackets, "
         "as in {} '… [{}]'",
-        table_.file, Label(first), Label(term.column), option, si);
+        table_.file, Label(first), Label(term.column), option, assumed);
   }
-  if (const auto unit = FindUnit(stated); is_of_role(unit)) return {role, std::move(sum), *unit};
-  if (!stated.empty() && !sum.is_scaled) {
-    const std::string where = fmt::format("{}:{}", Header(), first + 1);
-    require_no_pressure(stated, where);
-    Refuse(
-        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, or choose the unit "
-        "with {} '{} [{}]'",
-        where, ForMessage(stated), Label(first), name, UnitSymbols(dimension), option, first + 1,
-        si);
+  if (const auto unit = FindUnit(symbol);
+      unit && (unit->dimension == linear || unit->dimension == dimension)) {
+    quantity.unit = *unit;
+    return;
   }
-  if (stated.empty() && (role != Role::kTime || sum.terms.size() > 1)) {
+  if (is_given || (!symbol.empty() && !quantity.is_scaled)) {
+    const std::string where = is_given ? table_.file : fmt::format("{}:{}", Header(), first + 1);
+    if (DimensionOf(symbol) == Dimension::kPressure) {
+      Refuse(
+          "{}: {} is a pressure, in {}, and no {}: choose another column; pressure times area is "
+          "an additional force, for which there is --covariate",
+          where, Label(first), symbol, name);
+    }
+    Refuse("{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]'",
+           where, ForMessage(symbol), Label(first), name, UnitSymbols(dimension), option, first + 1,
+           assumed);
+  }
+  if (symbol.empty()) {
+    if (quantity.role == Role::kTime && !quantity.is_scaled) {
+      const std::string implied = ImpliedTimeUnit(of.name.evidence.word, of.first);
+      if (!implied.empty()) assumed = implied;
+    }
     notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",
-                                table_.file, name, Label(first), si, option, first + 1, si));
+                                table_.file, name, Label(first), assumed, option, first + 1,
+                                assumed));
   }
-  return {role, std::move(sum), *FindUnit(si)};
+  quantity.unit = *FindUnit(assumed);
 }
 
-Roles AssignRoles(const ColumnNames& names, const RecordColumns& columns,
-                  std::vector<std::string>& notes) {
+void ColumnNames::SetOriginOf(Quantity& time, std::vector<std::string>& notes) const {
+  const Column& of = columns_[time.first_column()];
+  const bool is_stamp = !time.is_scaled && UnitOfStamp(of.first) == time.unit.symbol;
+  if (!of.is_clock && !is_stamp) return;
+  time.offset -= of.is_clock ? kDay * std::floor(of.first / kDay) : of.first;
+  notes.push_back(
+      fmt::format("{}: time {} holds {}", table_.file, Label(time.first_column()),
+                  of.is_clock ? "times of day: taken as seconds since midnight of the first one's "
+                                "day"
+                              : "stamps since 1970: taken as seconds since the first"));
+}
+
+std::vector<Quantity> AssignRoles(const ColumnNames& names, const RecordColumns& columns,
+                                  std::vector<std::string>& notes) {
   return RoleAssigner(names, notes).Assign(columns);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -24,30 +23,24 @@ struct RoleRules {
 };
 const RoleRules& RulesOf(Role role);
 
-/// Holds a quantity as a linear function of columns: the sum of weight·column, and an offset.
-struct Expression {
+/// A quantity as a table gives it: the sum of weight·column and an offset, in a unit.
+struct Quantity {
   struct Term {
     std::size_t column;  ///< from 0
     double weight;
   };
-  std::vector<Term> terms;  ///< none where only a unit is given
-  double offset = -0.0;     ///< to which adding -0 makes -0
-  std::string unit;         // "" where none is given
-  bool is_scaled = false;   ///< a factor or an offset is given
+  Role role;
+  std::vector<Term> terms = {};  ///< none where only a unit is given
+  double offset = -0.0;          ///< to which adding -0 makes -0
+  bool is_scaled = false;        ///< a factor or an offset is given
+  std::string given_unit = {};   ///< "" where none is given
+  Unit unit = {};                ///< by ColumnNames::FindUnitOf()
 
+  [[nodiscard]] std::size_t first_column() const { return terms.front().column; }
   /// True if it is a column as it is.
   [[nodiscard]] bool is_plain() const {
     return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
   }
-};
-
-/// A quantity as a table gives it: a sum of columns, in a unit.
-struct Quantity {
-  Role role;
-  Expression sum;
-  Unit unit;
-
-  [[nodiscard]] std::size_t first_column() const { return sum.terms.front().column; }
   /// Returns its value in a row, in its unit.
   [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const;
   /// Returns its values, one a row, in its unit.
@@ -65,7 +58,8 @@ class ColumnNames {
   /// A column, with what is evidence of its role.
   struct Column {
     ColumnName name;
-    std::string unit = {};  ///< in the name, or else of the units row
+    std::string unit = {};        ///< in the name, or else of the units row
+    std::string other_unit = {};  ///< of the units row, where the name has another
     std::optional<Dimension> dimension = {};
     bool is_numeric = false;   ///< half of its rows or more have a number
     bool is_clock = false;     ///< its numbers are times of day
@@ -74,6 +68,12 @@ class ColumnNames {
     /// Both rises and falls by a good part of its range: noise does not, nor does a friction force
     /// along a single stroke. Half the range is what one cycle from the middle has.
     bool goes_to_and_fro = false;
+    double first = 0.0;  ///< number
+
+    /// Returns whether it is an angle or a torque, or else a length or a force, by a unit or else
+    /// the name; empty where neither says.
+    /// @param given_unit  in place of its own, where there is one
+    [[nodiscard]] std::optional<bool> IsAngular(std::string_view given_unit) const;
   };
   explicit ColumnNames(const CsvTable& table);
 
@@ -86,7 +86,7 @@ class ColumnNames {
   /// offset, "raw*0.0123-4.5 [N]", "cell1+cell2", "#4-#3". A text that is a name as a whole is that
   /// column; in a sum, a column is called by number behind '#'.
   /// @throws InputError for an unknown or ambiguous one
-  [[nodiscard]] Expression Read(const std::string& text, Role role) const;
+  [[nodiscard]] Quantity Read(const std::string& text, Role role) const;
   /// Returns the column of a name, from 0; empty where there is none.
   /// @throws InputError where it is that of several
   [[nodiscard]] std::optional<std::size_t> Named(std::string_view name, Role role) const;
@@ -96,15 +96,16 @@ class ColumnNames {
                                                 const std::vector<bool>& taken = {}) const;
   /// Returns the column, from 0, that the user calls so.
   [[nodiscard]] std::size_t Chosen(const std::string& text, Role role) const;
-  /// Finds the unit of a role's columns: as given, of the header, or SI with a note.
+  /// Finds the unit of a quantity: as given, of the header, or, with a note, that of a stamp or SI.
   /// @throws InputError for a unit that is none of the role's, and for columns in several units
-  [[nodiscard]] Quantity InUnit(Role role, Expression sum, bool is_torsional,
-                                std::vector<std::string>& notes) const;
+  void FindUnitOf(Quantity& quantity, bool is_torsional, std::vector<std::string>& notes) const;
+  /// Lets a time count from the first stamp since 1970, or from midnight before the first time of
+  /// day, with a note.
+  void SetOriginOf(Quantity& time, std::vector<std::string>& notes) const;
 
   /// Returns the unit that the file states for a column, "" when it states none.
   /// @throws InputError where header and units row state two different units
-  [[nodiscard]] std::string UnitOf(std::size_t column, std::string_view option) const;
-  [[nodiscard]] bool StatesOneUnit(std::size_t column) const;
+  [[nodiscard]] std::string UnitOf(std::size_t column, Role role) const;
   /// Returns the name of a column, without its unit, where no other has the same; else its number.
   [[nodiscard]] std::string NameOf(std::size_t column) const;
   /// "'x [mm]' (column 2)", or "column 2" without a header.
@@ -123,19 +124,10 @@ class ColumnNames {
   std::vector<Column> columns_;
 };
 
-/// The columns of a record, by role from the displacement to the normal load; none where there is
-/// no such quantity.
-struct Roles {
-  bool is_torsional = false;
-  std::array<Expression, 4> columns;
-
-  Expression& operator[](Role role) { return columns.at(static_cast<std::size_t>(role)); }
-};
-
-/// Assigns the columns of a record, as they are given, else by the evidence of unit, name and
-/// numbers.
+/// Returns the quantities of a record, from displacement and force to time and normal load where
+/// there are such: as they are given, else by the evidence of unit, name and numbers.
 /// @throws InputError where evidence is missing or contradicts, with the columns and the option
-Roles AssignRoles(const ColumnNames& names, const RecordColumns& columns,
-                  std::vector<std::string>& notes);
+std::vector<Quantity> AssignRoles(const ColumnNames& names, const RecordColumns& columns,
+                                  std::vector<std::string>& notes);
 
 }  // namespace mindahl::io

@@ -139,16 +139,16 @@ x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the d
 x [mm],x [V],F¶1,2,3¶ | x | - | :1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the
    displacement: give --displacement 1 or --displacement 2
 x¶1¶ | - | - | : no column for the force: the file has 1 column
-x,F¶1,2¶ | [furlong] | - | : the displacement unit 'furlong' is not known: must be one of m, mm,
-   um, nm, cm, in, ft, mil, pm
+x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
+   must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]'
 ¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
-   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit with
+   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, as in
    --force '3 [N]'
 t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'N x10' of 'F (N x10)' (column 3) is not known
-   for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, or choose the unit
-   with --force '3 [N]'
+   for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, as in
+   --force '3 [N]'
 x (1e-5 m),F [N]¶1,2¶ | - | - | :1:1: the unit '1e-5 m' of 'x (1e-5 m)' (column 1) is not known
-   for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]'
 x [m],p [bar]¶1,2¶ | - | p | :1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force:
    choose another column; pressure times area is an additional force, for which there is
@@ -168,10 +168,10 @@ time [ms],x [m],F [N]¶1,1,1¶2,2,2¶2,3,3¶# a restart¶0.5,4,4¶ | - | - | :6:
    before the 2 ms of the row above: times must not fall; sort the rows, split the file where a
    clock starts again, or rename the column if it holds no time
 x,F¶furlong,N¶1,2¶ | - | - | :1:1: the unit 'furlong' of 'x' (column 1) is not known for the
-   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]'
 x / m/s,F¶1,2¶ | - | - | :1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the
-   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, or choose the unit with
+   displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
    --displacement '1 [m]'
 x [mm],F¶um,N¶1,2¶ | - | - | :1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below
    it: choose its unit with --displacement '1 [mm]'
