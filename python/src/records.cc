@@ -101,10 +101,8 @@ py::tuple PickledRecord(const NamedRecord& record) {
   py::list values;
   for (const auto column : loop::kRecordColumns) values.append(CopyOf(file.record.*column));
   py::list others;
-  for (std::size_t k = 0; k < file.covariates.size(); ++k) {
-    const loop::Covariate& other = file.record.covariates[k];
-    others.append(
-        py::make_tuple(other.name, other.unit, CopyOf(other.values), DictOf(file.covariates[k])));
+  for (const loop::Covariate& other : file.record.covariates) {
+    others.append(py::make_tuple(other.name, other.unit, CopyOf(other.values)));
   }
   return py::make_tuple(record.name, file.is_torsional, values, others, ColumnsUsed(record),
                         file.lines, file.notes);
@@ -118,10 +116,9 @@ NamedRecord UnpickledRecord(const py::tuple& state) {
     file.record.*loop::kRecordColumns[k] = ValuesOf(state[2].cast<py::list>()[k]);
   }
   for (const py::handle other : state[3]) {
-    const auto [name, unit, values, column] =
-        other.cast<std::tuple<std::string, std::string, py::object, py::dict>>();
+    const auto [name, unit, values] =
+        other.cast<std::tuple<std::string, std::string, py::object>>();
     file.record.covariates.push_back({name, unit, ValuesOf(values)});
-    file.covariates.push_back(ColumnOf(column));
   }
   const auto columns = state[4].cast<py::dict>();
   file.displacement = ColumnOf(columns["displacement"]);

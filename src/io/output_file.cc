@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -14,77 +13,24 @@
 #include "io/source.h"
 
 namespace mindahl::io {
-
 namespace {
 
-[[noreturn]] void ThrowCannotWrite(const std::filesystem::path& path, int error) {
-  Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
+void RequireWritten(const std::filesystem::path& path, int error) {
+  if (error != 0) Refuse("cannot write '{}': {}", path.string(), std::strerror(error));
 }
 
-}  // namespace
-
-/// An open file, closed with it. `path` is the name the user knows it by, for messages.
-class OutputFile {
- public:
-  explicit OutputFile(std::filesystem::path path) : path_(std::move(path)) {}
-  OutputFile(std::filesystem::path path, Opening opening) : OutputFile(std::move(path)) {
-    Require(OpenFile(path_.string(), opening, file_));
-  }
-  ~OutputFile() {
-    if (file_ >= 0) CloseFile(file_);
-  }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-
-  [[nodiscard]] int& file() { return file_; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Passes an error on, if there is one.
-  void Require(int error) const {
-    if (error != 0) ThrowCannotWrite(path_, error);
-  }
-  void Write(std::string_view content) const { Require(WriteFile(file_, content)); }
-  /// A full disk may show only here.
-  void Close() { Require(CloseFile(std::exchange(file_, -1))); }
-  void WriteNameToDisk(const std::filesystem::path& target) const {
-    const std::filesystem::path parent = target.parent_path();
-    Require(WriteDirectoryToDisk(parent.empty() ? "." : parent.string()));
-  }
-
- private:
-  std::filesystem::path path_;
-  int file_ = -1;
-};
-
-namespace {
-
-/// /dev/stdout may lead to a regular file, which the shell opened and must not be replaced.
-bool IsBelowDevOrProc(const std::filesystem::path& path) {
-  const std::string name = path.lexically_normal().string();
-  return name.starts_with("/dev/") || name.starts_with("/proc/");
+/// Waits until the name of a file is on the disk.
+int WriteNameToDisk(const std::filesystem::path& file) {
+  const std::filesystem::path parent = file.parent_path();
+  return WriteDirectoryToDisk(parent.empty() ? "." : parent.string());
 }
 
-/// @param is_old  it is there, and its permissions stay
-void ReplaceFile(const std::filesystem::path& target, bool is_old, std::string_view content,
-                 const std::filesystem::path& path) {
+/// Returns where a file is written before it is renamed.
+std::string TemporaryNameOf(const std::filesystem::path& file) {
   static std::atomic<unsigned> counter = 0;
   const std::string name =
-      (target.parent_path() /
-       fmt::format(".{}.{}.{}.tmp", target.filename().string(), ProcessNumber(), counter++))
-          .string();
-  // Once it is renamed there is nothing of that name.
-  const auto remove = [](const std::string* temporary) {
-    static_cast<void>(std::remove(temporary->c_str()));
-  };
-  std::unique_ptr<const std::string, decltype(remove)> temporary(&name, remove);
-  OutputFile file(path);
-  file.Require(OpenTemporary(name, file.file()));
-  if (is_old) file.Require(CopyPermissions(target.string(), file.file()));
-  file.Write(content);
-  file.Require(WriteToDisk(file.file()));
-  file.Require(NameTemporary(file.file(), name));
-  file.Close();
-  if (std::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
-  file.WriteNameToDisk(target);
+      fmt::format(".{}.{}.{}.tmp", file.filename().string(), ProcessNumber(), counter++);
+  return (file.parent_path() / name).string();
 }
 
 }  // namespace
@@ -93,34 +39,54 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   std::error_code error;
   const std::filesystem::file_status old = std::filesystem::status(path, error);
   const bool is_old = std::filesystem::exists(old);
-  if (std::filesystem::is_directory(old)) ThrowCannotWrite(path, EISDIR);
-  if (IsBelowDevOrProc(path) || (is_old && !std::filesystem::is_regular_file(old))) {
-    OutputFile file(path, Opening::kExisting);
-    file.Write(content);
-    return file.Close();
+  if (std::filesystem::is_directory(old)) RequireWritten(path, EISDIR);
+  // /dev/stdout may lead to a regular file, which the shell opened and must not be replaced.
+  const std::string plain = path.lexically_normal().string();
+  const bool is_device = plain.starts_with("/dev/") || plain.starts_with("/proc/");
+  const bool replaces = !is_device && (!is_old || std::filesystem::is_regular_file(old));
+  const bool is_link = replaces && is_old && std::filesystem::is_symlink(path, error);
+  const std::filesystem::path target = is_link ? std::filesystem::canonical(path) : path;
+  const std::string name = TemporaryNameOf(target);
+  int file = -1;
+  int fault =
+      replaces ? OpenTemporary(name, file) : OpenFile(path.string(), Opening::kExisting, file);
+  if (fault == 0 && replaces && is_old) fault = CopyPermissions(target.string(), file);
+  if (fault == 0) fault = WriteFile(file, content);
+  if (fault == 0 && replaces) fault = WriteToDisk(file);
+  if (fault == 0 && replaces) fault = NameTemporary(file, name);
+  // A full disk may show only here.
+  const int closed = file >= 0 ? CloseFile(file) : 0;
+  if (fault == 0) fault = closed;
+  if (fault == 0 && replaces) {
+    fault = std::rename(name.c_str(), target.c_str()) == 0 ? WriteNameToDisk(target) : errno;
   }
-  const bool is_link = std::filesystem::is_symlink(path, error);
-  const std::filesystem::path target = is_link && is_old ? std::filesystem::canonical(path) : path;
-  ReplaceFile(target, is_old, content, path);
+  if (fault != 0 && replaces) static_cast<void>(std::remove(name.c_str()));
+  RequireWritten(path, fault);
 }
 
 AppendedFile::AppendedFile(const std::filesystem::path& path, std::uintmax_t kept)
-    : file_(std::make_unique<OutputFile>(path, Opening::kCreated)), size_(kept) {
-  file_->Require(EndFileAt(file_->file(), kept));
+    : path_(path), size_(kept) {
+  RequireWritten(path, OpenFile(path.string(), Opening::kCreated, file_));
+  const int error = EndFileAt(file_, kept);
+  if (error != 0) CloseFile(file_);
+  RequireWritten(path, error);
 }
-AppendedFile::~AppendedFile() = default;
+
+AppendedFile::~AppendedFile() {
+  if (file_ >= 0) CloseFile(file_);
+}
 
 void AppendedFile::Append(std::string_view block) {
-  const int error = WriteFile(file_->file(), block);
-  if (error != 0) EndFileAt(file_->file(), size_);
-  file_->Require(error);
+  const int error = WriteFile(file_, block);
+  if (error != 0) EndFileAt(file_, size_);
+  RequireWritten(path_, error);
   size_ += block.size();
 }
 
 void AppendedFile::Finish() {
-  file_->Require(WriteToDisk(file_->file()));
-  file_->Close();
-  file_->WriteNameToDisk(file_->path());
+  RequireWritten(path_, WriteToDisk(file_));
+  RequireWritten(path_, CloseFile(std::exchange(file_, -1)));
+  RequireWritten(path_, WriteNameToDisk(path_));
 }
 
 }  // namespace mindahl::io

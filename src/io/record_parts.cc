@@ -49,13 +49,10 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
     added.file = input;
     KeepSamples(added.file, piece.first, piece.last);
     added.file.notes.clear();
-    added.file.piece = {.normal_load = piece.normal_load,
-                        .first_line = input.LineOf(piece.first),
-                        .last_line = input.LineOf(piece.last - 1)};
     added.name =
-        fmt::format("{}:{}-{}", file, added.file.piece->first_line, added.file.piece->last_line);
+        fmt::format("{}:{}-{}", file, input.LineOf(piece.first), input.LineOf(piece.last - 1));
   }
-  records.back().file.piece->left_out = left_out;
+  records.back().file.between_loads = left_out;
   return records;
 }
 
@@ -105,7 +102,6 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
         append(same->values, record.covariates[c].values);
       } else {
         record.covariates.erase(record.covariates.begin() + static_cast<std::ptrdiff_t>(c));
-        joined.covariates.erase(joined.covariates.begin() + static_cast<std::ptrdiff_t>(c));
       }
     }
     joined.notes.insert(joined.notes.end(), next.notes.begin(), next.notes.end());

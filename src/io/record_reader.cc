@@ -235,9 +235,8 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) return false;
     if (!changes && !may_be_constant) return false;
-    const std::string unit = names.UnitOf(column, Role::kOther);
-    file.covariates.push_back({.name = name, .index = column + 1, .unit = unit});
-    file.record.covariates.push_back({.name = name, .unit = unit, .values = std::move(values)});
+    file.record.covariates.push_back(
+        {.name = name, .unit = names.UnitOf(column, Role::kOther), .values = std::move(values)});
     is_read[column] = true;
     return true;
   };
@@ -258,7 +257,8 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   if (file.time) is_read[file.time->index - 1] = true;
   if (file.normal_load) is_read[file.normal_load->index - 1] = true;
   const std::size_t most = choices.size() + kMostOtherColumns;
-  for (std::size_t column = 0; column < names.size() && file.covariates.size() < most; ++column) {
+  for (std::size_t column = 0; column < names.size() && file.record.covariates.size() < most;
+       ++column) {
     if (is_read[column] || names[column].is_clock || !names[column].other_unit.empty()) continue;
     add(column, names.NameOf(column), false);
   }

@@ -233,7 +233,6 @@ TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
   EXPECT_EQ(file.record.covariates[0].name, "p");
   EXPECT_EQ(file.record.covariates[0].unit, "bar");
   EXPECT_EQ(file.record.covariates[0].values, (Numbers{5, 6}));
-  EXPECT_EQ(file.covariates[0].index, 4U);
   EXPECT_EQ(file.record.covariates[1].name, "3");
   EXPECT_EQ(file.record.covariates[1].values, (Numbers{1, 3}));
 }

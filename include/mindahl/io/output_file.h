@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 
 namespace mindahl::io {
@@ -19,8 +18,6 @@ namespace mindahl::io {
 /// Safe against a crash of the program and of the machine: file and directory are on the disk when
 /// it returns, which takes some milliseconds.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
-
-class OutputFile;
 
 /// A file that grows by whole blocks while a run goes on. What was appended stays, whatever ends
 /// the run: a block that cannot be written whole is cut off again.
@@ -43,7 +40,8 @@ class AppendedFile {
   void Finish();
 
  private:
-  std::unique_ptr<OutputFile> file_;
+  std::filesystem::path path_;
+  int file_ = -1;
   std::uintmax_t size_;
 };
 

@@ -40,14 +40,6 @@ struct ChosenColumn {
   std::string unit;       ///< symbol the numbers were taken to be in
 };
 
-/// Locates a record within a file that holds several constant loads.
-struct LoadPiece {
-  double normal_load = 0.0;    ///< [N], the median
-  std::size_t first_line = 0;  ///< first line in the file, 1-based
-  std::size_t last_line = 0;   ///< last line in the file
-  std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
-};
-
 /// A record and where it came from.
 struct RecordFile {
   loop::Record record;
@@ -58,11 +50,11 @@ struct RecordFile {
   ChosenColumn force;
   std::optional<ChosenColumn> time;
   std::optional<ChosenColumn> normal_load;
-  /// Columns of the record's covariates, in their order: first those chosen, under those names.
-  std::vector<ChosenColumn> covariates;
   std::vector<std::string> notes;  ///< assumptions of the reader, one sentence each
   LeftOutRows left_out = {};
-  std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
+  /// Samples of the file that are in none of the records into which SplitAtLoadSteps() splits it;
+  /// with the last of these.
+  std::size_t between_loads = 0;
 
   /// Returns the line of a sample; its number from 1 where the record does not know its lines.
   [[nodiscard]] std::size_t LineOf(std::size_t sample) const {
