@@ -147,7 +147,7 @@ std::string_view CellCursor::Take() {
   }
   is_open_ = end == end_;
   has_next_ = !is_open_;
-  if (is_open_) return {};
+  if (is_open_) return {at_, static_cast<std::size_t>(end_ - at_)};
   for (++end; end != end_ && !IsDelimiter(*end); ++end) unescaped_ += *end;
   GoBehind(end);
   return Trimmed(unescaped_);

@@ -36,7 +36,7 @@ class CellCursor {
 
   /// True if there is a further cell.
   [[nodiscard]] bool has_next() const { return has_next_; }
-  /// True if a quotation mark is never closed; its cell is not taken.
+  /// True if a quotation mark is never closed; its cell is the rest of the row, with it.
   [[nodiscard]] bool is_open() const { return is_open_; }
 
   /// Takes the next cell; valid until another is taken.

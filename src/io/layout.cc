@@ -30,8 +30,8 @@ struct Row {
   std::size_t filled = 0;   ///< number of cells, empty ones at the end aside
   std::size_t columns = 0;  ///< number of cells, one trailing delimiter aside
 
-  /// @returns false where it has no cell with a content, or a quotation mark that is never closed
-  bool ReadCells(char delimiter, std::size_t& open_quote_line) {
+  /// @returns false where it has no cell with a content
+  bool ReadCells(char delimiter) {
     CellCursor cursor(text, delimiter);
     while (cursor.has_next()) {
       kinds.push_back(ReadCell(cells.emplace_back(cursor.Take()), delimiter != ',').kind);
@@ -40,8 +40,7 @@ struct Row {
       if (!cells.back().empty()) filled = cells.size();
     }
     columns = cells.size() > 1 && cells.back().empty() ? cells.size() - 1 : cells.size();
-    if (cursor.is_open() && open_quote_line == 0) open_quote_line = line;
-    return !cursor.is_open() && filled > 0;
+    return filled > 0;
   }
   static bool IsNumber(Cell::Kind kind) {
     return kind == Cell::Kind::kNumber || kind == Cell::Kind::kClock;
@@ -104,24 +103,20 @@ class Reading {
     const auto cells = static_cast<long>(rows_.empty() ? 0 : rows_.back().columns);
     return {columns_ > 0, columns_ > 0 ? score_ : cells};
   }
-  [[nodiscard]] std::size_t open_quote_line() const { return open_quote_line_; }
 
   /// Finds the data and the header above them, which may be a comment.
   Layout Find(const std::string& file, const Row* comment) &&;
   [[noreturn]] void ThrowNoNumbers(const std::string& file) const;
 
  private:
+  [[nodiscard]] bool IsData(const Row& row) const { return row.HasData() && row.CanHave(columns_); }
   [[nodiscard]] std::size_t FirstDataRow() const;
   void PassResults();
-  [[nodiscard]] bool HasTextAmongNumbers(const Row& row) const;
   [[nodiscard]] std::optional<Strings> HeaderCells(const Row& row) const;
   [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
-  void FindNames(const std::string& file);
+  void FindNames();
   void FindNamesIn(Row comment);
-  void FindInterval();
-  void MakeColumns();
   [[nodiscard]] std::string GroupedIn(std::size_t column) const;
-  [[noreturn]] void ThrowNoHeader(const std::string& file) const;
 
   Layout layout_;
   Strings names_, units_;  // one a column, or none
@@ -129,15 +124,14 @@ class Reading {
   std::size_t columns_ = 0;     ///< number in most rows with data
   long score_ = 0;              ///< numbers less broken numbers in the rows with so many columns
   std::size_t most_cells_ = 0;  // of a row with data
-  std::size_t open_quote_line_ = 0;  // of a quotation mark that is never closed; 0 without one
-  std::size_t data_ = 0;             // index of the first data row
+  std::size_t data_ = 0;        // index of the first data row
 };
 
 Reading::Reading(std::span<const Row> sampled, char delimiter) {
   layout_.delimiter = delimiter;
   std::map<std::size_t, std::size_t> rows_with_columns;
   for (Row row : sampled) {
-    if (!row.ReadCells(delimiter, open_quote_line_)) continue;
+    if (!row.ReadCells(delimiter)) continue;
     if (row.HasData()) ++rows_with_columns[row.columns];
     rows_.push_back(std::move(row));
   }
@@ -153,16 +147,15 @@ Reading::Reading(std::span<const Row> sampled, char delimiter) {
     most_cells_ = std::max(most_cells_, row.columns);
     numbers.resize(std::max(numbers.size(), row.kinds.size()));
     layout_.holds_numbers.resize(numbers.size());
-    long broken = 0;
     for (std::size_t column = 0; column < row.kinds.size(); ++column) {
       const Cell::Kind kind = row.kinds[column];
       if (Row::IsNumber(kind)) ++numbers[column];
       if (kind != Cell::Kind::kText && kind != Cell::Kind::kMissing) {
         layout_.holds_numbers[column] = true;
       }
-      broken += kind == Cell::Kind::kBroken ? 1 : 0;
     }
-    if (row.columns == columns_) score_ += static_cast<long>(row.numbers) - broken;
+    if (row.columns != columns_) continue;
+    score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
   }
   for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
 }
@@ -173,60 +166,71 @@ Layout Reading::Find(const std::string& file, const Row* comment) && {
   PassResults();
   layout_.data_offset = rows_[data_].offset;
   layout_.data_line = rows_[data_].line;
-  FindNames(file);
-  if (layout_.header.header_line == 0 && comment != nullptr) FindNamesIn(*comment);
-  FindInterval();
-  MakeColumns();
-  return std::move(layout_);
-}
+  FindNames();
+  if (data_ == 0 && comment != nullptr) FindNamesIn(*comment);
+  // LabVIEW states the time between rows in place of times.
+  const bool has_no_times =
+      !names_.empty() && names_.front() == "X_Value" && !layout_.mostly_numbers[0];
+  for (const Row& row : std::span(rows_).first(has_no_times ? data_ : 0)) {
+    if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
+    const double step = ReadCell(row.cells[1], true).value;
+    if (step > 0) layout_.header.interval = step;
+  }
 
-void Reading::MakeColumns() {
   std::vector<TableColumn>& columns = layout_.header.columns;
   columns.resize(std::max({columns_, names_.size(), units_.size()}));
   layout_.holds_numbers.resize(columns.size());
   layout_.mostly_numbers.resize(columns.size());
-  for (std::size_t k = 0; k < names_.size(); ++k) columns[k].name = names_[k];
-  for (std::size_t k = 0; k < units_.size(); ++k) columns[k].unit = units_[k];
-  for (std::size_t k = 0; k < columns.size(); ++k) columns[k].grouped = GroupedIn(k);
-  // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
-  for (std::size_t k = 1; k < columns.size(); ++k) {
-    const bool may_be = layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
-    std::string& unit = columns[k - 1].unit;
-    if (may_be && unit.empty() && LooksLikeUnit(columns[k].name)) unit = columns[k].name;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (k < names_.size()) columns[k].name = names_[k];
+    if (k < units_.size()) columns[k].unit = units_[k];
+    columns[k].grouped = GroupedIn(k);
+    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+    const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
+    if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
+      columns[k - 1].unit = columns[k].name;
+    }
   }
+  return std::move(layout_);
 }
 
 /// Returns what is said of a column whose marks seem to separate thousands: all of them have three
 /// digits behind them, and the other numbers are whole and below 1000.
 std::string Reading::GroupedIn(std::size_t column) const {
-  const auto are_digits = [](std::string_view text, std::size_t most) {
-    return text.size() <= most && text.find_first_not_of("0123456789") == std::string_view::npos;
-  };
-  std::string said;
+  const Row* grouped = nullptr;  // the first
   bool has_whole = false;
   for (const Row& row : std::span(rows_).subspan(data_)) {
     if (column >= row.cells.size() || row.kinds[column] != Cell::Kind::kNumber) continue;
     std::string_view number = row.cells[column];
     if (number.starts_with('-')) number.remove_prefix(1);
-    const std::size_t mark = std::min(number.find_first_of(".,"), number.size());
-    if (!are_digits(number.substr(0, mark), 3)) return "";
-    if (mark == number.size()) {
+    const std::size_t mark = number.find_first_not_of("0123456789");
+    const std::string_view group = number.substr(std::min(mark, number.size() - 1) + 1);
+    if (number.substr(0, mark).size() > 3) return "";
+    if (mark == std::string_view::npos) {
       has_whole = has_whole || number != "0";
-    } else if (const auto group = number.substr(mark + 1);
-               group.size() != 3 || !are_digits(group, 3) || number.starts_with('0')) {
+    } else if ((number[mark] == '.' || number[mark] == ',') && group.size() == 3 &&
+               !number.starts_with('0') &&
+               group.find_first_not_of("0123456789") == std::string_view::npos) {
+      if (grouped == nullptr) grouped = &row;
+    } else {
       return "";
-    } else if (said.empty()) {
-      said = fmt::format(
-          "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have "
-          "three digits behind them and the other numbers are whole: write it without; if it is a "
-          "decimal mark, multiply the column by 1, as in ",
-          layout_.header.file, row.line, column + 1, row.cells[column]);
     }
   }
-  return has_whole ? said : "";
+  if (grouped == nullptr || !has_whole) return "";
+  return fmt::format(
+      "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have three "
+      "digits behind them and the other numbers are whole: write it without; if it is a decimal "
+      "mark, multiply the column by 1, as in ",
+      layout_.header.file, grouped->line, column + 1, grouped->cells[column]);
 }
 
 std::size_t Reading::FirstDataRow() const {
+  const auto has_text_among_numbers = [&](const Row& row) {
+    for (std::size_t column = 0; column < row.kinds.size(); ++column) {
+      if (layout_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
+    }
+    return false;
+  };
   // A header of LabVIEW has rows of numbers.
   const auto names =
       std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
@@ -235,9 +239,9 @@ std::size_t Reading::FirstDataRow() const {
     // One that has more than most, as an event of a logger, stands below a header that names them.
     const bool is_named = row != rows_.begin() && row->cells.size() > columns_ &&
                           (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
-    if (!row->HasData() || (!row->CanHave(columns_) && !is_named)) continue;
+    if (!IsData(*row) && !(row->HasData() && is_named)) continue;
     const auto place = static_cast<std::size_t>(row - rows_.begin());
-    if (!HasTextAmongNumbers(*row)) return place;
+    if (!has_text_among_numbers(*row)) return place;
     if (!any) any = place;
   }
   // Text in every row, each time in another column: the first row is as good as any.
@@ -248,27 +252,17 @@ std::size_t Reading::FirstDataRow() const {
 /// own, before one that is another.
 void Reading::PassResults() {
   constexpr std::ptrdiff_t kOneIn = 10;
+  const auto is_data = [&](const Row& row) { return IsData(row); };
   for (std::size_t k = data_ + 1; data_ > 0 && k < rows_.size(); ++k) {
-    const auto is_same = [&](const Row& row) { return row.text == rows_[k].text; };
-    if (!rows_[k].IsText() || CountKnownWords(rows_[k].cells) < 2 ||
-        std::ranges::any_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(k),
-                            is_same)) {
+    const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
+    if (!header->IsText() || CountKnownWords(header->cells) < 2 ||
+        std::ranges::find(rows_.begin(), header, header->text, &Row::text) != header) {
       continue;
     }
-    const auto is_data = [&](const Row& row) { return row.HasData() && row.CanHave(columns_); };
-    const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
-    const auto above = std::count_if(rows_.begin(), header, is_data);
-    const auto data = std::find_if(header, rows_.end(), is_data);
-    if (kOneIn * above > std::count_if(data, rows_.end(), is_data)) return;
-    data_ = static_cast<std::size_t>(data - rows_.begin());
+    const auto below = std::count_if(header, rows_.end(), is_data);
+    if (kOneIn * std::count_if(rows_.begin(), header, is_data) > below) return;
+    data_ = static_cast<std::size_t>(std::find_if(header, rows_.end(), is_data) - rows_.begin());
   }
-}
-
-bool Reading::HasTextAmongNumbers(const Row& row) const {
-  for (std::size_t column = 0; column < row.kinds.size(); ++column) {
-    if (layout_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
-  }
-  return false;
 }
 
 /// Returns the cells of a row of text, one for each column of the data; nullopt when it is not
@@ -299,7 +293,7 @@ bool Reading::NamesColumns(std::span<const std::string> cells) const {
 
 /// Looks for names and units: the row above the data, or, where that is no header or one of units,
 /// the nearest row above with a name for every column; of several the one with most known words.
-void Reading::FindNames(const std::string& file) {
+void Reading::FindNames() {
   constexpr std::size_t kFarthest = 100;
   const std::size_t begin = data_ - std::min(data_, kFarthest);
   std::size_t header = data_;
@@ -333,46 +327,36 @@ void Reading::FindNames(const std::string& file) {
     layout_.names_row = std::exchange(layout_.units_row, {});
   }
   if (data_ == 0) return;
-  if (header == data_) ThrowNoHeader(file);
-  const std::size_t line = layout_.header.header_line = rows_[header].line;
+  const std::string& file = layout_.header.file;
+  if (header == data_) {
+    const Row& row = rows_[data_ - 1];
+    if (row.cells.back().starts_with('"')) {
+      Refuse("{}:{}: a quotation mark opened here is never closed", file, row.line);
+    }
+    Refuse(
+        "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
+        "every column, or begin the line with '#' if it is a comment{}",
+        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s", rows_[data_].line,
+        layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
+            ? "; or leave out commas that separate thousands or are decimal marks"
+            : "");
+  }
+  layout_.header.header_line = rows_[header].line;
   if (header > 0) {
     layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
-                                               line, header, header == 1 ? "" : "s"));
+                                               rows_[header].line, header, header == 1 ? "" : "s"));
   }
 }
 
 /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
 void Reading::FindNamesIn(Row comment) {
   comment.text.remove_prefix(comment.text.find('#') + 1);
-  if (!comment.ReadCells(layout_.delimiter, open_quote_line_)) return;
+  if (!comment.ReadCells(layout_.delimiter)) return;
   auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
                                                 : comment.NamesByBlanks(columns_);
   if (!cells || CountKnownWords(*cells) < 2) return;
   names_ = *std::move(cells);
   layout_.header.header_line = comment.line;
-}
-
-/// The time between rows of a LabVIEW file without a column of it.
-void Reading::FindInterval() {
-  if (names_.empty() || names_.front() != "X_Value" || layout_.mostly_numbers[0]) {
-    return;
-  }
-  for (const Row& row : std::span(rows_).first(data_)) {
-    if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
-    const Cell cell = ReadCell(row.cells[1], true);
-    if (cell.kind == Cell::Kind::kNumber && cell.value > 0) layout_.header.interval = cell.value;
-  }
-}
-
-void Reading::ThrowNoHeader(const std::string& file) const {
-  const Row& row = rows_[data_ - 1];
-  Refuse(
-      "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-      "every column, or begin the line with '#' if it is a comment{}",
-      file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s", rows_[data_].line,
-      layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
-          ? "; or leave out commas that separate thousands or are decimal marks"
-          : "");
 }
 
 /// The whole file is at fault: its first row that cannot be a header, and the cell that should have
@@ -386,20 +370,15 @@ void Reading::ThrowNoNumbers(const std::string& file) const {
         file, rows_.front().line);
   }
   const Row& row = data == rows_.end() ? rows_.back() : *data;
-  const auto cell = static_cast<std::size_t>(
-      std::ranges::find_if(row.kinds, [](Cell::Kind kind) { return kind != Cell::Kind::kNumber; }) -
-      row.kinds.begin());
-  const std::string_view remedy =
-      row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p"
-      : row.text.find('|') != std::string_view::npos
-          ? "; separate the columns by ',', ';' or tabs in place of '|'"
-      : row.cells[cell].find(',') != std::string::npos
-          ? "; where commas are decimal marks, separate the columns by ';' or tabs"
-          : "";
+  const auto cell =
+      std::ranges::find_if(row.kinds, [](auto kind) { return kind != Cell::Kind::kNumber; }) -
+      row.kinds.begin();
   Refuse(
       "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected columns "
-      "of numbers under an optional header{}",
-      file, row.line, cell + 1, ForMessage(row.cells[cell]), rows_.size(), remedy);
+      "of numbers under an optional header, between tabs, ';', blanks, or commas where these are "
+      "no decimal marks{}",
+      file, row.line, cell + 1, ForMessage(row.cells[static_cast<std::size_t>(cell)]), rows_.size(),
+      row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p" : "");
 }
 
 /// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.
@@ -428,28 +407,15 @@ Layout FindLayout(std::string_view text, const std::string& file) {
     }
   }
   std::optional<Reading> best;
-  bool always_open = true;  // under the wrong delimiter, text after a closing quote reopens it
   // A tie goes to the first: a cell may contain what comes after it in this list.
   for (const char delimiter : {'\t', ';', ',', kBlanks}) {
     if (stated != '\0' && delimiter != stated) continue;
     Reading reading(sampled, delimiter);
-    always_open = always_open && reading.open_quote_line() > 0;
     if (!best || reading.rank() > best->rank()) best = std::move(reading);
   }
-  const auto require_closed = [&, open = best ? best->open_quote_line() : 0](std::size_t before) {
-    if (open == 0 || open >= before) return;
-    Refuse("{}:{}: a quotation mark opened here is never closed", file, open);
-  };
-  if (!best || best->columns() == 0) {
-    if (always_open) require_closed(std::string::npos);
-    if (!best || best->rows().empty()) {
-      Refuse("{}: holds no data, only blank or '#' lines", file);
-    }
-    best->ThrowNoNumbers(file);
-  }
-  Layout layout = std::move(*best).Find(file, comment ? &*comment : nullptr);
-  require_closed(layout.data_line);
-  return layout;
+  if (!best || best->rows().empty()) Refuse("{}: holds no data, only blank or '#' lines", file);
+  if (best->columns() == 0) best->ThrowNoNumbers(file);
+  return std::move(*best).Find(file, comment ? &*comment : nullptr);
 }
 
 }  // namespace mindahl::io

@@ -90,7 +90,9 @@ const std::map<std::string, std::string> kEnds = {
      " is not a number: write it like -1.5e-3, without marks that separate thousands; where commas "
      "are decimal marks, separate the columns by ';' or tabs, or remove the row"},
     {"kFill", " is not a number: fill in the cell or remove the row"},
-    {"kExpected", " has numbers: expected columns of numbers under an optional header"},
+    {"kExpected",
+     " has numbers: expected columns of numbers under an optional header, between tabs, ';', "
+     "blanks, or commas where these are no decimal marks"},
     {"kName", ": name every column, or begin the line with '#' if it is a comment"},
     {"kTooMany",
      " is one cell too many: the table has 2 columns; leave out commas that separate thousands, "
