@@ -34,19 +34,17 @@ void RequireDrawable(const PlotPanel& panel) {
   for (const PlotSeries& series : panel.series) {
     const std::string name = fmt::format("'{}'", series.label);
     if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-    std::vector<const Values*> coordinates = HeightsOf(series);
-    coordinates.push_back(&series.x);
-    for (const Values* values : coordinates) {
-      const bool is_x = values == &series.x;
-      const std::string what = (is_x ? "x of " : "y of ") + name;
-      RequireSameSize("x of " + name, series.x.size(), what, values->size());
-      for (const double value : *values) {
+    const auto require = [&](const std::string& what, const Values& values, bool is_logarithmic) {
+      RequireSameSize("x of " + name, series.x.size(), what, values.size());
+      for (const double value : values) {
         RequireFinite(what, value);
-        if ((is_x ? panel.log_x : panel.log_y) && value <= 0) {
+        if (is_logarithmic && value <= 0) {
           ThrowInvalid(what, value, "must be > 0 on a logarithmic axis");
         }
       }
-    }
+    };
+    for (const Values* y : HeightsOf(series)) require("y of " + name, *y, panel.log_y);
+    require("x of " + name, series.x, panel.log_x);
   }
 }
 
@@ -70,8 +68,10 @@ class Axis {
   double to_pixel = 0.0;
 
   /// @param margin  on either side of the data, a fraction of their span
-  Axis(std::pair<double, double> data, double margin, bool logarithmic)
-      : logarithmic_(logarithmic), from_(At(data.first)), to_(At(data.second)) {
+  Axis(const Values& data, double margin, bool logarithmic)
+      : logarithmic_(logarithmic),
+        from_(At(std::ranges::min(data))),
+        to_(At(std::ranges::max(data))) {
     double span = to_ - from_;
     // A constant has an axis too: a fraction of it to either side, far above what rounding leaves.
     const double size = std::max(std::abs(from_), std::abs(to_));
@@ -139,20 +139,6 @@ std::string Axis::Label(double tic) const {
   return fmt::format("{}{:.{}f}", tic < 0 ? "−" : "", std::abs(tic), decimals);
 }
 
-std::pair<double, double> Ends(const PlotPanel& panel, bool horizontal) {
-  Values values;
-  for (const PlotSeries& series : panel.series) {
-    for (const Values* more : horizontal ? std::vector{&series.x} : HeightsOf(series)) {
-      values.insert(values.end(), more->begin(), more->end());
-    }
-  }
-  for (const PlotMark& mark : panel.marks) {
-    if (horizontal) values.push_back(mark.x);
-  }
-  const auto [least, greatest] = std::ranges::minmax(values);
-  return {least, greatest};
-}
-
 /// Returns the points to draw, in order: of runs of consecutive points those with the least and
 /// greatest coordinates; all, where there are at most `most`.
 std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most) {
@@ -185,16 +171,12 @@ std::vector<std::string> LooksOf(const PlotPanel& panel) {
   constexpr double kLastShade = 7;  // classes h0 … h7
   std::vector<std::string> looks;
   int place = -1;
-  for (const PlotSeries& series : panel.series) {
-    if (series.shade) {
-      looks.push_back(
-          fmt::format("h{:.0f}", std::round(std::clamp(*series.shade, 0.0, 1.0) * kLastShade)));
-      continue;
-    }
-    const bool continues = series.label.empty() && series.style == PlotStyle::kLine;
-    if (!continues || place < 0) ++place;
+  for (const auto& [label, x, y, style, lower, upper, shade] : panel.series) {
+    const bool continues = label.empty() && style == PlotStyle::kLine && place >= 0;
+    if (!shade && !continues) ++place;
     looks.push_back(
-        fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : ""));
+        shade ? fmt::format("h{:.0f}", std::round(std::clamp(*shade, 0.0, 1.0) * kLastShade))
+              : fmt::format("s{}{}", place % kColours, place / kColours % 2 == 1 ? " more" : ""));
   }
   return looks;
 }
@@ -214,28 +196,25 @@ std::string Points(const Values& x, const Values& y, std::string_view shape, cha
   return path;
 }
 
+std::string Path(std::string_view css_class, std::string_view path) {
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>", css_class, path);
+}
+
 /// Draws points whose coordinates are in pixels.
 std::string DrawPoints(const PlotSeries& series, const std::string& look) {
   constexpr std::string_view kCircle = "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z";
-  const PlotStyle style = series.style;
-  std::string drawn;
+  const auto& [label, x, y, style, lower, upper, shade] = series;
   const auto draw = [&](std::string_view kind, const std::string& path) {
-    drawn += fmt::format("<path class=\"{} {}\" d=\"{}\"/>", kind, look, path);
+    return Path(fmt::format("{} {}", kind, look), path);
   };
-  if (style == PlotStyle::kBand) {
-    const Values back(series.x.rbegin(), series.x.rend());
-    draw("area", Points(series.x, series.upper, "") +
-                     Points(back, {series.lower.rbegin(), series.lower.rend()}, "", 'L') + "Z");
-  }
-  if (style == PlotStyle::kPoints) draw("dots", Points(series.x, series.y, "h0"));
-  if (style != PlotStyle::kMarkers && style != PlotStyle::kPoints) {
-    // A path of one point draws nothing.
-    draw("line", Points(series.x, series.y, "") + "h0");
-  }
-  if (style == PlotStyle::kMarkers || style == PlotStyle::kLineAndPoints) {
-    draw("marker", Points(series.x, series.y, kCircle));
-  }
-  return drawn;
+  if (style == PlotStyle::kPoints) return draw("dots", Points(x, y, "h0"));
+  if (style == PlotStyle::kMarkers) return draw("marker", Points(x, y, kCircle));
+  // A path of one point draws nothing.
+  const std::string line = draw("line", Points(x, y, "") + "h0");
+  if (style == PlotStyle::kLineAndPoints) return line + draw("marker", Points(x, y, kCircle));
+  if (style != PlotStyle::kBand) return line;
+  const std::string back = Points({x.rbegin(), x.rend()}, {lower.rbegin(), lower.rend()}, "", 'L');
+  return draw("area", Points(x, upper, "") + back + "Z") + line;
 }
 
 double WidthOf(std::string_view label) {
@@ -268,8 +247,15 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
   RequireDrawable(panel);
   constexpr double kMarginX = 0.02;
   constexpr double kMarginY = 0.05;
-  Axis x_axis(Ends(panel, /*horizontal=*/true), kMarginX, panel.log_x);
-  Axis y_axis(Ends(panel, /*horizontal=*/false), kMarginY, panel.log_y);
+  Values all_x;
+  Values all_y;
+  for (const PlotSeries& series : panel.series) {
+    all_x.insert(all_x.end(), series.x.begin(), series.x.end());
+    for (const Values* y : HeightsOf(series)) all_y.insert(all_y.end(), y->begin(), y->end());
+  }
+  for (const PlotMark& mark : panel.marks) all_x.push_back(mark.x);
+  Axis x_axis(all_x, kMarginX, panel.log_x);
+  Axis y_axis(all_y, kMarginY, panel.log_y);
   const double top = y_axis.to_pixel = kAboveAxes;
   const double bottom = y_axis.from_pixel = kAboveAxes + axes_height;
   const double right = x_axis.to_pixel = width - kRightMargin;
@@ -294,11 +280,10 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
     grid += fmt::format("M{:.4g} {:.4g}H{:.4g}", left, at, right);
     labels += Text(left - 7, at + 5, "end", y_axis.Label(tic));
   }
-  std::string elements = fmt::format(
-      "<path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"M{:.4g} {:.4g}V{:.4g}H{:.4g}\"/>{}",
-      grid, left, top, bottom, right, labels);
-  elements += Text(2, 17, "start", panel.y_label);
-  elements += Text(right, bottom + 44, "end", panel.x_label);
+  std::string elements =
+      Path("grid", grid) +
+      Path("axis", fmt::format("M{:.4g} {:.4g}V{:.4g}H{:.4g}", left, top, bottom, right)) + labels +
+      Text(2, 17, "start", panel.y_label) + Text(right, bottom + 44, "end", panel.x_label);
 
   const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
   const std::vector<std::string> looks = LooksOf(panel);
@@ -329,34 +314,30 @@ std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
     line = at < last_end ? line + kLine : 0;
     last_end = at + (is_left ? 0 : WidthOf(mark.label));
     elements +=
-        fmt::format("<path class=\"mark\" d=\"M{:.4g} {:.4g}V{:.4g}\"/>", at, top, bottom) +
+        Path("mark", fmt::format("M{:.4g} {:.4g}V{:.4g}", at, top, bottom)) +
         Text(at + (is_left ? -5 : 5), top + 14 + line, is_left ? "end" : "start", mark.label);
   }
   return elements;
 }
 
 std::string HtmlText(std::string_view text) {
-  constexpr std::array<std::pair<char32_t, std::string_view>, 5> kEscapes = {
-      {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}}};
   using Utf8 = boost::locale::utf::utf_traits<char>;
   std::string escaped;
   escaped.reserve(text.size());
   for (const char *at = text.data(), *end = at + text.size(); at != end;) {
     const char* next = at;
     const char32_t character = Utf8::decode(next, end);
-    const auto* const escape =
-        std::ranges::find(kEscapes, character, &std::pair<char32_t, std::string_view>::first);
-    if (character == boost::locale::utf::illegal || character == boost::locale::utf::incomplete) {
-      next = at + 1;
-    }
-    const bool is_control = character < 0x20 && character != '\n' && character != '\t';
-    if (next == at + 1 && (is_control || character >= 0x7F)) {
-      escaped += "\uFFFD";
-    } else if (escape != kEscapes.end()) {
-      escaped += escape->second;
-    } else {
-      escaped.append(at, next);
-    }
+    const bool is_text =
+        character != boost::locale::utf::illegal && character != boost::locale::utf::incomplete &&
+        (character >= 0x20 || character == '\n' || character == '\t') && character != 0x7F;
+    if (!is_text) next = at + 1;
+    escaped += !is_text            ? "\uFFFD"
+               : character == '&'  ? "&amp;"
+               : character == '<'  ? "&lt;"
+               : character == '>'  ? "&gt;"
+               : character == '"'  ? "&quot;"
+               : character == '\'' ? "&#39;"
+                                   : std::string_view(at, next);
     at = next;
   }
   return escaped;

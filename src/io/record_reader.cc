@@ -88,7 +88,7 @@ class RecordBuilder {
 
  private:
   ChosenColumn Choose(const ColumnNames& names, const Quantity& quantity, const std::string& text);
-  bool Follows(double& time, const Unit& unit);
+  bool Follows(double& time);
   std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
 
   RecordFile file_;
@@ -127,67 +127,53 @@ ChosenColumn RecordBuilder::Choose(const ColumnNames& names, const Quantity& qua
 }
 
 std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
-  std::vector<std::vector<double>> values;
-  std::vector<double>* time = nullptr;
-  values.reserve(quantities_.size());
-  for (const Quantity& quantity : quantities_) {
-    std::vector<double>& added = values.emplace_back(quantity.Values(table));
-    if (quantity.role == Role::kTime) {
-      time = &added;
-    } else {
-      for (double& value : added) value = quantity.unit.ToSi(value);
-    }
-  }
+  const std::array columns = {&samples.displacement, &samples.force, &samples.time,
+                              &samples.normal_load};
+  std::array<double, columns.size()> values{};
   auto block = table.blocks.begin();
-  std::string refusal;
-  std::size_t kept = 0;
   for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
     if (block != table.blocks.end() && row == *block) {
       times_.NextPiece();
       ++block;
     }
-    const bool is_whole =
-        std::ranges::all_of(values, [row](const auto& of) { return std::isfinite(of[row]); });
-    if (!is_whole || (time != nullptr && !Follows((*time)[row], quantities_[2].unit))) {
+    bool is_whole = true;
+    for (const Quantity& quantity : quantities_) {
+      double& value = values[static_cast<std::size_t>(quantity.role)];
+      value = quantity.ValueIn(table, row);
+      if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
+      is_whole = is_whole && std::isfinite(value);
+    }
+    if (!is_whole || (file_.time && !Follows(values[2]))) {
       bool is_missing = false;
       const std::string fault = FaultOf(table, row, is_missing);
-      if (!is_missing && !skip_broken_) {
-        refusal = fault;
-        break;
-      }
+      if (!is_missing && !skip_broken_) return fault;
       if (left_out_.count++ == 0) left_out_.fault = fault;
       continue;
     }
-    if (kept < row) {
-      for (std::vector<double>& of : values) of[kept] = of[row];
+    for (const Quantity& quantity : quantities_) {
+      const auto k = static_cast<std::size_t>(quantity.role);
+      columns[k]->push_back(values[k]);
     }
-    ++kept;
-    if (time == nullptr && interval_ > 0) {
+    if (!file_.time && interval_ > 0) {
       samples.time.push_back(static_cast<double>(rows_) * interval_);
     }
     samples.lines.push_back(table.lines[row]);
   }
-  const std::array to = {&samples.displacement, &samples.force, &samples.time,
-                         &samples.normal_load};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    std::vector<double>& of = *to.at(static_cast<std::size_t>(quantities_[k].role));
-    of.insert(of.end(), values[k].begin(), values[k].begin() + static_cast<std::ptrdiff_t>(kept));
-  }
   // One in a hundred, rounded up from a hundred on.
   constexpr std::size_t kOneIn = 100;
   const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
-  if (!refusal.empty() || skip_broken_ || left_out_.count <= most) return refusal;
+  if (skip_broken_ || left_out_.count <= most) return "";
   return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
                      left_out_.fault, left_out_.count, rows_);
 }
 
 /// Converts a time.
 /// @returns false where it is before the last
-bool RecordBuilder::Follows(double& time, const Unit& unit) {
+bool RecordBuilder::Follows(double& time) {
   time = times_.Next(time);
   time_above_ = std::exchange(last_time_, time);
   if (time < time_above_) return false;
-  time = unit.ToSi(time);
+  time = quantities_[2].unit.ToSi(time);
   return std::isfinite(time);
 }
 

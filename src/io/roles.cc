@@ -427,19 +427,11 @@ double Quantity::ValueIn(const CsvTable& table, std::size_t row) const {
   return value;
 }
 
-std::vector<double> Quantity::Values(const CsvTable& table) const {
-  std::vector<double> values = table.columns[first_column()].values;
-  for (std::size_t row = 0; row < values.size() && !(is_plain() && offset == 0); ++row) {
-    values[row] = ValueIn(table, row);
-  }
-  return values;
-}
-
 std::vector<double> Quantity::Numbers(const CsvTable& table) const {
   for (const Term& term : terms) static_cast<void>(table.Numbers(term.column));
-  std::vector<double> values = Values(table);
+  std::vector<double> values(table.rows());
   for (std::size_t row = 0; row < values.size(); ++row) {
-    values[row] = unit.ToSi(values[row]);
+    values[row] = unit.ToSi(ValueIn(table, row));
     if (!std::isfinite(values[row])) throw InputError(TooLarge(table, row));
   }
   return values;

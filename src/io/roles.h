@@ -43,9 +43,7 @@ struct Quantity {
   }
   /// Returns its value in a row, in its unit.
   [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const;
-  /// Returns its values, one a row, in its unit.
-  [[nodiscard]] std::vector<double> Values(const CsvTable& table) const;
-  /// Returns them in SI units.
+  /// Returns its values in SI units, one a row.
   /// @throws InputError where one is missing or too large
   [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
   /// Returns what is said of a row whose value is not finite in SI units, else "".
