@@ -39,39 +39,34 @@ Cell ReadWithPoint(std::string_view digits, bool negative) {
   return {.kind = Cell::Kind::kNumber, .value = negative ? -magnitude : magnitude};
 }
 
-/// Takes three whole numbers with a sign between them off a text: "10:11:12".
+/// Takes three whole numbers with one of some signs between them off a text: "10:11:12".
 /// @returns none, and leaves the text, where it does not begin with them
-std::optional<std::array<int, 3>> TakeThree(std::string_view& text, char sign) {
-  std::string_view rest = text;
+std::optional<std::array<int, 3>> TakeThree(std::string_view& text, std::string_view signs) {
   std::array<int, 3> numbers{};
+  std::string_view rest = text;
   for (int& number : numbers) {
     if (&number != numbers.data()) {
-      if (!rest.starts_with(sign)) return std::nullopt;
+      if (rest.empty() || signs.find(rest.front()) == rest.npos) return std::nullopt;
+      signs = rest.substr(0, 1);  // the second is the first again
       rest.remove_prefix(1);
     }
-    if (rest.empty() || !IsDigit(rest.front())) return std::nullopt;
-    const char* const end = std::to_address(rest.end());
-    const auto [stop, error] = FromChars(std::to_address(rest.begin()), end, number);
-    if (error != std::errc()) return std::nullopt;
-    rest = {stop, end};
+    const std::size_t size = std::min(rest.find_first_not_of("0123456789"), rest.size());
+    const std::optional<int> read = NumberIn<int>(rest.substr(0, size));
+    if (!read) return std::nullopt;
+    number = *read;
+    rest.remove_prefix(size);
   }
   text = rest;
   return numbers;
 }
 
-/// Takes the three numbers of a date off a text, in the order that they have: "05.03.24".
-std::optional<std::array<int, 3>> TakeDate(std::string_view& text) {
-  for (const char sign : {'-', '.', '/'}) {
-    if (const auto numbers = TakeThree(text, sign)) return numbers;
-  }
-  return std::nullopt;
-}
+constexpr std::string_view kSignsOfDates = "-./";
 
 /// Returns the seconds of "10:11:12.5", with a date since 1970 or, where the order of its parts is
 /// not certain, since midnight.
 std::optional<double> ReadClock(std::string_view text) {
   double midnight = 0.0;
-  if (const auto parts = TakeDate(text)) {
+  if (const auto parts = TakeThree(text, kSignsOfDates)) {
     if (!text.starts_with('T') && !text.starts_with(' ')) return std::nullopt;
     text = Trimmed(text.substr(1));
     const auto& [year, month, day] = *parts;
@@ -82,7 +77,7 @@ std::optional<double> ReadClock(std::string_view text) {
       midnight = kDay * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
     }
   }
-  const auto clock = TakeThree(text, ':');
+  const auto clock = TakeThree(text, ":");
   if (!clock) return std::nullopt;
   const auto& [hour, minute, second] = *clock;
   if (hour > 23 || minute > 59 || second > 60) return std::nullopt;  // 60: a leap second
@@ -101,22 +96,18 @@ std::optional<double> ReadClock(std::string_view text) {
 }  // namespace
 
 std::string_view TakeRow(std::string_view& text, std::size_t& lines, bool has_quotes) {
-  std::size_t end = std::min(text.find('\n'), text.size());
-  ++lines;
-  if (has_quotes && text.substr(0, end).find('"') != std::string_view::npos) {
-    const auto is_open = [&](std::size_t to) {
-      return std::ranges::count(text.substr(0, to), '"') % 2 != 0;
-    };
-    std::size_t last = end;
-    std::size_t more = 0;
-    for (; is_open(last) && last < text.size(); ++more) {
-      last = std::min(text.find('\n', last + 1), text.size());
-    }
-    if (!is_open(last)) {  // else never closed: a fault of its first line
-      end = last;
-      lines += more;
-    }
+  const std::size_t first = std::min(text.find('\n'), text.size());
+  std::size_t end = first;
+  std::size_t taken = 1;
+  bool is_open = false;
+  for (std::size_t from = 0; has_quotes; ++taken) {
+    is_open ^= std::ranges::count(text.substr(from, end - from), '"') % 2 != 0;
+    if (!is_open || end == text.size()) break;
+    from = end;
+    end = std::min(text.find('\n', from + 1), text.size());
   }
+  if (is_open) end = first;  // never closed: a fault of its first line
+  lines += is_open ? 1 : taken;
   const std::string_view row = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return row.ends_with('\r') ? row.substr(0, row.size() - 1) : row;
@@ -181,26 +172,24 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }
   std::string_view rest = text;
-  const bool is_date = TakeDate(rest) && rest.empty();
+  const bool is_date = TakeThree(rest, kSignsOfDates) && rest.empty();
   return {.kind = is_date ? Cell::Kind::kText : Cell::Kind::kBroken};
 }
 
 std::string DescribeCellFault(std::string_view text, Cell::Kind kind) {
+  const std::string shown = ForMessage(text);
   if (kind == Cell::Kind::kTooLarge) {
-    return fmt::format("'{}' is too large: must be below 1.8e308", ForMessage(text));
+    return fmt::format("'{}' is too large: must be below 1.8e308", shown);
   }
   if (kind == Cell::Kind::kMissing) {
-    return fmt::format("'{}' is not a number: fill in the cell or remove the row",
-                       ForMessage(text));
+    return fmt::format("'{}' is not a number: fill in the cell or remove the row", shown);
   }
-  const std::size_t comma = text.find(',');
-  const bool groups = comma != std::string_view::npos && comma > 0 &&
-                      text.find_first_not_of("0123456789,.+-eE") == std::string_view::npos;
-  return fmt::format("'{}' is not a number: write it like -1.5e-3{}, or remove the row",
-                     ForMessage(text),
-                     groups ? ", without marks that separate thousands; where commas are decimal "
-                              "marks, separate the columns by ';' or tabs"
-                            : "");
+  const bool has_groups = text.find(',', 1) != text.npos && !text.starts_with(',') &&
+                          text.find_first_not_of("0123456789,.+-eE") == text.npos;
+  return fmt::format("'{}' is not a number: write it like -1.5e-3{}, or remove the row", shown,
+                     has_groups ? ", without marks that separate thousands; where commas are "
+                                  "decimal marks, separate the columns by ';' or tabs"
+                                : "");
 }
 
 }  // namespace mindahl::io

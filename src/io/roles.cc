@@ -160,6 +160,10 @@ class RoleAssigner {
     Of(role).terms = {{column, 1.0}};
   }
 
+  std::optional<bool> IsAngular(std::size_t column, Role role) {
+    return names_[column].IsAngular(Of(role).given_unit);
+  }
+
   void TakeGiven(const std::string& text, Role role) {
     for (const Quantity::Term& term : roles_.emplace_back(names_.Read(text, role)).terms) {
       if (taken_[term.column]) {
@@ -175,14 +179,12 @@ class RoleAssigner {
     if (const auto found = names_.Best(role, taken)) return Take(*found, role);
     for (std::size_t named = 0; named < taken.size() && role == Role::kTime; ++named) {
       if (taken[named] || !names_[named].name.evidence.names(role)) continue;
-      notes_.push_back(fmt::format(
-          "{}: time {} {}: left out", file_, names_.Label(named),
-          names_[named].is_numeric ? "has a unit that is none of a time" : "holds no numbers"));
+      notes_.push_back(fmt::format("{}: time {} has no numbers in a unit of time: left out", file_,
+                                   names_.Label(named)));
     }
-    const std::string& unit = Of(role).given_unit;
-    if (unit.empty()) return;
+    if (Of(role).given_unit.empty()) return;
     Refuse("{}: {} [{}]: no column is recognised as the {}: name it", file_, RulesOf(role).option,
-           unit, RulesOf(role).name);
+           Of(role).given_unit, RulesOf(role).name);
   }
 
   /// Takes a "load" as the normal one beside what is a friction force by its name.
@@ -193,12 +195,10 @@ class RoleAssigner {
     for (std::size_t column = 0; column < taken.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
       const NameEvidence& load = of.name.evidence;
-      const bool is_load = load.names(Role::kForce) && load.rank == 2 && !load.is_angular;
-      const bool is_of_unit = of.unit.empty() || of.dimension == Dimension::kForce;
-      if (taken[column] || !of.is_numeric || !is_load || load.other_words > 0 || !is_of_unit) {
-        continue;
-      }
-      return Take(column, Role::kNormalLoad);
+      const bool is_load = load.names(Role::kForce) && load.rank == 2 && !load.is_angular &&
+                           load.other_words == 0 &&
+                           (of.unit.empty() || of.dimension == Dimension::kForce);
+      if (!taken[column] && of.is_numeric && is_load) return Take(column, Role::kNormalLoad);
     }
   }
 
@@ -206,18 +206,16 @@ class RoleAssigner {
   void AddNanoseconds() {
     if (IsMissing(Role::kTime)) return;
     const std::size_t seconds = ColumnOf(Role::kTime);
-    const auto name = [&](std::size_t column) { return LowerCase(names_[column].name.name); };
-    const std::string stamp = name(seconds);
+    const std::string stamp = LowerCase(names_[seconds].name.name);
     if (!stamp.ends_with("sec") && !stamp.ends_with("secs")) return;
-    const std::string stem = stamp.substr(0, stamp.rfind("sec"));
-    for (std::size_t column = 0; column < taken_.size(); ++column) {
-      const bool is_of_stamp = name(column) == stem + "nano" + stamp.substr(stem.size()) ||
-                               name(column) == stem + "n" + stamp.substr(stem.size());
-      if (!is_of_stamp || taken_[column] || !names_[column].is_numeric) continue;
-      taken_[column] = true;
-      Of(Role::kTime).terms.push_back({column, 1e-9});
+    for (const std::string_view prefix : {"nano", "n"}) {
+      const std::string name = std::string(stamp).insert(stamp.rfind("sec"), prefix);
+      const auto column = names_.Named(name, Role::kTime);
+      if (!column || taken_[*column] || !names_[*column].is_numeric) continue;
+      taken_[*column] = true;
+      Of(Role::kTime).terms.push_back({*column, 1e-9});
       notes_.push_back(fmt::format("{}: time {} with the nanoseconds of {}", file_,
-                                   names_.Label(seconds), names_.Label(column)));
+                                   names_.Label(seconds), names_.Label(*column)));
       return;
     }
   }
@@ -258,16 +256,11 @@ class RoleAssigner {
     for (const std::optional<std::size_t> force : CandidatesFor(kPair[1])) {
       for (const std::optional<std::size_t> displacement : displacements) {
         if (displacement && displacement == force) continue;
-        int evidence = 0;
-        std::array<std::optional<bool>, 2> is_angular;
-        for (const std::size_t k : {0, 1}) {
-          const std::optional<std::size_t> column = k == 0 ? displacement : force;
-          if (!column) continue;
-          if (IsMissing(kPair[k])) evidence += EvidenceFor(names_[*column], kPair[k]);
-          is_angular[k] = names_[*column].IsAngular(Of(kPair[k]).given_unit);
-        }
-        const auto& [turns, twists] = is_angular;
-        if (turns && twists && turns != twists) evidence -= kMismatch;
+        const auto turns = displacement ? IsAngular(*displacement, kPair[0]) : std::nullopt;
+        const auto twists = force ? IsAngular(*force, kPair[1]) : std::nullopt;
+        int evidence = turns && twists && turns != twists ? -kMismatch : 0;
+        if (displacement) evidence += EvidenceFor(names_[*displacement], kPair[0]);
+        if (force) evidence += EvidenceFor(names_[*force], kPair[1]);
         if (evidence < most) continue;
         if (evidence > std::exchange(most, evidence)) best = {};
         if (displacement) best[0].insert(*displacement);
@@ -351,10 +344,10 @@ class RoleAssigner {
 
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
-    for (std::size_t column = 0; column < names_.size() && role == Role::kForce; ++column) {
-      if (names_[column].name.evidence.is_coefficient) ThrowCoefficient(column);
-    }
     for (std::size_t column = 0; column < names_.size(); ++column) {
+      if (role == Role::kForce && names_[column].name.evidence.is_coefficient) {
+        ThrowCoefficient(column);
+      }
       const TableColumn& of = names_.table().columns[column];
       const bool may_be = EvidenceFor(names_[column], role) > 0;
       if ((!may_be && !of.name.empty()) || names_[column].is_numeric) continue;
@@ -389,11 +382,8 @@ class RoleAssigner {
 
   /// @returns true for a torque against an angle
   bool RequireOneKind() {
-    const auto is_angular = [&](Role role) {
-      return names_[ColumnOf(role)].IsAngular(Of(role).given_unit);
-    };
-    const auto turns = is_angular(Role::kDisplacement);
-    const auto twists = is_angular(Role::kForce);
+    const auto turns = IsAngular(ColumnOf(Role::kDisplacement), Role::kDisplacement);
+    const auto twists = IsAngular(ColumnOf(Role::kForce), Role::kForce);
     const bool is_torsional = turns == true || twists == true;
     if (!is_torsional || (turns != false && twists != false)) return is_torsional;
     const auto unit = [&](Role role) {
@@ -537,12 +527,8 @@ std::string ColumnNames::MayEachBe(Role role, const std::vector<std::size_t>& co
 }
 
 void ColumnNames::ThrowAmbiguous(Role role, const std::vector<std::size_t>& columns) const {
-  std::vector<std::string> choices;
-  choices.reserve(columns.size());
-  for (const std::size_t column : columns) {
-    choices.push_back(fmt::format("{} {}", RulesOf(role).option, column + 1));
-  }
-  Refuse("{}: {}: give {}", Header(), MayEachBe(role, columns), fmt::join(choices, " or "));
+  Refuse("{}: {}: choose one by its number, as {} {}", Header(), MayEachBe(role, columns),
+         RulesOf(role).option, columns.front() + 1);
 }
 
 std::string ColumnNames::Listing() const {

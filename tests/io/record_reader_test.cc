@@ -115,10 +115,11 @@ TEST(RecordReader, NotesWhatItAssumes) {
                      "--force '2 [N]' says so"}));
   EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"),
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
-  EXPECT_EQ(Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
-            (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
+  EXPECT_EQ(
+      Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
+      (Strings{"loop.csv: time 'time' (column 1) has no numbers in a unit of time: left out"}));
   EXPECT_EQ(Notes("time [week],x [m],F [N]\n1,1.5,2.5\n2,3.5,4.5\n"),
-            (Strings{"loop.csv: time 'time [week]' (column 1) has a unit that is none of a time: "
+            (Strings{"loop.csv: time 'time [week]' (column 1) has no numbers in a unit of time: "
                      "left out"}));
 }
 
@@ -132,12 +133,12 @@ t,x,F¶1,2,3¶ | - | 4 | : --force 4: there is no column 4: the file has 3 colum
 t,x,F¶1,2,3¶ | - | 0 | : --force 0: there is no column 0: the file has 3 columns
 t,x,F¶1,2,3¶ | x | 2 | : 'x' (column 2) is chosen for the force and for another quantity: choose
    two columns
-¶x,d,F¶1,2,3¶ | - | - | :2: 'x' (column 1) and 'd' (column 2) may each be the displacement: give
-   --displacement 1 or --displacement 2
-x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the displacement: give
-   --displacement 1 or --displacement 2
+¶x,d,F¶1,2,3¶ | - | - | :2: 'x' (column 1) and 'd' (column 2) may each be the displacement: choose
+   one by its number, as --displacement 1
+x,x,F¶1,2,3¶ | x | - | :1: 'x' (column 1) and 'x' (column 2) may each be the displacement: choose
+   one by its number, as --displacement 1
 x [mm],x [V],F¶1,2,3¶ | x | - | :1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the
-   displacement: give --displacement 1 or --displacement 2
+   displacement: choose one by its number, as --displacement 1
 x¶1¶ | - | - | : no column for the force: the file has 1 column
 x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
    must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]'
