@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/locale/encoding_utf.hpp>
 #include <tuple>
 #include <utility>
 
@@ -35,16 +36,16 @@ bool IsLetter(char character) {
 /// of letters, cut where a small one is followed by a capital.
 std::string WordsOf(std::string_view name) {
   std::string words = " ";
-  for (std::size_t at = 0; at < name.size(); ++at) {
-    const char character = name[at];
-    const auto byte = static_cast<unsigned char>(character);
+  char before = ' ';
+  for (const char character : name) {
     const bool is_capital = character >= 'A' && character <= 'Z';
-    const bool after_small = at > 0 && name[at - 1] >= 'a' && name[at - 1] <= 'z';
-    const bool is_latin = at > 0 && name[at - 1] == '\xC3' && byte >= 0x80 && byte <= 0x9E;
-    if ((!IsLetter(character) || (is_capital && after_small)) && words.back() != ' ') words += ' ';
+    const bool is_latin = before == '\xC3' && character <= '\x9E' && character != '\x97';
+    const bool ends_word = !IsLetter(character) || (is_capital && before >= 'a' && before <= 'z');
+    if (ends_word && words.back() != ' ') words += ' ';
     if (IsLetter(character)) {
-      words += static_cast<char>(is_capital || (is_latin && byte != 0x97) ? byte + 0x20 : byte);
+      words += static_cast<char>(is_capital || is_latin ? character + 0x20 : character);
     }
+    before = character;
   }
   return words.back() == ' ' ? words : words + ' ';
 }
@@ -74,16 +75,14 @@ std::string_view WithoutPath(std::string_view name) {
 /// One letter, or a few that are no word, are a name by themselves, perhaps with "actual" and the
 /// like; what is behind a label, "U1 PI: P N: 1", is none of it.
 std::string_view OnlyWord(std::string_view name) {
-  const auto is_letter = [](char character) { return IsLetter(character); };
   if (const std::size_t label = name.find(": "); label != std::string_view::npos) {
     name = name.substr(0, name.find_last_of(' ', label));
   }
   std::string_view only;
-  for (auto begin = name.begin(); begin != name.end();) {
-    begin = std::find_if(begin, name.end(), is_letter);
-    const auto end = std::find_if_not(begin, name.end(), is_letter);
+  for (auto end = name.begin(); end != name.end();) {
+    const auto begin = std::find_if(end, name.end(), IsLetter);
+    end = std::find_if_not(begin, name.end(), IsLetter);
     const std::string_view word(begin, end);
-    begin = end;
     if (word.empty() || Lists(kRemarks, LowerCase(word))) continue;
     if (!only.empty()) return {};
     only = word;
@@ -146,24 +145,17 @@ bool MayBeUnit(std::string_view text) {
          !Lists(kRemarks, LowerCase(text));
 }
 
-/// The text with the brackets, letters and signs of Chinese and Japanese fonts, U+FF01 to U+FF5E,
-/// as those of ASCII.
+/// The text with the brackets, letters and signs of Chinese and Japanese fonts as those of ASCII.
 std::string WithNarrowLetters(std::string_view text) {
-  std::string narrow;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const auto third = at + 2 < text.size() ? static_cast<unsigned char>(text[at + 2]) : 0U;
-    const std::string_view lead = text.substr(at, 2);
-    const bool is_bracket = lead == "\xE3\x80" && (third == 0x90 || third == 0x91);
-    const bool is_letter = lead == "\xEF\xBC" || (lead == "\xEF\xBD" && third < 0x9F);
-    if (!is_bracket && !is_letter) {
-      narrow += text[at];
-      continue;
-    }
-    narrow += is_bracket ? "[]"[third - 0x90]
-                         : static_cast<char>(third - (lead == "\xEF\xBC" ? 0x60 : 0x20));
-    at += 2;
-  }
-  return narrow;
+  using boost::locale::conv::utf_to_utf;
+  const auto narrow = [](char32_t letter) {
+    constexpr char32_t kWide = 0xFEE0;  // from '!' to its wide sign, U+FF01
+    const bool is_wide = letter > kWide + ' ' && letter <= kWide + '~';
+    return letter == U'【' ? U'[' : letter == U'】' ? U']' : is_wide ? letter - kWide : letter;
+  };
+  std::u32string letters = utf_to_utf<char32_t>(text.data(), text.data() + text.size());
+  std::ranges::transform(letters, letters.begin(), narrow);
+  return utf_to_utf<char>(letters);
 }
 
 /// Takes a unit off behind a comma, a slash, an underscore or a blank.
@@ -197,19 +189,13 @@ std::optional<Dimension> DimensionOf(std::string_view symbol) {
 }
 
 bool MayHaveRole(std::optional<Dimension> dimension, Role role) {
-  switch (dimension.value_or(Dimension::kPressure)) {
-    case Dimension::kLength:
-    case Dimension::kAngle:
-      return role == Role::kDisplacement;
-    case Dimension::kForce:
-    case Dimension::kTorque:
-      return role == Role::kForce || role == Role::kNormalLoad;
-    case Dimension::kTime:
-      return role == Role::kTime;
-    case Dimension::kPressure:
-      return false;
+  if (role == Role::kDisplacement) {
+    return dimension == Dimension::kLength || dimension == Dimension::kAngle;
   }
-  return false;
+  if (role == Role::kForce || role == Role::kNormalLoad) {
+    return dimension == Dimension::kForce || dimension == Dimension::kTorque;
+  }
+  return role == Role::kTime && dimension == Dimension::kTime;
 }
 
 std::string_view WithoutBrackets(std::string_view cell) {

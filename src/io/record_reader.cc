@@ -198,18 +198,6 @@ std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool&
 
 namespace {
 
-/// Returns the numbers of a table's column in the rows of some lines.
-std::vector<double> AtLines(const CsvTable& table, std::size_t column,
-                            const std::vector<std::size_t>& lines) {
-  const std::vector<double>& values = table.columns[column].values;
-  std::vector<double> kept;
-  kept.reserve(lines.size());
-  for (std::size_t row = 0; row < values.size() && kept.size() < lines.size(); ++row) {
-    if (table.lines[row] == lines[kept.size()]) kept.push_back(values[row]);
-  }
-  return kept;
-}
-
 /// Reads the columns chosen in addition to displacement and force, then some of the others: those
 /// with a number in every row, and not the same in all.
 void AddCovariates(const ColumnNames& names, const std::vector<std::string>& choices,
@@ -217,7 +205,11 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   const CsvTable& table = names.table();
   std::vector<bool> is_read(names.size());
   const auto add = [&](std::size_t column, const std::string& name, bool may_be_constant) {
-    std::vector<double> values = AtLines(table, column, file.lines);
+    const std::vector<double>& all = table.columns[column].values;
+    std::vector<double> values;
+    for (std::size_t row = 0; row < all.size() && values.size() < file.lines.size(); ++row) {
+      if (table.lines[row] == file.lines[values.size()]) values.push_back(all[row]);
+    }
     const bool changes = std::ranges::adjacent_find(values, std::not_equal_to<>()) != values.end();
     if (values.empty() || !std::ranges::all_of(values, IsNumber)) return false;
     if (!changes && !may_be_constant) return false;
@@ -239,14 +231,14 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     }
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
-  is_read[file.displacement.index - 1] = is_read[file.force.index - 1] = true;
-  if (file.time) is_read[file.time->index - 1] = true;
-  if (file.normal_load) is_read[file.normal_load->index - 1] = true;
+  for (const auto& used :
+       {std::optional(file.displacement), std::optional(file.force), file.time, file.normal_load}) {
+    if (used) is_read[used->index - 1] = true;
+  }
   const std::size_t most = choices.size() + kMostOtherColumns;
-  for (std::size_t column = 0; column < names.size() && file.record.covariates.size() < most;
-       ++column) {
+  for (std::size_t column = 0; column < names.size(); ++column) {
     if (is_read[column] || names[column].is_clock || !names[column].other_unit.empty()) continue;
-    add(column, names.NameOf(column), false);
+    if (file.record.covariates.size() < most) add(column, names.NameOf(column), false);
   }
 }
 
@@ -288,23 +280,24 @@ void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& giv
   for (const TableColumn& column : other.columns) {
     TableColumn& added = table.columns.emplace_back(column);
     if (!by_time || added.values.empty()) continue;
-    added.values.assign(table.rows(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-      const auto above = std::ranges::lower_bound(of_other, times[row]);
-      if (!is_covered(times[row])) {
+    added.values.clear();
+    for (const double time : times) {
+      const auto k =
+          static_cast<std::size_t>(std::ranges::lower_bound(of_other, time) - of_other.begin());
+      if (!is_covered(time)) {
         // Times of the first file that the other does not cover are no fault.
         if (added.missing.empty()) {
           added.missing = fmt::format("{}:{}: {} has no row at this time", table.file,
-                                      table.lines[row], other.file);
+                                      table.lines[added.values.size()], other.file);
         }
+        added.values.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
-      const auto k = static_cast<std::size_t>(above - of_other.begin());
       const double step = k == 0 ? 0.0 : of_other[k] - of_other[k - 1];
-      const double weight = step > 0 ? (of_other[k] - times[row]) / step : 0.0;
-      added.values[row] = weight > 0
-                              ? weight * column.values[k - 1] + (1 - weight) * column.values[k]
-                              : column.values[k];
+      const double weight = step > 0 ? (of_other[k] - time) / step : 0.0;
+      added.values.push_back(weight > 0
+                                 ? weight * column.values[k - 1] + (1 - weight) * column.values[k]
+                                 : column.values[k]);
     }
   }
   table.notes.insert(table.notes.end(), other.notes.begin(), other.notes.end());
