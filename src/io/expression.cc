@@ -14,6 +14,14 @@ namespace {
 
 constexpr std::string_view kOperators = "+-*/";
 
+/// Returns the column of a number from 1.
+/// @param where  it stands, for the refusal of one that there is not
+std::size_t Numbered(std::size_t number, std::size_t columns, const std::string& where) {
+  if (number >= 1 && number <= columns) return number - 1;
+  Refuse("{}: there is no column {}: the file has {} column{}", where, number, columns,
+         columns == 1 ? "" : "s");
+}
+
 /// Reads a sum of products, each of numbers and at most one column.
 class ExpressionReader {
  public:
@@ -24,9 +32,8 @@ class ExpressionReader {
     Quantity expression{.role = role_};
     do {
       double factor = 1.0;
-      while (rest_.starts_with('-') || rest_.starts_with('+')) {
+      for (; rest_.starts_with('-') || rest_.starts_with('+'); Take(1)) {
         if (rest_.front() == '-') factor = -factor;
-        Take(1);
       }
       std::optional<std::size_t> column;
       for (bool divides = false;; Take(1)) {
@@ -65,18 +72,16 @@ class ExpressionReader {
     for (std::size_t end = rest_.size(); end != std::string_view::npos && end > 0;
          end = rest_.find_last_of(kOperators, end - 1)) {
       const std::string_view name = Trimmed(rest_.substr(0, end));
-      if (const auto column = name.empty() ? std::nullopt : names_.Named(name, role_)) {
-        Take(end);
-        return column;
-      }
+      if (name.empty()) continue;
+      const auto number =
+          name.front() == '#' ? NumberIn<std::size_t>(Trimmed(name.substr(1))) : std::nullopt;
+      const auto column = number ? std::optional(Numbered(*number, names_.size(), where_))
+                                 : names_.Named(name, role_);
+      if (!column) continue;
+      Take(end);
+      return column;
     }
-    if (!rest_.starts_with('#')) return std::nullopt;
-    Take(1);
-    const double number = TakeNumber();
-    if (number < 1 || number > static_cast<double>(names_.size()) || number != std::floor(number)) {
-      Throw(fmt::format("has #{}: there are {} columns", number, names_.size()));
-    }
-    return static_cast<std::size_t>(number) - 1;
+    return std::nullopt;
   }
 
   double TakeNumber() {
@@ -125,11 +130,7 @@ Quantity ColumnNames::Read(const std::string& given, Role role) const {
     text = Trimmed(text.substr(0, open));
   }
   if (const auto number = NumberIn<std::size_t>(text)) {
-    if (*number < 1 || *number > size()) {
-      Refuse("{}: there is no column {}: the file has {} column{}", where, text, size(),
-             size() == 1 ? "" : "s");
-    }
-    quantity.terms = {{*number - 1, 1.0}};
+    quantity.terms = {{Numbered(*number, size(), where), 1.0}};
   } else if (!text.empty()) {
     quantity = ExpressionReader(text, *this, role, where).Read();
   }

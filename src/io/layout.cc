@@ -1,5 +1,3 @@
-#include "io/layout.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "io/cells.h"
 #include "io/column_name.h"
 #include "io/source.h"
+#include "io/table_reader.h"
 
 namespace mindahl::io {
 namespace {

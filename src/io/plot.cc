@@ -50,30 +50,28 @@ std::string Style() {
   return style;
 }
 
-/// A legend in rows above its panel.
-struct Legend {
-  std::string elements;
-  double height = 0.0;  // [px]
-};
-
-Legend LegendOf(const PlotPanel& panel, double room) {
+/// Returns the legend of a panel in rows.
+/// @param height  written: [px]
+std::string LegendRows(const PlotPanel& panel, double room, double& height) {
   constexpr double kSymbol = 34;      // [px]
   constexpr double kCharacter = 7.5;  // as wide as most fonts draw it
   constexpr double kBetween = 14;
   constexpr double kRow = 20;
-  Legend legend;
-  double x = kSymbol;
+  std::string rows;
+  height = 0.0;
+  double x = 0.0;
   for (const auto& [symbol, label] : LegendOf(panel)) {
     const double width = kSymbol + kCharacter * static_cast<double>(CharactersIn(label)) + kBetween;
-    const bool is_in_next_row = x > kSymbol && x + width > room;
-    if (is_in_next_row) x = kSymbol;
-    if (is_in_next_row || legend.height == 0) legend.height += kRow;
-    legend.elements += fmt::format(
+    if (height == 0 || (x > kSymbol && x + width > room)) {
+      x = kSymbol;
+      height += kRow;
+    }
+    rows += fmt::format(
         "<g transform=\"translate({:.1f},{:.1f})\">{}<text x=\"{}\" y=\"11\">{}</text></g>\n", x,
-        legend.height - kRow, symbol, kSymbol, HtmlText(label));
+        height - kRow, symbol, kSymbol, HtmlText(label));
     x += width;
   }
-  return legend;
+  return rows;
 }
 
 std::string SvgOf(const Plot& plot) {
@@ -97,33 +95,30 @@ std::string SvgOf(const Plot& plot) {
     top += kHeading + kEdge;
   }
   const double width = plot.width - kEdge;
-  double heights = 0.0;
+  double relative = 0.0;
   double room = plot.height - top - kEdge;  // [px] for the axes of all panels
-  std::vector<Legend> legends;
-  legends.reserve(plot.panels.size());
+  double legend_height = 0.0;
   for (const PlotPanel& panel : plot.panels) {
-    legends.push_back(LegendOf(panel, width));
-    heights += panel.height;
-    room -= legends.back().height + kAboveAxes + kBelowAxes;
-    if (!panel.title.empty()) room -= kHeading;
+    LegendRows(panel, width, legend_height);
+    relative += panel.height;
+    room -= legend_height + kAboveAxes + kBelowAxes + (panel.title.empty() ? 0 : kHeading);
   }
-  for (std::size_t k = 0; k < plot.panels.size(); ++k) {
-    const PlotPanel& panel = plot.panels[k];
+  for (const PlotPanel& panel : plot.panels) {
     // A page too small for its margins still has axes of a pixel.
-    const double axes = std::max(room * panel.height / heights, 1.0);
+    const double axes = std::max(room * panel.height / relative, 1.0);
     if (!panel.title.empty()) {
       svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\">{}</text>\n", kEdge, top + 0.7 * kHeading,
                          HtmlText(panel.title));
       top += kHeading;
     }
-    for (const std::string& elements :
-         {legends[k].elements,
-          DrawPanel(panel, width, axes,
-                    kMostPoints * std::max<std::size_t>(panel.series.size(), 1))}) {
+    const auto add = [&](const std::string& elements, double height) {
       svg += fmt::format("<g transform=\"translate(4,{:.1f})\">{}</g>\n", top, elements);
-      top += legends[k].height;
-    }
-    top += kAboveAxes + axes + kBelowAxes - legends[k].height;
+      top += height;
+    };
+    const std::string legend = LegendRows(panel, width, legend_height);
+    add(legend, legend_height);
+    add(DrawPanel(panel, width, axes, kMostPoints * std::max<std::size_t>(panel.series.size(), 1)),
+        kAboveAxes + axes + kBelowAxes);
   }
   return svg + "</svg>\n";
 }

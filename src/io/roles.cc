@@ -133,14 +133,8 @@ class RoleAssigner {
     TakeFound(Role::kNormalLoad, taken);
     TakeLoad(taken);
     TakeLeft();
-    // A word is enough for a displacement that only grows, but for the X of a report where another
-    // column may be meant; a force needs its unit.
-    const bool may_be_time = names_[ColumnOf(Role::kDisplacement)].name.evidence.word == "X" &&
-                             std::ranges::any_of(LeftColumns(), [&](std::size_t column) {
-                               return names_[column].goes_to_and_fro;
-                             });
-    if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce, may_be_time ? 100 : 1);
-    if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement, 100);
+    if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce);
+    if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement);
     RequireForce();
     const bool is_torsional = RequireOneKind();
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
@@ -350,7 +344,7 @@ class RoleAssigner {
       }
       const TableColumn& of = names_.table().columns[column];
       const bool may_be = EvidenceFor(names_[column], role) > 0;
-      if ((!may_be && !of.name.empty()) || names_[column].is_numeric) continue;
+      if (names_[column].is_numeric || (!may_be && !of.name.empty())) continue;
       if (!of.values.empty() && !of.broken.empty()) throw InputError(of.broken);
       if (!may_be) continue;
       Refuse(
@@ -365,19 +359,22 @@ class RoleAssigner {
   }
 
   /// Refuses a column of little evidence whose numbers are those of a clock or a counter, where
-  /// those of the other role go to and fro.
-  void RequireMoving(Role role, Role other, int least_evidence) {
+  /// those of the other role go to and fro. A word is enough for a displacement that only grows,
+  /// but for the X of a report; a force needs its unit.
+  void RequireMoving(Role role, Role other) {
     const std::size_t column = ColumnOf(role);
-    if (!Of(role).given_unit.empty() || EvidenceFor(names_[column], role) >= least_evidence ||
-        names_[column].trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
+    const ColumnNames::Column& of = names_[column];
+    const bool needs_unit = role == Role::kForce || of.name.evidence.word == "X";
+    if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= (needs_unit ? 100 : 1) ||
+        of.trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
     }
     Refuse(
         "{}:{}:{}: {} only {} while {} goes to and fro, as a clock or a counter does: choose the "
         "{} with {}, by name or number: {}",
         file_, names_.table().lines.front(), column + 1, names_.Label(column),
-        names_[column].trend > 0 ? "grows" : "falls", names_.Label(ColumnOf(other)),
-        RulesOf(role).name, RulesOf(role).option, names_.Listing());
+        of.trend > 0 ? "grows" : "falls", names_.Label(ColumnOf(other)), RulesOf(role).name,
+        RulesOf(role).option, names_.Listing());
   }
 
   /// @returns true for a torque against an angle

@@ -53,6 +53,38 @@ bool IsIn(std::string text, const std::string& encoding) {
   return Decode(DecoderFrom(encoding), text, decoded);
 }
 
+/// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
+/// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
+/// UTF-8, Shift-JIS by two bytes or more from 0x81 to 0x9F, GB18030 by two characters of GB2312 in
+/// a row, Windows-1251 by a word of Cyrillic letters; the rest is Windows-1252, of which Latin-1 is
+/// a part.
+std::string EncodingOf(std::string_view head) {
+  if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
+  if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
+  std::array<std::ptrdiff_t, 2> zeroes{};  // in even and odd places
+  for (std::size_t at = 0; at < head.size(); ++at) zeroes[at % 2] += head[at] == '\0' ? 1 : 0;
+  if (const auto [even, odd] = zeroes; even + odd > 0) {
+    if (even == 0 && 4 * odd >= std::ssize(head)) return "UTF-16LE";
+    return odd == 0 && 4 * even >= std::ssize(head) ? "UTF-16BE" : "";
+  }
+  const std::string text(head);
+  if (IsIn(text, "UTF-8")) return "";
+  // European letters may look like a few characters of these by chance.
+  const auto is_kanji = [](char of) { return ByteOf(of) >= 0x81 && ByteOf(of) <= 0x9F; };
+  if (std::ranges::count_if(head, is_kanji) >= 2 && IsIn(text, "CP932")) return "CP932";
+  // Small Cyrillic letters follow each other; European ones with accents do not, and Chinese
+  // characters have as many other bytes.
+  const auto is_small = [](char of) { return ByteOf(of) >= 0xE0; };
+  const auto is_other = [](char of) { return ByteOf(of) >= 0x80 && ByteOf(of) < 0xE0; };
+  const bool has_word = std::ranges::search_n(head, 3, true, {}, is_small).size() > 0;
+  if (has_word && std::ranges::count_if(head, is_small) > std::ranges::count_if(head, is_other)) {
+    return "WINDOWS-1251";
+  }
+  const auto is_of_pair = [](char of, bool) { return ByteOf(of) >= 0xA1; };
+  const bool has_two = std::search_n(head.begin(), head.end(), 4, true, is_of_pair) != head.end();
+  return has_two && IsIn(text, "GB2312") ? "GB18030" : "WINDOWS-1252";
+}
+
 [[noreturn]] void ThrowCannotRead(const std::string& name, const char* reason) {
   Refuse("cannot read '{}': {}", name, reason);
 }
@@ -82,44 +114,12 @@ std::string ForMessage(std::string_view text) {
   return size < text.size() ? shown + "..." : shown;
 }
 
-std::string EncodingOf(std::string_view head) {
-  if (head.starts_with("\xFF\xFE")) return "UTF-16LE";
-  if (head.starts_with("\xFE\xFF")) return "UTF-16BE";
-  std::array<std::ptrdiff_t, 2> zeroes{};  // in even and odd places
-  for (std::size_t at = 0; at < head.size(); ++at) zeroes[at % 2] += head[at] == '\0' ? 1 : 0;
-  if (const auto [even, odd] = zeroes; even + odd > 0) {
-    if (even == 0 && 4 * odd >= std::ssize(head)) return "UTF-16LE";
-    return odd == 0 && 4 * even >= std::ssize(head) ? "UTF-16BE" : "";
-  }
-  const std::string text(head);
-  if (IsIn(text, "UTF-8")) return "";
-  // European letters may look like a few characters of these by chance.
-  const auto is_kanji = [](char of) { return ByteOf(of) >= 0x81 && ByteOf(of) <= 0x9F; };
-  if (std::ranges::count_if(head, is_kanji) >= 2 && IsIn(text, "CP932")) return "CP932";
-  // Small Cyrillic letters follow each other; European ones with accents do not, and Chinese
-  // characters have as many other bytes.
-  const auto is_small = [](char of) { return ByteOf(of) >= 0xE0; };
-  const auto is_other = [](char of) { return ByteOf(of) >= 0x80 && ByteOf(of) < 0xE0; };
-  const bool has_word = std::ranges::search_n(head, 3, true, {}, is_small).size() > 0;
-  if (has_word && std::ranges::count_if(head, is_small) > std::ranges::count_if(head, is_other)) {
-    return "WINDOWS-1251";
-  }
-  const auto is_of_pair = [](char of, bool) { return ByteOf(of) >= 0xA1; };
-  const bool has_two = std::search_n(head.begin(), head.end(), 4, true, is_of_pair) != head.end();
-  return has_two && IsIn(text, "GB2312") ? "GB18030" : "WINDOWS-1252";
-}
-
 LinePieces::LinePieces(const std::filesystem::path& path, std::string encoding)
     : name_(NameOfInput(path)), encoding_(std::move(encoding)), file_(OpenedForReading(path)) {
   if (!file_) ThrowCannotRead(name_, std::strerror(errno));
   gzbuffer(file_.get(), 1U << 17U);
-  ReadBytes(undecoded_);
-  FindEncoding();
-  TakeUndecoded();
+  Read();
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);  // the byte-order mark of UTF-8
-  if (const std::size_t zero = text_.find('\0'); zero != std::string::npos) {
-    ThrowZeroByte(fmt::format(":{}", 1 + std::count(text_.data(), text_.data() + zero, '\n')));
-  }
   ends_lines_in_cr_ = text_.find('\n') == text_.npos && text_.find('\r') != text_.npos;
   if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
 }
@@ -131,36 +131,43 @@ std::string_view LinePieces::Next() {
       Refuse("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
              kLongestLine);
     }
-    const std::size_t before = text_.size();
-    ReadBytes(decoder_ ? undecoded_ : text_);
-    TakeUndecoded();
-    if (text_.find('\0', before) != std::string::npos) ThrowZeroByte("");
-    if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
+    Read();
   }
   given_ = at_end_ ? text_.size() : text_.rfind('\n') + 1;
   return std::string_view(text_).substr(0, given_);
 }
 
-/// Appends the next bytes of the file to a text.
-void LinePieces::ReadBytes(std::string& to) {
+/// Appends the next bytes of the file to the text, decoded.
+void LinePieces::Read() {
   const int count = gzread(file_.get(), piece_.get(), kPiece);
   int error = Z_OK;
   const char* const reason = gzerror(file_.get(), &error);
   if (count < 0 || (error != Z_OK && error != Z_STREAM_END)) {
     ThrowCannotRead(name_, error == Z_ERRNO ? std::strerror(errno) : reason);
   }
-  to.append(piece_.get(), static_cast<std::size_t>(count));
-  at_end_ = static_cast<std::size_t>(count) < kPiece;
-  bytes_ += static_cast<std::uintmax_t>(count);
-}
-
-void LinePieces::ThrowZeroByte(const std::string& line) const {
-  Refuse("{}{}: is not text, it holds a zero byte: export it as CSV", name_, line);
+  const std::string_view bytes(piece_.get(), static_cast<std::size_t>(count));
+  const bool is_first = bytes_ == 0;
+  const std::size_t before = text_.size();
+  if (is_first) FindEncoding(bytes.substr(0, 1 << 16));
+  at_end_ = bytes.size() < kPiece;
+  bytes_ += bytes.size();
+  if (!decoder_) {
+    text_ += bytes;
+  } else if (undecoded_ += bytes;
+             !Decode(decoder_, undecoded_, text_) || (at_end_ && !undecoded_.empty())) {
+    Refuse("{}: byte {} is not valid in {}: give the encoding of the file with --encoding", name_,
+           bytes_ - undecoded_.size() + 1, encoding_);
+  }
+  if (const std::size_t zero = text_.find('\0', before); zero != std::string::npos) {
+    const auto line = 1 + std::count(text_.data(), text_.data() + zero, '\n');
+    Refuse("{}{}: is not text, it holds a zero byte: export it as CSV", name_,
+           is_first ? fmt::format(":{}", line) : "");
+  }
+  if (ends_lines_in_cr_) std::ranges::replace(text_, '\r', '\n');
 }
 
 /// Opens the decoder, where the text is not in UTF-8, by the file's first bytes.
-void LinePieces::FindEncoding() {
-  const std::string_view head = std::string_view(undecoded_).substr(0, 1 << 16);
+void LinePieces::FindEncoding(std::string_view head) {
   if (head.empty()) Refuse("{}: the file is empty", name_);
   if (head.starts_with("PK\x03\x04") || head.starts_with("\xD0\xCF\x11\xE0")) {
     Refuse(
@@ -184,15 +191,6 @@ void LinePieces::FindEncoding() {
                     encoding_ == "CP932"          ? "Shift-JIS"
                     : encoding_ == "WINDOWS-1252" ? "Latin-1 (Windows-1252)"
                                                   : encoding_);
-  }
-}
-
-void LinePieces::TakeUndecoded() {
-  if (!decoder_) {
-    text_ += std::exchange(undecoded_, {});
-  } else if (!Decode(decoder_, undecoded_, text_) || (at_end_ && !undecoded_.empty())) {
-    Refuse("{}: byte {} is not valid in {}: give the encoding of the file with --encoding", name_,
-           bytes_ - undecoded_.size() + 1, encoding_);
   }
 }
 

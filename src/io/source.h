@@ -32,13 +32,6 @@ std::string NameOfInput(const std::filesystem::path& path);
 /// Returns a text from a file as a message shows it: on one line, cut off after 60 bytes or so.
 std::string ForMessage(std::string_view text);
 
-/// Returns the encoding of a text by its first bytes, as iconv calls it; "" for UTF-8 and ASCII.
-/// UTF-16 is known by its byte order mark or by zero bytes in every other place; of what is not
-/// UTF-8, Shift-JIS by two bytes or more from 0x81 to 0x9F, GB18030 by two characters of GB2312 in
-/// a row, Windows-1251 by a word of Cyrillic letters; the rest is Windows-1252, of which Latin-1 is
-/// a part.
-std::string EncodingOf(std::string_view head);
-
 /// An iconv_t, closed with it.
 using Decoder = std::unique_ptr<void, void (*)(void*)>;
 
@@ -65,10 +58,8 @@ class LinePieces {
   [[nodiscard]] const std::string& note() const { return note_; }
 
  private:
-  void ReadBytes(std::string& to);
-  void FindEncoding();
-  void TakeUndecoded();
-  [[noreturn]] void ThrowZeroByte(const std::string& line) const;
+  void Read();
+  void FindEncoding(std::string_view head);
 
   std::string name_;
   std::string encoding_;
@@ -76,7 +67,7 @@ class LinePieces {
   Decoder decoder_{nullptr, nullptr};
   // gzread() fills it; of a short file the most of it is never touched.
   std::unique_ptr<char[]> piece_ = std::make_unique_for_overwrite<char[]>(kPiece);
-  std::string undecoded_;  // bytes that were read
+  std::string undecoded_;  // bytes of a character that is not whole
   std::string text_;
   std::size_t given_ = 0;  // bytes of it that were returned
   std::uintmax_t bytes_ = 0;

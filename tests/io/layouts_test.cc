@@ -255,7 +255,7 @@ TEST(Expression, RefusesWhatItCannotBe) {
   for (const auto& [force, said] : {std::pair("F*", "--force F*: is incomplete"),
                                     {"F*G", "multiplies columns"},
                                     {"2-3", "or #3 for the third column"},
-                                    {"#4-#3", "has #4: there are 3 columns"},
+                                    {"#4-#3", "there is no column 4: the file has 3 columns"},
                                     {"F+H", "no column is called 'H'"},
                                     {"F*0", "a factor that is 0"},
                                     {"F-G", "the unit 'V' of 'F [V]' (column 2) is not known"}}) {
