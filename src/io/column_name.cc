@@ -110,11 +110,7 @@ NameEvidence EvidenceOf(std::string_view name) {
       const std::tuple found{size, end, -row.rank};
       if (!(best < found)) continue;
       best = found;
-      evidence = {.word = entry,
-                  .role = row.role,
-                  .rank = row.rank,
-                  .is_angular = row.is_angular,
-                  .is_coefficient = row.words == kCoefficients};
+      evidence = {.word = entry, .role = row.role, .rank = row.rank, .is_angular = row.is_angular};
     }
   }
   evidence.is_lesser = std::ranges::any_of(

@@ -11,7 +11,7 @@
 namespace mindahl::io {
 
 /// Names what a column may be.
-enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther };
+enum class Role { kDisplacement, kForce, kTime, kNormalLoad, kOther, kFrictionCoefficient };
 
 /// True if a quantity of that dimension may have the role.
 bool MayHaveRole(std::optional<Dimension> dimension, Role role);
@@ -23,9 +23,8 @@ struct NameEvidence {
   std::string_view word = {};  ///< the best; "" where none is known
   Role role = Role::kOther;
   int rank = 0;
-  bool is_angular = false;      // of an angle or a torque
-  bool is_coefficient = false;  // of friction
-  bool is_lesser = false;       ///< commanded, raw or a statistic
+  bool is_angular = false;  // of an angle or a torque
+  bool is_lesser = false;   ///< commanded, raw or a statistic
   std::size_t other_words = 0;
 
   /// True if it is a word of the role.

@@ -93,7 +93,38 @@ bool StatesUnits(std::string_view first) {
 /// numbers.
 class Reading {
  public:
-  Reading(std::span<const Row> sampled, char delimiter);
+  Reading(std::span<const Row> sampled, char delimiter) {
+    layout_.delimiter = delimiter;
+    std::map<std::size_t, std::size_t> rows_with_columns;
+    for (Row row : sampled) {
+      if (!row.ReadCells(delimiter)) continue;
+      if (row.HasData()) ++rows_with_columns[row.columns];
+      rows_.push_back(std::move(row));
+    }
+    std::size_t most_rows = 0;
+    for (const auto& [columns, rows] : rows_with_columns) {
+      if (rows < most_rows) continue;
+      most_rows = rows;
+      columns_ = columns;
+    }
+    std::vector<std::size_t> numbers;
+    for (const Row& row : rows_) {
+      if (!row.HasData()) continue;
+      most_cells_ = std::max(most_cells_, row.columns);
+      numbers.resize(std::max(numbers.size(), row.kinds.size()));
+      layout_.holds_numbers.resize(numbers.size());
+      for (std::size_t column = 0; column < row.kinds.size(); ++column) {
+        const Cell::Kind kind = row.kinds[column];
+        if (Row::IsNumber(kind)) ++numbers[column];
+        if (kind != Cell::Kind::kText && kind != Cell::Kind::kMissing) {
+          layout_.holds_numbers[column] = true;
+        }
+      }
+      if (row.columns != columns_) continue;
+      score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
+    }
+    for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
+  }
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   [[nodiscard]] std::size_t columns() const { return columns_; }  ///< 0 without a row of data
@@ -104,18 +135,234 @@ class Reading {
   }
 
   /// Finds the data and the header above them, which may be a comment.
-  Layout Find(const std::string& file, const Row* comment) &&;
-  [[noreturn]] void ThrowNoNumbers(const std::string& file) const;
+  Layout Find(const std::string& file, const Row* comment) && {
+    layout_.header.file = file;
+    data_ = FirstDataRow();
+    PassResults();
+    layout_.data_offset = rows_[data_].offset;
+    layout_.data_line = rows_[data_].line;
+    FindNames();
+    if (data_ == 0 && comment != nullptr) FindNamesIn(*comment);
+    // LabVIEW states the time between rows in place of times.
+    const bool has_no_times =
+        !names_.empty() && names_.front() == "X_Value" && !layout_.mostly_numbers[0];
+    for (const Row& row : std::span(rows_).first(has_no_times ? data_ : 0)) {
+      if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
+      const double step = ReadCell(row.cells[1], true).value;
+      if (step > 0) layout_.header.interval = step;
+    }
+
+    std::vector<TableColumn>& columns = layout_.header.columns;
+    columns.resize(std::max({columns_, names_.size(), units_.size()}));
+    layout_.holds_numbers.resize(columns.size());
+    layout_.mostly_numbers.resize(columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (k < names_.size()) columns[k].name = names_[k];
+      if (k < units_.size()) columns[k].unit = units_[k];
+      columns[k].grouped = GroupedIn(k);
+      // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
+      const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
+      if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
+        columns[k - 1].unit = columns[k].name;
+      }
+    }
+    return std::move(layout_);
+  }
+
+  /// The whole file is at fault: its first row that cannot be a header, and the cell that should
+  /// have been a number, stand for it.
+  [[noreturn]] void ThrowNoNumbers(const std::string& file) const {
+    const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
+    if (data == rows_.end() && rows_.size() == 1) {
+      Refuse(
+          "{}:{}: the file ends after its header, with no row of numbers below it: export the data "
+          "too",
+          file, rows_.front().line);
+    }
+    const Row& row = data == rows_.end() ? rows_.back() : *data;
+    const auto cell =
+        std::ranges::find_if(row.kinds, [](auto kind) { return kind != Cell::Kind::kNumber; }) -
+        row.kinds.begin();
+    Refuse(
+        "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected "
+        "columns "
+        "of numbers under an optional header, between tabs, ';', blanks, or commas where these are "
+        "no decimal marks{}",
+        file, row.line, cell + 1, ForMessage(row.cells[static_cast<std::size_t>(cell)]),
+        rows_.size(), row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p" : "");
+  }
 
  private:
   [[nodiscard]] bool IsData(const Row& row) const { return row.HasData() && row.CanHave(columns_); }
-  [[nodiscard]] std::size_t FirstDataRow() const;
-  void PassResults();
-  [[nodiscard]] std::optional<Strings> HeaderCells(const Row& row) const;
-  [[nodiscard]] bool NamesColumns(std::span<const std::string> cells) const;
-  void FindNames();
-  void FindNamesIn(Row comment);
-  [[nodiscard]] std::string GroupedIn(std::size_t column) const;
+
+  std::size_t FirstDataRow() const {
+    const auto has_text_among_numbers = [&](const Row& row) {
+      for (std::size_t column = 0; column < row.kinds.size(); ++column) {
+        if (layout_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
+      }
+      return false;
+    };
+    // A header of LabVIEW has rows of numbers.
+    const auto names =
+        std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
+    std::optional<std::size_t> any;
+    for (auto row = names == rows_.end() ? rows_.begin() : names; row != rows_.end(); ++row) {
+      // One that has more than most, as an event of a logger, stands below a header that names
+      // them.
+      const bool is_named = row != rows_.begin() && row->cells.size() > columns_ &&
+                            (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
+      if (!IsData(*row) && !(row->HasData() && is_named)) continue;
+      const auto place = static_cast<std::size_t>(row - rows_.begin());
+      if (!has_text_among_numbers(*row)) return place;
+      if (!any) any = place;
+    }
+    // Text in every row, each time in another column: the first row is as good as any.
+    return any.value_or(0);
+  }
+
+  /// Passes over a table of results above the data: a few rows of numbers below a header of their
+  /// own, before one that is another.
+  void PassResults() {
+    constexpr std::ptrdiff_t kOneIn = 10;
+    const auto is_data = [&](const Row& row) { return IsData(row); };
+    for (std::size_t k = data_ + 1; data_ > 0 && k < rows_.size(); ++k) {
+      const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
+      if (!header->IsText() || CountKnownWords(header->cells) < 2 ||
+          std::ranges::find(rows_.begin(), header, header->text, &Row::text) != header) {
+        continue;
+      }
+      const auto below = std::count_if(header, rows_.end(), is_data);
+      if (kOneIn * std::count_if(rows_.begin(), header, is_data) > below) return;
+      data_ = static_cast<std::size_t>(std::find_if(header, rows_.end(), is_data) - rows_.begin());
+    }
+  }
+
+  /// Returns the cells of a row of text, one for each column of the data; nullopt when it is not
+  /// that.
+  std::optional<Strings> HeaderCells(const Row& row) const {
+    const bool by_blanks = layout_.delimiter == kBlanks;
+    // "Load 1" between blanks is words, of which few are numbers.
+    const bool is_sentence =
+        row.kinds.front() == Cell::Kind::kText && 2 * row.numbers < row.kinds.size();
+    if (!row.IsText() && !(by_blanks && is_sentence)) return std::nullopt;
+    // Rows may lack the last column, as that of comments or events.
+    const std::size_t columns = std::max(row.filled, rows_[data_].filled);
+    const std::size_t most = most_cells_ + (by_blanks ? 0 : 1);
+    if (row.IsText() && columns <= row.cells.size() && columns <= most) {
+      return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
+    }
+    return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
+  }
+
+  /// True for a row of text that names every column that mostly holds numbers.
+  bool NamesColumns(std::span<const std::string> cells) const {
+    for (std::size_t column = 0; column < layout_.mostly_numbers.size(); ++column) {
+      const bool is_named = column < cells.size() && !cells[column].empty();
+      if (layout_.mostly_numbers[column] && !is_named) return false;
+    }
+    return true;
+  }
+
+  /// Looks for names and units: the row above the data, or, where that is no header or one of
+  /// units, the nearest row above with a name for every column; of several the one with most known
+  /// words.
+  void FindNames() {
+    constexpr std::size_t kFarthest = 100;
+    const std::size_t begin = data_ - std::min(data_, kFarthest);
+    std::size_t header = data_;
+    std::size_t most = 0;
+    for (std::size_t k = data_; k-- > begin;) {
+      const Row& row = rows_[k];
+      const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
+      if (names_.empty() && may_be_data) break;
+      auto cells = HeaderCells(row);
+      if (!cells) continue;
+      if (IsUnitsRow(*cells)) {
+        const bool states = StatesUnits(cells->front());
+        if (!units_.empty() || (!states && !names_.empty())) continue;
+        if (states) cells->front().clear();
+        units_ = std::move(*cells);
+        layout_.units_row = row.text;
+        if (names_.empty()) header = k;
+        continue;
+      }
+      const std::size_t known = CountKnownWords(*cells);
+      const bool is_adjacent = k + 1 == data_ || (k + 1 == header && names_.empty());
+      const bool is_better = (most == 0 && known >= 2) || (names_.empty() && is_adjacent);
+      if (!is_better || (!is_adjacent && !NamesColumns(*cells))) continue;
+      most = known;
+      header = k;
+      names_ = std::move(*cells);
+      layout_.names_row = row.text;
+    }
+    if (names_.empty() && !std::ranges::all_of(units_, LooksLikeUnit)) {
+      names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
+      layout_.names_row = std::exchange(layout_.units_row, {});
+    }
+    if (data_ == 0) return;
+    const std::string& file = layout_.header.file;
+    if (header == data_) {
+      const Row& row = rows_[data_ - 1];
+      if (row.cells.back().starts_with('"')) {
+        Refuse("{}:{}: a quotation mark opened here is never closed", file, row.line);
+      }
+      Refuse(
+          "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
+          "every column, or begin the line with '#' if it is a comment{}",
+          file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s",
+          rows_[data_].line,
+          layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
+              ? "; or leave out commas that separate thousands or are decimal marks"
+              : "");
+    }
+    layout_.header.header_line = rows_[header].line;
+    if (header > 0) {
+      layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
+                                                 rows_[header].line, header,
+                                                 header == 1 ? "" : "s"));
+    }
+  }
+
+  /// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
+  void FindNamesIn(Row comment) {
+    comment.text.remove_prefix(comment.text.find('#') + 1);
+    if (!comment.ReadCells(layout_.delimiter)) return;
+    auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
+                                                  : comment.NamesByBlanks(columns_);
+    if (!cells || CountKnownWords(*cells) < 2) return;
+    names_ = *std::move(cells);
+    layout_.header.header_line = comment.line;
+  }
+
+  /// Returns what is said of a column whose marks seem to separate thousands: all of them have
+  /// three digits behind them, and the other numbers are whole and below 1000.
+  std::string GroupedIn(std::size_t column) const {
+    const Row* grouped = nullptr;  // the first
+    bool has_whole = false;
+    for (const Row& row : std::span(rows_).subspan(data_)) {
+      if (column >= row.cells.size() || row.kinds[column] != Cell::Kind::kNumber) continue;
+      std::string_view number = row.cells[column];
+      if (number.starts_with('-')) number.remove_prefix(1);
+      const std::size_t mark = number.find_first_not_of("0123456789");
+      const std::string_view group = number.substr(std::min(mark, number.size() - 1) + 1);
+      if (number.substr(0, mark).size() > 3) return "";
+      if (mark == std::string_view::npos) {
+        has_whole = has_whole || number != "0";
+      } else if ((number[mark] == '.' || number[mark] == ',') && group.size() == 3 &&
+                 !number.starts_with('0') &&
+                 group.find_first_not_of("0123456789") == std::string_view::npos) {
+        if (grouped == nullptr) grouped = &row;
+      } else {
+        return "";
+      }
+    }
+    if (grouped == nullptr || !has_whole) return "";
+    return fmt::format(
+        "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have three "
+        "digits behind them and the other numbers are whole: write it without; if it is a decimal "
+        "mark, multiply the column by 1, as in ",
+        layout_.header.file, grouped->line, column + 1, grouped->cells[column]);
+  }
 
   Layout layout_;
   Strings names_, units_;  // one a column, or none
@@ -125,260 +372,6 @@ class Reading {
   std::size_t most_cells_ = 0;  // of a row with data
   std::size_t data_ = 0;        // index of the first data row
 };
-
-Reading::Reading(std::span<const Row> sampled, char delimiter) {
-  layout_.delimiter = delimiter;
-  std::map<std::size_t, std::size_t> rows_with_columns;
-  for (Row row : sampled) {
-    if (!row.ReadCells(delimiter)) continue;
-    if (row.HasData()) ++rows_with_columns[row.columns];
-    rows_.push_back(std::move(row));
-  }
-  std::size_t most_rows = 0;
-  for (const auto& [columns, rows] : rows_with_columns) {
-    if (rows < most_rows) continue;
-    most_rows = rows;
-    columns_ = columns;
-  }
-  std::vector<std::size_t> numbers;
-  for (const Row& row : rows_) {
-    if (!row.HasData()) continue;
-    most_cells_ = std::max(most_cells_, row.columns);
-    numbers.resize(std::max(numbers.size(), row.kinds.size()));
-    layout_.holds_numbers.resize(numbers.size());
-    for (std::size_t column = 0; column < row.kinds.size(); ++column) {
-      const Cell::Kind kind = row.kinds[column];
-      if (Row::IsNumber(kind)) ++numbers[column];
-      if (kind != Cell::Kind::kText && kind != Cell::Kind::kMissing) {
-        layout_.holds_numbers[column] = true;
-      }
-    }
-    if (row.columns != columns_) continue;
-    score_ += static_cast<long>(row.numbers) - std::ranges::count(row.kinds, Cell::Kind::kBroken);
-  }
-  for (const std::size_t count : numbers) layout_.mostly_numbers.push_back(2 * count > most_rows);
-}
-
-Layout Reading::Find(const std::string& file, const Row* comment) && {
-  layout_.header.file = file;
-  data_ = FirstDataRow();
-  PassResults();
-  layout_.data_offset = rows_[data_].offset;
-  layout_.data_line = rows_[data_].line;
-  FindNames();
-  if (data_ == 0 && comment != nullptr) FindNamesIn(*comment);
-  // LabVIEW states the time between rows in place of times.
-  const bool has_no_times =
-      !names_.empty() && names_.front() == "X_Value" && !layout_.mostly_numbers[0];
-  for (const Row& row : std::span(rows_).first(has_no_times ? data_ : 0)) {
-    if (row.cells.front() != "Delta_X" || row.cells.size() < 2) continue;
-    const double step = ReadCell(row.cells[1], true).value;
-    if (step > 0) layout_.header.interval = step;
-  }
-
-  std::vector<TableColumn>& columns = layout_.header.columns;
-  columns.resize(std::max({columns_, names_.size(), units_.size()}));
-  layout_.holds_numbers.resize(columns.size());
-  layout_.mostly_numbers.resize(columns.size());
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (k < names_.size()) columns[k].name = names_[k];
-    if (k < units_.size()) columns[k].unit = units_[k];
-    columns[k].grouped = GroupedIn(k);
-    // "Disp;mm;Force;N": a column of no numbers, named as a unit, has that of the one before.
-    const bool may_be = k > 0 && layout_.mostly_numbers[k - 1] && !layout_.mostly_numbers[k];
-    if (may_be && columns[k - 1].unit.empty() && LooksLikeUnit(columns[k].name)) {
-      columns[k - 1].unit = columns[k].name;
-    }
-  }
-  return std::move(layout_);
-}
-
-/// Returns what is said of a column whose marks seem to separate thousands: all of them have three
-/// digits behind them, and the other numbers are whole and below 1000.
-std::string Reading::GroupedIn(std::size_t column) const {
-  const Row* grouped = nullptr;  // the first
-  bool has_whole = false;
-  for (const Row& row : std::span(rows_).subspan(data_)) {
-    if (column >= row.cells.size() || row.kinds[column] != Cell::Kind::kNumber) continue;
-    std::string_view number = row.cells[column];
-    if (number.starts_with('-')) number.remove_prefix(1);
-    const std::size_t mark = number.find_first_not_of("0123456789");
-    const std::string_view group = number.substr(std::min(mark, number.size() - 1) + 1);
-    if (number.substr(0, mark).size() > 3) return "";
-    if (mark == std::string_view::npos) {
-      has_whole = has_whole || number != "0";
-    } else if ((number[mark] == '.' || number[mark] == ',') && group.size() == 3 &&
-               !number.starts_with('0') &&
-               group.find_first_not_of("0123456789") == std::string_view::npos) {
-      if (grouped == nullptr) grouped = &row;
-    } else {
-      return "";
-    }
-  }
-  if (grouped == nullptr || !has_whole) return "";
-  return fmt::format(
-      "{}:{}:{}: '{}' has a mark that separates thousands, as all marks of the column have three "
-      "digits behind them and the other numbers are whole: write it without; if it is a decimal "
-      "mark, multiply the column by 1, as in ",
-      layout_.header.file, grouped->line, column + 1, grouped->cells[column]);
-}
-
-std::size_t Reading::FirstDataRow() const {
-  const auto has_text_among_numbers = [&](const Row& row) {
-    for (std::size_t column = 0; column < row.kinds.size(); ++column) {
-      if (layout_.mostly_numbers[column] && row.kinds[column] == Cell::Kind::kText) return true;
-    }
-    return false;
-  };
-  // A header of LabVIEW has rows of numbers.
-  const auto names =
-      std::ranges::find_if(rows_, [](const Row& row) { return row.text.starts_with("X_Value"); });
-  std::optional<std::size_t> any;
-  for (auto row = names == rows_.end() ? rows_.begin() : names; row != rows_.end(); ++row) {
-    // One that has more than most, as an event of a logger, stands below a header that names them.
-    const bool is_named = row != rows_.begin() && row->cells.size() > columns_ &&
-                          (row - 1)->IsText() && (row - 1)->cells.size() >= row->cells.size();
-    if (!IsData(*row) && !(row->HasData() && is_named)) continue;
-    const auto place = static_cast<std::size_t>(row - rows_.begin());
-    if (!has_text_among_numbers(*row)) return place;
-    if (!any) any = place;
-  }
-  // Text in every row, each time in another column: the first row is as good as any.
-  return any.value_or(0);
-}
-
-/// Passes over a table of results above the data: a few rows of numbers below a header of their
-/// own, before one that is another.
-void Reading::PassResults() {
-  constexpr std::ptrdiff_t kOneIn = 10;
-  const auto is_data = [&](const Row& row) { return IsData(row); };
-  for (std::size_t k = data_ + 1; data_ > 0 && k < rows_.size(); ++k) {
-    const auto header = rows_.begin() + static_cast<std::ptrdiff_t>(k);
-    if (!header->IsText() || CountKnownWords(header->cells) < 2 ||
-        std::ranges::find(rows_.begin(), header, header->text, &Row::text) != header) {
-      continue;
-    }
-    const auto below = std::count_if(header, rows_.end(), is_data);
-    if (kOneIn * std::count_if(rows_.begin(), header, is_data) > below) return;
-    data_ = static_cast<std::size_t>(std::find_if(header, rows_.end(), is_data) - rows_.begin());
-  }
-}
-
-/// Returns the cells of a row of text, one for each column of the data; nullopt when it is not
-/// that.
-std::optional<Strings> Reading::HeaderCells(const Row& row) const {
-  const bool by_blanks = layout_.delimiter == kBlanks;
-  // "Load 1" between blanks is words, of which few are numbers.
-  const bool is_sentence =
-      row.kinds.front() == Cell::Kind::kText && 2 * row.numbers < row.kinds.size();
-  if (!row.IsText() && !(by_blanks && is_sentence)) return std::nullopt;
-  // Rows may lack the last column, as that of comments or events.
-  const std::size_t columns = std::max(row.filled, rows_[data_].filled);
-  const std::size_t most = most_cells_ + (by_blanks ? 0 : 1);
-  if (row.IsText() && columns <= row.cells.size() && columns <= most) {
-    return Strings(row.cells.begin(), row.cells.begin() + static_cast<std::ptrdiff_t>(columns));
-  }
-  return by_blanks ? row.NamesByBlanks(columns_) : std::nullopt;
-}
-
-/// True for a row of text that names every column that mostly holds numbers.
-bool Reading::NamesColumns(std::span<const std::string> cells) const {
-  for (std::size_t column = 0; column < layout_.mostly_numbers.size(); ++column) {
-    const bool is_named = column < cells.size() && !cells[column].empty();
-    if (layout_.mostly_numbers[column] && !is_named) return false;
-  }
-  return true;
-}
-
-/// Looks for names and units: the row above the data, or, where that is no header or one of units,
-/// the nearest row above with a name for every column; of several the one with most known words.
-void Reading::FindNames() {
-  constexpr std::size_t kFarthest = 100;
-  const std::size_t begin = data_ - std::min(data_, kFarthest);
-  std::size_t header = data_;
-  std::size_t most = 0;
-  for (std::size_t k = data_; k-- > begin;) {
-    const Row& row = rows_[k];
-    const bool may_be_data = row.columns >= columns_ && 2 * row.numbers >= row.columns;
-    if (names_.empty() && may_be_data) break;
-    auto cells = HeaderCells(row);
-    if (!cells) continue;
-    if (IsUnitsRow(*cells)) {
-      const bool states = StatesUnits(cells->front());
-      if (!units_.empty() || (!states && !names_.empty())) continue;
-      if (states) cells->front().clear();
-      units_ = std::move(*cells);
-      layout_.units_row = row.text;
-      if (names_.empty()) header = k;
-      continue;
-    }
-    const std::size_t known = CountKnownWords(*cells);
-    const bool is_adjacent = k + 1 == data_ || (k + 1 == header && names_.empty());
-    const bool is_better = (most == 0 && known >= 2) || (names_.empty() && is_adjacent);
-    if (!is_better || (!is_adjacent && !NamesColumns(*cells))) continue;
-    most = known;
-    header = k;
-    names_ = std::move(*cells);
-    layout_.names_row = row.text;
-  }
-  if (names_.empty() && !std::ranges::all_of(units_, LooksLikeUnit)) {
-    names_ = std::exchange(units_, {});  // one of the names is a symbol of a unit
-    layout_.names_row = std::exchange(layout_.units_row, {});
-  }
-  if (data_ == 0) return;
-  const std::string& file = layout_.header.file;
-  if (header == data_) {
-    const Row& row = rows_[data_ - 1];
-    if (row.cells.back().starts_with('"')) {
-      Refuse("{}:{}: a quotation mark opened here is never closed", file, row.line);
-    }
-    Refuse(
-        "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-        "every column, or begin the line with '#' if it is a comment{}",
-        file, row.line, ForMessage(row.text), columns_, columns_ == 1 ? "" : "s", rows_[data_].line,
-        layout_.delimiter == ',' && row.columns > 1 && row.columns < columns_
-            ? "; or leave out commas that separate thousands or are decimal marks"
-            : "");
-  }
-  layout_.header.header_line = rows_[header].line;
-  if (header > 0) {
-    layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
-                                               rows_[header].line, header, header == 1 ? "" : "s"));
-  }
-}
-
-/// "# time [s]  x [mm]": a header behind a mark of a comment, if it names columns as one does.
-void Reading::FindNamesIn(Row comment) {
-  comment.text.remove_prefix(comment.text.find('#') + 1);
-  if (!comment.ReadCells(layout_.delimiter)) return;
-  auto cells = comment.cells.size() == columns_ ? std::optional(comment.cells)
-                                                : comment.NamesByBlanks(columns_);
-  if (!cells || CountKnownWords(*cells) < 2) return;
-  names_ = *std::move(cells);
-  layout_.header.header_line = comment.line;
-}
-
-/// The whole file is at fault: its first row that cannot be a header, and the cell that should have
-/// been a number, stand for it.
-void Reading::ThrowNoNumbers(const std::string& file) const {
-  const auto data = std::ranges::find(rows_, std::size_t{0}, &Row::texts);
-  if (data == rows_.end() && rows_.size() == 1) {
-    Refuse(
-        "{}:{}: the file ends after its header, with no row of numbers below it: export the data "
-        "too",
-        file, rows_.front().line);
-  }
-  const Row& row = data == rows_.end() ? rows_.back() : *data;
-  const auto cell =
-      std::ranges::find_if(row.kinds, [](auto kind) { return kind != Cell::Kind::kNumber; }) -
-      row.kinds.begin();
-  Refuse(
-      "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected columns "
-      "of numbers under an optional header, between tabs, ';', blanks, or commas where these are "
-      "no decimal marks{}",
-      file, row.line, cell + 1, ForMessage(row.cells[static_cast<std::size_t>(cell)]), rows_.size(),
-      row.text == "---" ? "; of rostopic echo, write it by rostopic echo -p" : "");
-}
 
 /// The delimiter that a first line for spreadsheets states, "sep=;"; '\0' where there is none.
 char StatedDelimiter(std::string_view row) {

@@ -83,13 +83,102 @@ class RecordBuilder {
   /// Appends the rows of a table, up to one that is refused; those without a number in a column
   /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
-  std::string Add(const CsvTable& table, Samples& samples);
+  std::string Add(const CsvTable& table, Samples& samples) {
+    const std::array columns = {&samples.displacement, &samples.force, &samples.time,
+                                &samples.normal_load};
+    std::array<double, columns.size()> values{};
+    auto block = table.blocks.begin();
+    for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
+      if (block != table.blocks.end() && row == *block) {
+        times_.NextPiece();
+        ++block;
+      }
+      bool is_whole = true;
+      for (const Quantity& quantity : quantities_) {
+        double& value = values[static_cast<std::size_t>(quantity.role)];
+        value = quantity.ValueIn(table, row);
+        if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
+        is_whole = is_whole && std::isfinite(value);
+      }
+      if (!is_whole || (file_.time && !Follows(values[2]))) {
+        bool is_missing = false;
+        const std::string fault = FaultOf(table, row, is_missing);
+        if (!is_missing && !skip_broken_) return fault;
+        if (left_out_.count++ == 0) left_out_.fault = fault;
+        continue;
+      }
+      for (const Quantity& quantity : quantities_) {
+        const auto k = static_cast<std::size_t>(quantity.role);
+        columns[k]->push_back(values[k]);
+      }
+      if (!file_.time && interval_ > 0) {
+        samples.time.push_back(static_cast<double>(rows_) * interval_);
+      }
+      samples.lines.push_back(table.lines[row]);
+    }
+    // One in a hundred, rounded up from a hundred on.
+    constexpr std::size_t kOneIn = 100;
+    const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
+    if (skip_broken_ || left_out_.count <= most) return "";
+    return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
+                       left_out_.fault, left_out_.count, rows_);
+  }
+
   [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
 
  private:
-  ChosenColumn Choose(const ColumnNames& names, const Quantity& quantity, const std::string& text);
-  bool Follows(double& time);
-  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const;
+  /// @param text  by which it was chosen
+  ChosenColumn Choose(const ColumnNames& names, const Quantity& quantity, const std::string& text) {
+    const Role role = quantity.role;
+    const bool is_plain = quantity.is_plain();
+    const std::size_t first = quantity.first_column();
+    if (is_plain && (role == Role::kDisplacement || role == Role::kForce)) {
+      RequireNoSignBit(names, quantity);
+    }
+    const std::vector<TableColumn>& columns = names.table().columns;
+    if (is_plain && !columns[first].grouped.empty()) {
+      Refuse("{}{} '#{}*1 [{}]'", columns[first].grouped, RulesOf(role).option, first + 1,
+             quantity.unit.symbol);
+    }
+    for (const Quantity::Term& term : quantity.terms) {
+      if (columns[term.column].values.empty())
+        static_cast<void>(names.table().Numbers(term.column));
+      if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
+    }
+    return {.name = is_plain ? columns[first].name : text,
+            .index = first + 1,
+            .unit = quantity.unit.symbol};
+  }
+
+  /// Converts a time.
+  /// @returns false where it is before the last
+  bool Follows(double& time) {
+    time = times_.Next(time);
+    time_above_ = std::exchange(last_time_, time);
+    if (time < time_above_) return false;
+    time = quantities_[2].unit.ToSi(time);
+    return std::isfinite(time);
+  }
+
+  /// Describes what is wrong with a row; of cells, the first of their column that are at fault so.
+  std::string FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
+    for (const std::size_t column : wanted_) {
+      const TableColumn& of = table.columns[column];
+      if (IsNumber(of.values[row])) continue;
+      is_missing = std::isnan(of.values[row]);
+      return is_missing ? of.missing : of.broken;
+    }
+    for (const Quantity& quantity : quantities_) {
+      if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
+    }
+    const Quantity& time = quantities_[2];  // the only fault that is left
+    return fmt::format(
+        "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort "
+        "the "
+        "rows, split the file where a clock starts again, or rename the column if it holds no time",
+        table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
+        time_above_, time.unit.symbol);
+  }
 
   RecordFile file_;
   std::vector<Quantity> quantities_;
@@ -102,99 +191,6 @@ class RecordBuilder {
   double last_time_ = -std::numeric_limits<double>::infinity();
   double time_above_ = 0.0;  // the one before the last
 };
-
-/// @param text  by which it was chosen
-ChosenColumn RecordBuilder::Choose(const ColumnNames& names, const Quantity& quantity,
-                                   const std::string& text) {
-  const Role role = quantity.role;
-  const bool is_plain = quantity.is_plain();
-  const std::size_t first = quantity.first_column();
-  if (is_plain && (role == Role::kDisplacement || role == Role::kForce)) {
-    RequireNoSignBit(names, quantity);
-  }
-  const std::vector<TableColumn>& columns = names.table().columns;
-  if (is_plain && !columns[first].grouped.empty()) {
-    Refuse("{}{} '#{}*1 [{}]'", columns[first].grouped, RulesOf(role).option, first + 1,
-           quantity.unit.symbol);
-  }
-  for (const Quantity::Term& term : quantity.terms) {
-    if (columns[term.column].values.empty()) static_cast<void>(names.table().Numbers(term.column));
-    if (std::ranges::find(wanted_, term.column) == wanted_.end()) wanted_.push_back(term.column);
-  }
-  return {.name = is_plain ? columns[first].name : text,
-          .index = first + 1,
-          .unit = quantity.unit.symbol};
-}
-
-std::string RecordBuilder::Add(const CsvTable& table, Samples& samples) {
-  const std::array columns = {&samples.displacement, &samples.force, &samples.time,
-                              &samples.normal_load};
-  std::array<double, columns.size()> values{};
-  auto block = table.blocks.begin();
-  for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
-    if (block != table.blocks.end() && row == *block) {
-      times_.NextPiece();
-      ++block;
-    }
-    bool is_whole = true;
-    for (const Quantity& quantity : quantities_) {
-      double& value = values[static_cast<std::size_t>(quantity.role)];
-      value = quantity.ValueIn(table, row);
-      if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
-      is_whole = is_whole && std::isfinite(value);
-    }
-    if (!is_whole || (file_.time && !Follows(values[2]))) {
-      bool is_missing = false;
-      const std::string fault = FaultOf(table, row, is_missing);
-      if (!is_missing && !skip_broken_) return fault;
-      if (left_out_.count++ == 0) left_out_.fault = fault;
-      continue;
-    }
-    for (const Quantity& quantity : quantities_) {
-      const auto k = static_cast<std::size_t>(quantity.role);
-      columns[k]->push_back(values[k]);
-    }
-    if (!file_.time && interval_ > 0) {
-      samples.time.push_back(static_cast<double>(rows_) * interval_);
-    }
-    samples.lines.push_back(table.lines[row]);
-  }
-  // One in a hundred, rounded up from a hundred on.
-  constexpr std::size_t kOneIn = 100;
-  const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
-  if (skip_broken_ || left_out_.count <= most) return "";
-  return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
-                     left_out_.fault, left_out_.count, rows_);
-}
-
-/// Converts a time.
-/// @returns false where it is before the last
-bool RecordBuilder::Follows(double& time) {
-  time = times_.Next(time);
-  time_above_ = std::exchange(last_time_, time);
-  if (time < time_above_) return false;
-  time = quantities_[2].unit.ToSi(time);
-  return std::isfinite(time);
-}
-
-/// Describes what is wrong with a row; of cells, the first of their column that are at fault so.
-std::string RecordBuilder::FaultOf(const CsvTable& table, std::size_t row, bool& is_missing) const {
-  for (const std::size_t column : wanted_) {
-    const TableColumn& of = table.columns[column];
-    if (IsNumber(of.values[row])) continue;
-    is_missing = std::isnan(of.values[row]);
-    return is_missing ? of.missing : of.broken;
-  }
-  for (const Quantity& quantity : quantities_) {
-    if (std::string fault = quantity.TooLarge(table, row); !fault.empty()) return fault;
-  }
-  const Quantity& time = quantities_[2];  // the only fault that is left
-  return fmt::format(
-      "{}:{}:{}: time = {} {} is before the {} {} of the row above: times must not fall; sort the "
-      "rows, split the file where a clock starts again, or rename the column if it holds no time",
-      table.file, table.lines[row], time.first_column() + 1, last_time_, time.unit.symbol,
-      time_above_, time.unit.symbol);
-}
 
 namespace {
 

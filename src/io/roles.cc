@@ -306,7 +306,7 @@ class RoleAssigner {
 
   /// Refuses a coefficient of friction, one by its name or else by its numbers, as the force.
   [[noreturn]] void ThrowCoefficient(std::size_t column) const {
-    const bool is_named = names_[column].name.evidence.is_coefficient;
+    const bool is_named = names_[column].name.evidence.names(Role::kFrictionCoefficient);
     Refuse(
         "{}:{}: {} {}: choose the force with --force, or multiply by the normal load, where that "
         "is 50 N by --force '#{}*50 [N]'{}",
@@ -333,13 +333,13 @@ class RoleAssigner {
     const bool may_be =
         of.name.evidence.word == "friction" && of.unit.empty() && is_low &&
         std::ranges::any_of(std::views::iota(std::size_t{0}, names_.size()), is_load);
-    if (of.name.evidence.is_coefficient || may_be) ThrowCoefficient(column);
+    if (of.name.evidence.names(Role::kFrictionCoefficient) || may_be) ThrowCoefficient(column);
   }
 
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
     for (std::size_t column = 0; column < names_.size(); ++column) {
-      if (role == Role::kForce && names_[column].name.evidence.is_coefficient) {
+      if (role == Role::kForce && names_[column].name.evidence.names(Role::kFrictionCoefficient)) {
         ThrowCoefficient(column);
       }
       const TableColumn& of = names_.table().columns[column];

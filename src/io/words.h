@@ -15,13 +15,6 @@ struct WordRow {
   std::string_view words;  ///< separated by '|'; '*' stands for any beginning of a word
 };
 
-inline constexpr std::string_view kCoefficients =
-    "coefficient of friction|friction coefficient|coef of friction|coeff of friction|friction "
-    "coeff|"
-    "cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|*reibkoeffizient|*reibungskoeffizient|"
-    "coefficient de frottement|coeficiente de fricción|coeficiente de friccion|"
-    "coeficiente de rozamiento|coeficiente de atrito|coefficiente di attrito|摩擦系数|摩擦係数";
-
 // One-letter words count as they are written, and only as a whole name.
 inline constexpr std::array kWords = {
     WordRow{Role::kDisplacement, 0, false,
@@ -78,7 +71,15 @@ inline constexpr std::array kWords = {
         "pressure|*druck|strain|stress|*dehnung|*spannung|energy|work|power|frequency|"
         "humidity|温度|压力|current|strom|stiffness|tangential stiffness|contact stiffness|"
         "secant stiffness|tangent stiffness|compliance|contact compliance"},
-    WordRow{Role::kOther, 0, false, kCoefficients},
+    WordRow{
+        Role::kFrictionCoefficient, 0, false,
+        "coefficient of friction|friction coefficient|coef of friction|coeff of friction|friction "
+        "coeff|"
+        "cof|mu|µ|μ|reibwert|reibbeiwert|reibungszahl|reibzahl|*reibkoeffizient|*"
+        "reibungskoeffizient|"
+        "coefficient de frottement|coeficiente de fricción|coeficiente de friccion|"
+        "coeficiente de rozamiento|coeficiente de atrito|coefficiente di "
+        "attrito|摩擦系数|摩擦係数"},
     WordRow{Role::kOther, 1, false, "kt|k|K"},
 };
 
