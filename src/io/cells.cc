@@ -27,18 +27,6 @@ bool IsMissingMark(std::string_view text) {
   return std::ranges::find(kMissingMarks, LowerCase(text)) != kMissingMarks.end();
 }
 
-Cell ReadWithPoint(std::string_view digits, bool negative) {
-  double magnitude = 0.0;
-  const auto [stop, error] = FromChars(digits.data(), digits.data() + digits.size(), magnitude);
-  if (stop != digits.data() + digits.size()) return {.kind = Cell::Kind::kBroken};
-  if (error == std::errc::result_out_of_range) {
-    // from_chars does not say on which side; only a negative exponent can make a number too small.
-    if (LowerCase(digits).find("e-") == std::string::npos) return {.kind = Cell::Kind::kTooLarge};
-    magnitude = 0.0;
-  }
-  return {.kind = Cell::Kind::kNumber, .value = negative ? -magnitude : magnitude};
-}
-
 /// Takes three whole numbers with one of some signs between them off a text: "10:11:12".
 /// @returns none, and leaves the text, where it does not begin with them
 std::optional<std::array<int, 3>> TakeThree(std::string_view& text, std::string_view signs) {
@@ -155,19 +143,28 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
     const bool is_infinite = lower == "inf" || lower == "infinity";
     return {.kind = is_infinite ? Cell::Kind::kBroken : Cell::Kind::kText};
   }
-  const std::size_t comma = decimal_comma ? digits.find(',') : std::string_view::npos;
-  Cell cell{.kind = Cell::Kind::kBroken};
-  if (comma == std::string_view::npos) {
-    cell = ReadWithPoint(digits, negative);
-    if (digits.find('.') != std::string_view::npos) cell.decimal_mark = '.';
-  } else if (comma + 1 < digits.size() && IsDigit(digits[comma + 1]) &&
-             digits.find('.') == std::string_view::npos) {
-    std::string with_point(digits);
+  std::string with_point(digits);
+  char mark = digits.find('.') == std::string_view::npos ? '\0' : '.';
+  if (const std::size_t comma = digits.find(',');
+      decimal_comma && mark == '\0' && comma < digits.size() - 1 && IsDigit(digits[comma + 1])) {
     with_point[comma] = '.';
-    cell = ReadWithPoint(with_point, negative);
-    cell.decimal_mark = ',';
+    mark = ',';
   }
-  if (cell.kind != Cell::Kind::kBroken) return cell;
+  const char* const end = with_point.data() + with_point.size();
+  double magnitude = 0.0;
+  const auto [stop, error] = FromChars(with_point.data(), end, magnitude);
+  // from_chars does not say on which side a number is out of range; only a negative exponent can
+  // make one too small.
+  const bool is_beyond = error == std::errc::result_out_of_range;
+  if (is_beyond) magnitude = 0.0;
+  if (stop == end && is_beyond && LowerCase(digits).find("e-") == std::string::npos) {
+    return {.kind = Cell::Kind::kTooLarge, .decimal_mark = mark};
+  }
+  if (stop == end) {
+    return {.kind = Cell::Kind::kNumber,
+            .value = negative ? -magnitude : magnitude,
+            .decimal_mark = mark};
+  }
   if (const std::optional<double> seconds = ReadClock(text)) {
     return {.kind = Cell::Kind::kClock, .value = *seconds};
   }

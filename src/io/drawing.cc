@@ -89,11 +89,45 @@ class Axis {
     return from_pixel + (At(value) - from_) / (to_ - from_) * (to_pixel - from_pixel);
   }
   [[nodiscard]] const Values& tics() const { return tics_; }
-  [[nodiscard]] std::string Label(double tic) const;
+  [[nodiscard]] std::string Label(double tic) const {
+    if (tic == 0 || std::abs(tic) < 1e-9 * step_) return "0";
+    double size = std::abs(tic);
+    for (const double other : tics_) size = std::max(size, std::abs(other));
+    const bool is_far = size >= 1e5 || (step_ > 0 ? size : std::abs(tics_.front())) < 1e-3;
+    if (is_far) return WithPower(tic, step_ > 0);
+    if (step_ == 0) return fmt::format("{:.6g}", tic);
+    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step_) - 1e-9)));
+    return fmt::format("{}{:.{}f}", tic < 0 ? "−" : "", std::abs(tic), decimals);
+  }
 
  private:
   [[nodiscard]] double At(double value) const { return logarithmic_ ? std::log10(value) : value; }
-  void PlaceTics();
+
+  void PlaceTics() {
+    constexpr double kTics = 5.5;
+    constexpr double kShortest = 0.75;  // of the distance between that many
+    const double span = to_ - from_;
+    if (logarithmic_ && span > 0.6) {
+      const double step = std::ceil(span / 8);
+      for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
+        for (const double multiple : {1.0, 2.0, 5.0}) {
+          const double at = power + std::log10(multiple);
+          if ((multiple > 1 && span > 2.5) || at < from_ || at > to_) continue;
+          tics_.push_back(multiple * std::pow(10.0, power));
+        }
+      }
+      return;
+    }
+    const double from = logarithmic_ ? std::pow(10.0, from_) : from_;
+    const double to = logarithmic_ ? std::pow(10.0, to_) : to_;
+    const double rough = (to - from) / kTics;
+    const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    step_ = 10 * power;
+    for (const double multiple : {5.0, 2.0, 1.0}) {
+      if (multiple * power >= kShortest * rough) step_ = multiple * power;
+    }
+    for (double k = std::ceil(from / step_); k * step_ <= to; ++k) tics_.push_back(k * step_);
+  }
 
   bool logarithmic_;
   double from_;
@@ -101,43 +135,6 @@ class Axis {
   double step_ = 0.0;  // between tics; 0 of powers of ten
   Values tics_;
 };
-
-void Axis::PlaceTics() {
-  constexpr double kTics = 5.5;
-  constexpr double kShortest = 0.75;  // of the distance between that many
-  const double span = to_ - from_;
-  if (logarithmic_ && span > 0.6) {
-    const double step = std::ceil(span / 8);
-    for (double power = step * std::floor(from_ / step); power <= to_; power += step) {
-      for (const double multiple : {1.0, 2.0, 5.0}) {
-        const double at = power + std::log10(multiple);
-        if ((multiple > 1 && span > 2.5) || at < from_ || at > to_) continue;
-        tics_.push_back(multiple * std::pow(10.0, power));
-      }
-    }
-    return;
-  }
-  const double from = logarithmic_ ? std::pow(10.0, from_) : from_;
-  const double to = logarithmic_ ? std::pow(10.0, to_) : to_;
-  const double rough = (to - from) / kTics;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  step_ = 10 * power;
-  for (const double multiple : {5.0, 2.0, 1.0}) {
-    if (multiple * power >= kShortest * rough) step_ = multiple * power;
-  }
-  for (double k = std::ceil(from / step_); k * step_ <= to; ++k) tics_.push_back(k * step_);
-}
-
-std::string Axis::Label(double tic) const {
-  if (tic == 0 || std::abs(tic) < 1e-9 * step_) return "0";
-  double size = std::abs(tic);
-  for (const double other : tics_) size = std::max(size, std::abs(other));
-  const bool is_far = size >= 1e5 || (step_ > 0 ? size : std::abs(tics_.front())) < 1e-3;
-  if (is_far) return WithPower(tic, step_ > 0);
-  if (step_ == 0) return fmt::format("{:.6g}", tic);
-  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step_) - 1e-9)));
-  return fmt::format("{}{:.{}f}", tic < 0 ? "−" : "", std::abs(tic), decimals);
-}
 
 /// Returns the points to draw, in order: of runs of consecutive points those with the least and
 /// greatest coordinates; all, where there are at most `most`.
