@@ -117,17 +117,20 @@ std::string_view CellCursor::Take() {
     return cell;
   }
   unescaped_.clear();
+  const auto add = [this](char character) {
+    unescaped_ += character == '\n' || character == '\r' ? ' ' : character;
+  };
   for (++end; end != end_; ++end) {
     if (*end == '"') {
       if (end + 1 == end_ || end[1] != '"') break;
       ++end;
     }
-    unescaped_ += *end == '\n' || *end == '\r' ? ' ' : *end;
+    add(*end);
   }
   is_open_ = end == end_;
   has_next_ = !is_open_;
-  if (is_open_) return {at_, static_cast<std::size_t>(end_ - at_)};
-  for (++end; end != end_ && !IsDelimiter(*end); ++end) unescaped_ += *end;
+  if (is_open_) return unescaped_.insert(0, 1, '"');
+  for (++end; end != end_ && !IsDelimiter(*end); ++end) add(*end);
   GoBehind(end);
   return Trimmed(unescaped_);
 }

@@ -238,26 +238,32 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
 }
 
-/// Returns the times of a table, by which another is joined to it; none where it has none.
-std::vector<double> TimesOf(const CsvTable& table, const std::string& given) {
+/// Returns the time of a table, by which another is joined to it, where it has one.
+std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
   Quantity time = names.Read(given, Role::kTime);
   if (time.terms.empty()) {
     const std::optional<std::size_t> best = names.Best(Role::kTime);
-    if (!best) return {};
+    if (!best) return std::nullopt;
     time.terms = {{*best, 1.0}};
   }
   std::vector<std::string> notes;
   names.FindUnitOf(time, false, notes);
-  return time.Numbers(table);
+  return time;
 }
 
 /// Appends the columns of another file of the same test: at the times of the first, by straight
 /// lines, where both have a time, else row by row.
 void AddColumnsOf(CsvTable& table, const CsvTable& other, const std::string& given_time) {
-  const std::vector<double> times = TimesOf(table, given_time);
-  const std::vector<double> of_other = TimesOf(other, "");
-  const bool by_time = !times.empty() && !of_other.empty() && std::ranges::is_sorted(of_other);
+  const auto time_of_table = TimeOf(table, given_time);
+  const auto time_of_other = TimeOf(other, "");
+  std::vector<double> times;  // not finite in a row at fault
+  std::vector<double> of_other;
+  if (time_of_table && time_of_other) of_other = time_of_other->Numbers(other);
+  const bool by_time = !of_other.empty() && std::ranges::is_sorted(of_other);
+  for (std::size_t row = 0; by_time && row < table.rows(); ++row) {
+    times.push_back(time_of_table->unit.ToSi(time_of_table->ValueIn(table, row)));
+  }
   if (!by_time && table.rows() != other.rows()) {
     Refuse("--with: {} has {} rows and {} {}, and not both a time: give files of as many rows",
            table.file, table.rows(), other.file, other.rows());

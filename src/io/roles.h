@@ -30,11 +30,11 @@ struct Quantity {
     double weight;
   };
   Role role;
-  std::vector<Term> terms = {};  ///< none where only a unit is given
+  std::vector<Term> terms = {};  // none where only a unit is given
   double offset = -0.0;          ///< to which adding -0 makes -0
   bool is_scaled = false;        ///< a factor or an offset is given
-  std::string given_unit = {};   ///< "" where none is given
-  Unit unit = {};                ///< by ColumnNames::FindUnitOf()
+  std::string given_unit = {};   // "" where none is given
+  Unit unit = {};                // set by ColumnNames::FindUnitOf()
 
   [[nodiscard]] std::size_t first_column() const { return terms.front().column; }
   /// True if it is a column as it is.
@@ -56,8 +56,8 @@ class ColumnNames {
   /// A column, with what is evidence of its role.
   struct Column {
     ColumnName name;
-    std::string unit = {};        ///< in the name, or else of the units row
-    std::string other_unit = {};  ///< of the units row, where the name has another
+    std::string unit = {};        // in the name, or else of the units row
+    std::string other_unit = {};  // that of the units row, where the name has another
     std::optional<Dimension> dimension = {};
     bool is_numeric = false;   ///< half of its rows or more have a number
     bool is_clock = false;     ///< its numbers are times of day

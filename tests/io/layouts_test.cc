@@ -268,6 +268,9 @@ TEST(SampleRate, StandsInForATime) {
   RecordColumns columns;
   columns.sample_rate = 100.0;
   EXPECT_EQ(Read("x,F\n1,2\n2,3\n", columns).record.time, (Numbers{0.0, 0.01}));
+  columns.skip_broken_rows = true;
+  EXPECT_EQ(Read("x,F\n1,2\n2,3,4\n3,4\n", columns).record.time, (Numbers{0.0, 0.02}))
+      << "a row that is left out takes its time";
   columns.time = "x";
   EXPECT_THAT(Refusal("x,F\n1,2\n", columns), HasSubstr("exclude each other"));
 }
@@ -282,6 +285,11 @@ TEST(WithAnotherFile, JoinsColumnsRowByRowOrByTime) {
               HasSubstr("b.txt has 3 rows and"));
   columns.with = directory.Write("timed.txt", "t [ms],F [N]\n0,10\n2000,30\n").string();
   EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2\n2,3\n", columns).record.force, (Numbers{10, 20, 30}));
+  columns.with = directory.Write("millis.txt", "millis,F [N]\n0,10\n2000,30\n").string();
+  EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2\n2,3\n", columns).record.force, (Numbers{10, 20, 30}));
+  columns.with = directory.Write("timed.txt", "t [ms],F [N]\n0,10\n2000,30\n").string();
+  columns.skip_broken_rows = true;
+  EXPECT_EQ(Read("t [s],x [mm]\n0,1\n1,2,9\n2,3\n", columns).record.force, (Numbers{10, 30}));
   const auto later = directory.Write("c.txt", "t [s],x [mm]\n1.5,1\n2.5,2\n3.5,3\n");
   EXPECT_THAT(MessageOf<InputError>([&] { ReadRecord(later, columns); }),
               AllOf(HasSubstr("c.txt run from 1.5 to 3.5 s and those of"),

@@ -118,6 +118,12 @@ TEST(RecordReader, NotesWhatItAssumes) {
   EXPECT_EQ(
       Notes("time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n"),
       (Strings{"loop.csv: time 'time' (column 1) has no numbers in a unit of time: left out"}));
+  EXPECT_EQ(Notes("timestamp_ms,x [m],F [N]\n1709633472000,1.5,2.5\n"),
+            (Strings{"loop.csv: time 'timestamp_ms' (column 1) holds stamps since 1970: taken as "
+                     "seconds since the first"}));
+  EXPECT_EQ(Notes("millis,x [m],F [N]\n1,1.5,2.5\n"),
+            (Strings{"loop.csv: time 'millis' (column 1) names no unit: taken as ms; --time '1 "
+                     "[ms]' says so"}));
   EXPECT_EQ(Notes("time [week],x [m],F [N]\n1,1.5,2.5\n2,3.5,4.5\n"),
             (Strings{"loop.csv: time 'time [week]' (column 1) has no numbers in a unit of time: "
                      "left out"}));
@@ -180,6 +186,10 @@ x [m],F [kN]¶1,2¶1,1e307¶ | - | - | :3:2: force = 1e+307 kN is too large: mus
    in SI units
 x [m],F [N]¶1,2¶3,off¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or remove
    the row
+x [m],F [N]¶1,2¶3,off¶4,5,6¶ | - | - | :3:2: 'off' is not a number: write it like -1.5e-3, or
+   remove the row
+x [m],F [N]¶1,2¶# the unit of neither¶a,b,c¶3,off¶ | - | - | :4:1: 'a' is not a number: write it
+   like -1.5e-3, or remove the row; a further block of rows must have the columns of line 1 above it
 time,x [m],F [N]¶1,2,3¶nan,2,3¶ | - | - | :3:1: 'nan' is not a number: fill in the cell or remove
    the row; 1 of 2 rows are so: --broken-rows skip leaves them out
 )faults";

@@ -46,7 +46,7 @@ struct CsvTable {
   std::vector<std::size_t> blocks = {};  ///< rows below a header that is repeated among them
   std::size_t header_line = 0;           ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
-  std::vector<std::string> notes = {};  ///< what was assumed of the file, a sentence each
+  std::vector<std::string> notes = {};  ///< sentences on what was assumed of the file
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
   /// Returns the numbers of a column, one a row, valid as long as the table.
