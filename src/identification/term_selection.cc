@@ -218,7 +218,6 @@ class Selection {
       : records_(records), depth_(depth), result_(result) {}
 
   void Run(const FitOptions& options);
-  bool RunNamed(FitOptions options, std::span<const std::string> names, const FitResult* law);
   std::vector<std::string> Likely(const FitOptions& options, const FitResult& law,
                                   std::size_t most);
 
@@ -435,10 +434,6 @@ bool Selection::Add(std::size_t candidate, Model model) {
   considered.added = true;
   result_.added.push_back(considered.name);
   base_ = std::move(model);
-  // An initial state that was found without the term may be another with it.
-  Model anew = FitWith({}, nullptr);
-  const bool is_fit = IsFitted(anew.fit) && anew.fit.converged && !Leaves(anew.fit);
-  if (is_fit && Gains(anew.fit)) base_ = std::move(anew);
   return true;
 }
 
@@ -542,35 +537,6 @@ void Selection::FitLast(const FitResult& law) {
   result_.added.clear();
 }
 
-/// Adds the named terms, from the solution without them.
-/// @returns false where one of them cannot be fitted so
-bool Selection::RunNamed(FitOptions options, std::span<const std::string> names,
-                         const FitResult* law) {
-  result_.options = options;
-  std::vector<TermCandidate> candidates;
-  for (const std::string& name : names) {
-    TermCandidate candidate = CandidateOf(*FindTermGroup(name));
-    std::erase_if(candidate.choice.terms,
-                  [&](const std::string& term) { return std::erase(options.terms, term) == 0; });
-    candidates.push_back(std::move(candidate));
-  }
-  FitResult own;
-  if (law == nullptr) law = &(own = Fitter(options).Fit(records_, Depth::kErrors));
-  if (!IsFitted(*law) || !law->converged || !Begin(options, *law, std::move(candidates))) {
-    return false;
-  }
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const std::vector<Gain> gains = Score();
-    const auto gain = std::ranges::find(gains, c, &Gain::candidate);
-    if (gain == gains.end()) return false;
-    Model model = FitWith(candidates_[c].choice, &gain->score.values);
-    if (!IsFitted(model.fit) || !model.fit.converged) return false;
-    base_ = std::move(model);
-  }
-  result_.fit = FitFromHere();
-  return candidates_.size() == names.size() && IsFitted(result_.fit);
-}
-
 /// Fits each of the few candidates that promise most, and returns those that can be added, the one
 /// that gains most first; the gain of a column that follows the force counts twice.
 std::vector<std::string> Selection::Likely(const FitOptions& options, const FitResult& law,
@@ -615,15 +581,6 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
                           Depth depth) {
   TermSelection result;
   Selection(records, depth, result).Run(options);
-  return result;
-}
-
-TermSelection FitNamedTerms(std::span<const RecordView> records, const FitOptions& options,
-                            std::span<const std::string> names, Depth depth, const FitResult* law) {
-  TermSelection result;
-  if (!options.start.empty() || !Selection(records, depth, result).RunNamed(options, names, law)) {
-    result.fit = Fitter(options).Fit(records, depth);
-  }
   return result;
 }
 

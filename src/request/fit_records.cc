@@ -175,24 +175,17 @@ void RequireLoadsOfRecords(const FitRequest& request) {
                   request.files.size(), request.files.size() > 1 ? "s" : ""));
 }
 
-/// Fits the options' law with the terms that are named or, where asked for, chosen.
-/// @param law  the fit without them, where there is one
-TermSelection FitLaw(const FitRequest& request, const FitOptions& options,
-                     std::span<const Record> records, bool chooses_terms,
-                     Depth depth = Depth::kFull, const FitResult* law = nullptr) {
-  std::vector<std::string> named = NamedTerms(request);
-  std::erase_if(named, [](const std::string& name) {
-    return identification::FindTermGroup(name) == nullptr;
-  });
-  if (options.response() != loop::Channel::kForce || (!chooses_terms && named.empty())) {
+/// Fits the options' law with its terms, or where asked for with those that the records require.
+TermSelection FitLaw(const FitOptions& options, std::span<const Record> records,
+                     bool chooses_terms) {
+  if (!chooses_terms) {
     TermSelection law_alone;
     law_alone.options = options;
-    law_alone.fit = identification::Fit(records, options, depth);
+    law_alone.fit = identification::Fit(records, options);
     return law_alone;
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
-  return chooses_terms ? identification::SelectTerms(views, options, depth)
-                       : identification::FitNamedTerms(views, options, named, depth, law);
+  return identification::SelectTerms(views, options);
 }
 
 /// Takes back a preference for the law that the program did not choose.
@@ -212,13 +205,13 @@ bool WithdrawPreference(FitResult& fit) {
 TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
                        std::span<const Record> records) {
   const bool chooses_terms = ChoosesTerms(request);
-  if (request.fit.model != nullptr) return FitLaw(request, options, records, chooses_terms);
-  TermSelection asked = FitLaw(request, options, records, /*chooses_terms=*/false);
+  if (request.fit.model != nullptr) return FitLaw(options, records, chooses_terms);
+  TermSelection asked = FitLaw(options, records, /*chooses_terms=*/false);
   const auto& choice = asked.fit.law_choice;
   if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
-    TermSelection other = FitLaw(request, of_other, records, /*chooses_terms=*/false);
+    TermSelection other = FitLaw(of_other, records, /*chooses_terms=*/false);
     if (other.fit.converged) asked = std::move(other);
     // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
@@ -226,7 +219,7 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
   if (!chooses_terms) return asked;
   FitOptions of_law = options;
   of_law.model = asked.options.model;
-  asked = FitLaw(request, of_law, records, chooses_terms);
+  asked = FitLaw(of_law, records, chooses_terms);
   // The law was chosen before the terms: of the other one with them nothing is said.
   if (WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
@@ -302,8 +295,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       tried.preparation = options.preparation;
       tried.initial_state = options.initial_state;
       tried.model = options.model;
-      const FitResult found =
-          FitLaw(with, tried, records, /*chooses_terms=*/false, Depth::kIntervals, &fit).fit;
+      const FitResult found = identification::Fit(records, tried, Depth::kIntervals);
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       const double most = (1 - options.thresholds.advised_gain) * *before;

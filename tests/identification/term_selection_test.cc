@@ -141,18 +141,6 @@ TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
   EXPECT_FALSE(TermOf(selection, "speed_exponent").added);
 }
 
-TEST(TermSelection, NamedTermsAreAddedWithoutJudgementAndFitAsWellAsTogether) {
-  const Record noisy = Noisy(With(0.06, 0.0), 11);
-  FitOptions options;
-  options.terms = {"viscous", "slip_trend"};  // of which nothing is in the record
-  const RecordView view(noisy);
-  const TermSelection named = FitNamedTerms({&view, 1}, options, options.terms);
-  const FitResult together = Fit(std::vector{noisy}, options);
-  ASSERT_NE(named.fit.Find("slip_trend"), nullptr);
-  constexpr double kSameMinimum = 1e-6;  // of the rms: ten thousand times the tolerance of the cost
-  EXPECT_LE(named.fit.rms, (1 + kSameMinimum) * together.rms);
-}
-
 TEST(TermSelection, NegativeDampingIsNotAdded) {
   EXPECT_FALSE(TermOf(Select(Noisy(With(-0.1, 0.0), 9)), "viscous").added);
 }

@@ -54,13 +54,6 @@ struct TermSelection {
 TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
                           Depth depth = Depth::kFull);
 
-/// Fits groups of terms that the options have: they are added one after the other, each from the
-/// solution without it, and are not judged.
-/// @param law  the fit without them, where there is one
-TermSelection FitNamedTerms(std::span<const loop::RecordView> records, const FitOptions& options,
-                            std::span<const std::string> names, Depth depth = Depth::kFull,
-                            const FitResult* law = nullptr);
-
 /// Returns the terms that explain what a fit misses, the one that leaves least first: the `most`
 /// that score best as SelectTerms() scores its candidates, a gap that was measured before all, are
 /// fitted at Depth::kEstimate, and those with an obstacle to them left out.
