@@ -146,16 +146,19 @@ Cell ReadCell(std::string_view text, bool decimal_comma) {
     const bool is_infinite = lower == "inf" || lower == "infinity";
     return {.kind = is_infinite ? Cell::Kind::kBroken : Cell::Kind::kText};
   }
-  std::string with_point(digits);
   char mark = digits.find('.') == std::string_view::npos ? '\0' : '.';
-  if (const std::size_t comma = digits.find(',');
-      decimal_comma && mark == '\0' && comma < digits.size() - 1 && IsDigit(digits[comma + 1])) {
-    with_point[comma] = '.';
+  std::string with_point;
+  std::string_view plain = digits;
+  if (const std::size_t comma = decimal_comma && mark == '\0' ? digits.find(',') : digits.npos;
+      comma < digits.size() - 1 && IsDigit(digits[comma + 1])) {
     mark = ',';
+    with_point = digits;
+    with_point[comma] = '.';
+    plain = with_point;
   }
-  const char* const end = with_point.data() + with_point.size();
+  const char* const end = plain.data() + plain.size();
   double magnitude = 0.0;
-  const auto [stop, error] = FromChars(with_point.data(), end, magnitude);
+  const auto [stop, error] = FromChars(plain.data(), end, magnitude);
   // from_chars does not say on which side a number is out of range; only a negative exponent can
   // make one too small.
   const bool is_beyond = error == std::errc::result_out_of_range;

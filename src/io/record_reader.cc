@@ -86,40 +86,48 @@ class RecordBuilder {
   std::string Add(const CsvTable& table, Samples& samples) {
     const std::array columns = {&samples.displacement, &samples.force, &samples.time,
                                 &samples.normal_load};
-    std::array<double, columns.size()> values{};
+    const bool has_interval = !file_.time && interval_ > 0;
+    const auto resize = [&](std::size_t size) {
+      samples.lines.resize(size);
+      if (has_interval) samples.time.resize(size);
+      for (const Quantity& quantity : quantities_) {
+        columns[static_cast<std::size_t>(quantity.role)]->resize(size);
+      }
+    };
+    std::size_t kept = samples.lines.size();
+    resize(kept + table.rows());
+    std::string refusal;
     auto block = table.blocks.begin();
-    for (std::size_t row = 0; row < table.rows(); ++row, ++rows_) {
+    for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
       if (block != table.blocks.end() && row == *block) {
         times_.NextPiece();
         ++block;
       }
       bool is_whole = true;
       for (const Quantity& quantity : quantities_) {
-        double& value = values[static_cast<std::size_t>(quantity.role)];
+        double& value = (*columns[static_cast<std::size_t>(quantity.role)])[kept];
         value = quantity.ValueIn(table, row);
         if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
         is_whole = is_whole && std::isfinite(value);
       }
-      if (!is_whole || (file_.time && !Follows(values[2]))) {
-        bool is_missing = false;
-        const std::string fault = FaultOf(table, row, is_missing);
-        if (!is_missing && !skip_broken_) return fault;
-        if (left_out_.count++ == 0) left_out_.fault = fault;
+      if (is_whole && (!file_.time || Follows(samples.time[kept]))) {
+        if (has_interval) samples.time[kept] = static_cast<double>(rows_) * interval_;
+        samples.lines[kept++] = table.lines[row];
         continue;
       }
-      for (const Quantity& quantity : quantities_) {
-        const auto k = static_cast<std::size_t>(quantity.role);
-        columns[k]->push_back(values[k]);
+      bool is_missing = false;
+      const std::string fault = FaultOf(table, row, is_missing);
+      if (!is_missing && !skip_broken_) {
+        refusal = fault;
+      } else if (left_out_.count++ == 0) {
+        left_out_.fault = fault;
       }
-      if (!file_.time && interval_ > 0) {
-        samples.time.push_back(static_cast<double>(rows_) * interval_);
-      }
-      samples.lines.push_back(table.lines[row]);
     }
+    resize(kept);
     // One in a hundred, rounded up from a hundred on.
     constexpr std::size_t kOneIn = 100;
     const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
-    if (skip_broken_ || left_out_.count <= most) return "";
+    if (!refusal.empty() || skip_broken_ || left_out_.count <= most) return refusal;
     return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
                        left_out_.fault, left_out_.count, rows_);
   }

@@ -406,14 +406,6 @@ class RoleAssigner {
 
 const RoleRules& RulesOf(Role role) { return kRules.at(static_cast<std::size_t>(role)); }
 
-double Quantity::ValueIn(const CsvTable& table, std::size_t row) const {
-  double value = offset;
-  for (const auto& [column, weight] : terms) {
-    value += weight * table.columns[column].values[row];
-  }
-  return value;
-}
-
 std::vector<double> Quantity::Numbers(const CsvTable& table) const {
   for (const Term& term : terms) static_cast<void>(table.Numbers(term.column));
   std::vector<double> values(table.rows());

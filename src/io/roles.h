@@ -42,7 +42,11 @@ struct Quantity {
     return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
   }
   /// Returns its value in a row, in its unit.
-  [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const;
+  [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const {
+    double value = offset;
+    for (const auto& [column, weight] : terms) value += weight * table.columns[column].values[row];
+    return value;
+  }
   /// Returns its values in SI units, one a row.
   /// @throws InputError where one is missing or too large
   [[nodiscard]] std::vector<double> Numbers(const CsvTable& table) const;
