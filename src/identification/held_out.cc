@@ -76,18 +76,17 @@ double SumOfSquares(double rms, const ScoredSamples& samples) {
   return static_cast<double>(samples.count) * in_units * in_units;
 }
 
-std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t strokes,
-                          std::size_t least) {
+std::vector<Part> CyclesOf(const FitResult& fit, const SampleMask& mask) {
   std::vector<Part> parts;
   for (std::size_t r = 0; r < mask.size(); ++r) {
     const std::vector<std::size_t>& reversals = fit.records[r].reversals;
     std::vector<Part> closed;
-    for (std::size_t j = 0; j + strokes < reversals.size(); j += strokes) {
-      Part part{.record = r, .begin = reversals[j], .end = reversals[j + strokes]};
+    for (std::size_t j = 0; j + 2 < reversals.size(); j += 2) {
+      Part part{.record = r, .begin = reversals[j], .end = reversals[j + 2]};
       for (std::size_t i = part.begin; i < part.end; ++i) part.samples += mask[r][i];
       if (part.samples > 0) closed.push_back(part);
     }
-    if (closed.size() >= least) parts.insert(parts.end(), closed.begin(), closed.end());
+    if (closed.size() > 1) parts.insert(parts.end(), closed.begin(), closed.end());
   }
   return parts;
 }

@@ -24,7 +24,7 @@ struct ScoredSamples {
   double rounding = 0.0;  // [unit of the response]: residuals below it mean nothing
 };
 
-/// A closed cycle or a stroke, [begin, end).
+/// A closed cycle, [begin, end).
 struct Part {
   std::size_t record = 0;
   std::size_t begin = 0;
@@ -53,11 +53,9 @@ double LikelihoodRms(const FitResult& fit, const ScoredSamples& samples);
 /// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.
 double SumOfSquares(double rms, const ScoredSamples& samples);
 
-/// Parts from one reversal to another, of so many strokes each: cycles of two. A single cycle of a
-/// record is none: without it nothing of the kind would be left to fit.
-/// @param least  parts of a record, which has none where there are fewer
-std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::size_t strokes,
-                          std::size_t least);
+/// Returns the cycles from one reversal to the next but one. A single one of a record is none:
+/// without it nothing of the kind would be left to fit.
+std::vector<Part> CyclesOf(const FitResult& fit, const SampleMask& mask);
 
 /// Gives the options the initial states that a fit found.
 void HoldInitialStates(const FitResult& fit, FitOptions& options);

@@ -93,7 +93,7 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
   if (fitted == fits.end()) return scores;
   const ScoredSamples samples = CountedSamples(*fitted, records);
   const std::size_t best = ScoreByCriterion(fits, samples, scores);
-  const std::vector<Part> cycles = PartsOf(fits[best], samples.mask, 2, 2);
+  const std::vector<Part> cycles = CyclesOf(fits[best], samples.mask);
   const std::size_t folds = std::min(kFolds, cycles.size());
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     ModelScore& score = scores[i];

@@ -157,10 +157,8 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
 }
 
 void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
-                          std::span<const TermChoice> choices, std::span<const Part> parts,
-                          std::size_t folds) {
+                          std::span<const TermChoice> choices) {
   state_ = fit.initial_state;
-  folds_ = folds;
   values_.clear();
   free_.clear();
   for (const ParameterEstimate& estimate : fit.parameters) {
@@ -189,11 +187,10 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
       choices_.emplace_back();  // no lag where time does not go on
     }
   }
-  TakeProducts(columns, parts);
+  TakeProducts(columns);
 }
 
-void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns,
-                              std::span<const Part> parts) {
+void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns) {
   const Eigen::Index of_law = at_fit_.jacobian.cols();
   const Eigen::Index count = of_law + std::ssize(columns);
   Eigen::MatrixXd all(at_fit_.jacobian.rows(), count + 1);
@@ -205,37 +202,10 @@ void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns,
       [](double norm) { return norm > 0 ? norm : 1.0; });
   for (Eigen::Index c = 0; c < count; ++c) all.col(c) /= norms_[c];
   all.col(count) = at_fit_.residual;
-  whole_ = TransposedProduct(all, all);
-  std::vector<Eigen::Index> begins = {0};
-  for (const ScaledRecord& record : data_.records) {
-    begins.push_back(begins.back() + static_cast<Eigen::Index>(record.size()));
-  }
-  of_part_.clear();
-  samples_of_part_.clear();
-  for (const Part& part : parts) {
-    const auto rows = all.middleRows(begins[part.record] + static_cast<Eigen::Index>(part.begin),
-                                     static_cast<Eigen::Index>(part.end - part.begin));
-    of_part_.push_back(TransposedProduct(rows, rows));
-    samples_of_part_.push_back(part.samples);
-  }
+  products_ = TransposedProduct(all, all);
   of_fit_.resize(static_cast<std::size_t>(of_law));
   std::iota(of_fit_.begin(), of_fit_.end(), Eigen::Index{0});
-  squares_of_fit_ = SquaresAfter(whole_, of_fit_, StepBy(whole_, of_fit_));
-  predicted_by_fit_ = Predict(of_fit_);
-}
-
-/// Returns the sums of squares of the parts, each after a step by those of the other folds.
-std::vector<double> TermScores::Predict(const std::vector<Eigen::Index>& places) const {
-  std::vector<double> squares(of_part_.size());
-  for (std::size_t fold = 0; fold < folds_; ++fold) {
-    Eigen::MatrixXd products = whole_;
-    for (std::size_t c = fold; c < of_part_.size(); c += folds_) products -= of_part_[c];
-    const Eigen::VectorXd step = StepBy(products, places);
-    for (std::size_t c = fold; c < of_part_.size(); c += folds_) {
-      squares[c] = SquaresAfter(of_part_[c], places, step);
-    }
-  }
-  return squares;
+  squares_of_fit_ = SquaresAfter(products_, of_fit_, StepBy(products_, of_fit_));
 }
 
 /// Writes the values of a choice's parameters after a step, well inside their bounds.
@@ -265,32 +235,19 @@ std::optional<TermScore> TermScores::Of(std::size_t choice) const {
   }
   if (added.empty()) return std::nullopt;
   const std::vector<Eigen::Index> places = Joined(of_fit_, added);
-  const Eigen::VectorXd step = StepBy(whole_, places);
+  const Eigen::VectorXd step = StepBy(products_, places);
   TermScore score;
   PutValues(choice, step, score.values);
   for (const char* const name : {"sigma", "alpha", "slip_force"}) {
     const auto place = std::ranges::find(names_, name) - names_.begin();
     if (place < std::ssize(names_)) score.law.emplace(name, step[place] / norms_[place]);
   }
-  const double rounding = kRoundingRms * kRoundingRms;  // of a residual's square
-  const double floor_of_all = rounding * static_cast<double>(data_.counted);
-  const double without = squares_of_fit_ + floor_of_all;
-  const double with = SquaresAfter(whole_, places, step) + floor_of_all;
-  score.rms = data_.force * std::sqrt(with / static_cast<double>(data_.counted));
-  if (of_part_.empty()) {
-    score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
-  } else {
-    const std::vector<double> now = Predict(places);
-    double samples = 0.0;
-    double sum = 0.0;
-    for (std::size_t c = 0; c < predicted_by_fit_.size(); ++c) {
-      const double floor = rounding * samples_of_part_[c];
-      sum += samples_of_part_[c] *
-             std::log(std::max(predicted_by_fit_[c], floor) / std::max(now[c], floor)) / 2;
-      samples += samples_of_part_[c];
-    }
-    score.gain = 1 - std::exp(-sum / samples);
-  }
+  const auto samples = static_cast<double>(data_.counted);
+  const double rounding = samples * kRoundingRms * kRoundingRms;
+  const double without = squares_of_fit_ + rounding;
+  const double with = SquaresAfter(products_, places, step) + rounding;
+  score.rms = data_.force * std::sqrt(with / samples);
+  score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
   const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
   if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, static_cast<double>(added.size()));
   return score;

@@ -28,10 +28,7 @@ struct TermChoice {
 
 /// Predicts, to first order, a fit with some more terms.
 struct TermScore {
-  /// Fraction by which the choice lowers the rms error of predicted parts, of fitted samples
-  /// where there are no parts; the mean of the logarithms of the parts, so that a few with large
-  /// errors do not make or hide it.
-  double gain = 0.0;
+  double gain = 0.0;                     // fraction by which the choice lowers the rms
   double p_value = 1.0;                  // that chance alone makes its effect
   double rms = 0.0;                      // of all samples after the step [N]
   std::map<std::string, double> values;  // of its parameters, for a search to begin with
@@ -39,9 +36,8 @@ struct TermScore {
 };
 
 /// Scores terms by one Gauss-Newton step from a fit that does not have them: of the Jacobian of the
-/// fit and the derivatives by the terms' parameters the products over every part of the records are
-/// kept, and a step of any of the terms, by all parts or by all but a fold's, is algebra on these.
-/// Exact for terms that are linear.
+/// fit and the derivatives by the terms' parameters the products are kept, and a step of any of the
+/// terms is algebra on these. Exact for terms that are linear.
 class TermScores {
  public:
   /// @param options  of the fits, with the sign of the force that was found
@@ -57,10 +53,8 @@ class TermScores {
   /// Takes a fit to step from.
   /// @param options  of that fit
   /// @param choices  that are scored; one without terms or a column has no effect
-  /// @param parts    that are predicted, dealt in turn to the folds; may be none
   void StepFrom(const FitResult& fit, const FitOptions& options,
-                std::span<const TermChoice> choices, std::span<const Part> parts,
-                std::size_t folds);
+                std::span<const TermChoice> choices);
 
   /// Returns the score of a choice, by its place; nothing where it has no effect here.
   [[nodiscard]] std::optional<TermScore> Of(std::size_t choice) const;
@@ -77,8 +71,7 @@ class TermScores {
   [[nodiscard]] std::vector<double> ThetaOf(const Problem& problem) const;
   [[nodiscard]] std::vector<Added> AddColumnsOf(const TermChoice& choice, const FitOptions& options,
                                                 std::vector<Eigen::VectorXd>& columns);
-  void TakeProducts(const std::vector<Eigen::VectorXd>& columns, std::span<const Part> parts);
-  [[nodiscard]] std::vector<double> Predict(const std::vector<Eigen::Index>& places) const;
+  void TakeProducts(const std::vector<Eigen::VectorXd>& columns);
   void PutValues(std::size_t choice, const Eigen::VectorXd& step,
                  std::map<std::string, double>& to) const;
 
@@ -96,15 +89,11 @@ class TermScores {
   Eigen::VectorXd freed_;           // what these leave of the residuals
   // The choices:
   std::vector<std::vector<Added>> choices_;
-  Eigen::VectorXd norms_;                 // of all columns
-  Eigen::MatrixXd whole_;                 // products of columns of unit norm, the residuals last
-  std::vector<Eigen::MatrixXd> of_part_;  // likewise
-  std::vector<double> samples_of_part_;
+  Eigen::VectorXd norms_;     // of all columns
+  Eigen::MatrixXd products_;  // of columns of unit norm, the residuals last
   // The fit itself, against which choices are scored:
   std::vector<Eigen::Index> of_fit_;  // its columns
   double squares_of_fit_ = 0.0;       // after a step of its own
-  std::vector<double> predicted_by_fit_;
-  std::size_t folds_ = 0;
 };
 
 }  // namespace mindahl::identification

@@ -23,9 +23,6 @@ using loop::RecordView;
 
 namespace {
 
-/// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes of
-/// both directions.
-constexpr std::size_t kFoldsOfParts = 5;
 /// Fits in all, nearly all of them at Depth::kEstimate.
 constexpr std::size_t kMostFits = 15;
 
@@ -261,7 +258,6 @@ class Selection {
   Model base_;  // with the terms that were added
   std::optional<TermScores> scores_;
   std::vector<Alternative> alternatives_;
-  std::vector<Part> parts_;
   std::vector<std::vector<bool>> held_out_;
   std::shared_ptr<const loop::DrawnReadings> drawn_;  // the same for all fits
   loop::LoopFacts facts_;                             // of the widest record
@@ -308,15 +304,6 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
   const std::map<std::string, double> none;
   if (!counts_alike) base_ = FitWith({}, &none);
   if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
-  // Into cycles where there are four, else into strokes; several cycles a part where there are
-  // many.
-  constexpr std::size_t kEnoughCycles = 4;
-  constexpr std::size_t kMostParts = 60;
-  const ScoredSamples samples = CountedSamples(base_.fit, records_);
-  std::size_t cycles = 0;
-  for (const RecordFit& record : base_.fit.records) cycles += record.reversals.size() / 2;
-  parts_ = PartsOf(base_.fit, samples.mask, 2 * (cycles / kMostParts + 1), 2);
-  if (parts_.size() < kEnoughCycles) parts_ = PartsOf(base_.fit, samples.mask, 1, 4);
   return true;
 }
 
@@ -328,9 +315,7 @@ std::vector<Selection::Gain> Selection::Score() {
                   [&](const std::string& term) { return HasTerm(base_.options, term); });
     choices.push_back(candidate.considered.added ? TermChoice() : candidate.choice);
   }
-  std::size_t folds = std::min(kFoldsOfParts, parts_.size());
-  if (folds % 2 == 0 && folds > 2) --folds;
-  scores_->StepFrom(base_.fit, base_.options, choices, parts_, folds);
+  scores_->StepFrom(base_.fit, base_.options, choices);
   std::vector<Gain> gains;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     ConsideredTerm& considered = candidates_[c].considered;
@@ -510,13 +495,16 @@ FitResult Selection::FitFromHere() {
   return FitTo(from_here, depth_);
 }
 
-/// Fits the chosen model: from starts of its own, as where the terms are named, unless these leave
-/// more than is known to be left, else from where it is. The law stays where its Tc would be lost.
+/// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose Tc
+/// or leave more than is known to be left, else from where it is. The law stays where its Tc would be lost.
 void Selection::FitLast(const FitResult& law) {
   FitResult last = FitTo(base_.options, depth_);
   const double most_left = (1 + Limits().worthwhile_gain) * base_.fit.rms;
-  if (!IsFitted(last) || last.rms > most_left) last = FitFromHere();
-  if (IsFitted(last) && !Leaves(last) && !OpensSlipForce(law, last, Limits().widest_ratio)) {
+  const auto is_kept = [&](const FitResult& fit) {
+    return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
+  };
+  if (!is_kept(last) || last.rms > most_left) last = FitFromHere();
+  if (is_kept(last)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
         result_.added.size() == 1 && last.adequacy.verdict == AdequacyVerdict::kAdequate;

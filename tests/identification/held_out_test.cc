@@ -20,20 +20,13 @@ SampleMask CountingFrom(std::size_t first) {
   return mask;
 }
 
-TEST(PartsOf, CyclesBeginWithTheFirstTurn) {
+TEST(CyclesOf, BeginWithTheFirstTurn) {
   const FitResult fit = FitThatTurns();
-  const std::vector<Part> all = PartsOf(fit, CountingFrom(0), 2, 2);
+  const std::vector<Part> all = CyclesOf(fit, CountingFrom(0));
   ASSERT_EQ(all.size(), 3U);
   EXPECT_EQ(all[0].begin, 10U);
   EXPECT_EQ(all[0].end, 30U);
   EXPECT_EQ(all[0].samples, 20.0);
-}
-
-TEST(PartsOf, StrokesBeginWithTheFirstThatCounts) {
-  const std::vector<Part> strokes = PartsOf(FitThatTurns(), CountingFrom(20), 1, 4);
-  ASSERT_EQ(strokes.size(), 5U);
-  EXPECT_EQ(strokes.front().begin, 20U);
-  EXPECT_EQ(strokes.back().end, 70U);
 }
 
 /// Three cycles of 100 samples from rest: they turn at 25, 75, … 275, and two of them close.
@@ -47,7 +40,7 @@ struct ThreeCycles {
     fit = FitOne(record, options);
     views = {record};
     samples = CountedSamples(fit, views);
-    cycles = PartsOf(fit, samples.mask, 2, 2);
+    cycles = CyclesOf(fit, samples.mask);
   }
 
   std::optional<double> Predict(std::size_t free) const {
@@ -99,7 +92,7 @@ TEST(TermScores, ValuesOfLinearTermsAreThoseOfTheFitWithThem) {
   const std::vector<TermChoice> choices = {{.terms = {"viscous", "force_drift"}, .covariate = ""}};
   const std::vector<loop::RecordView> views = {record};
   TermScores scores(views, options, choices);
-  scores.StepFrom(fit, options, choices, {}, 0);
+  scores.StepFrom(fit, options, choices);
   const std::optional<TermScore> score = scores.Of(0);
   ASSERT_TRUE(score);
   // The law moves, too, which one step does only to first order.

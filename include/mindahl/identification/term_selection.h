@@ -35,12 +35,10 @@ struct TermSelection {
 ///
 /// A record that the law describes adequately gets none: its fit is Fit()'s to the last digit.
 /// Otherwise every candidate for which there are data is scored by one Gauss-Newton step from the
-/// present solution: on cycles held out of that step, on strokes where there are fewer than four
-/// cycles, by the fitted samples where there are fewer than four strokes. Of those that lower the
-/// error by 3 %, by chance with p < 0.05 over all candidates, the best is fitted, or what has some
-/// of its terms only and gains half as much; it is added unless its fit does not converge, gains
-/// less, ends at a bound or leaves the half gap, else the next one is tried. The rounds end when
-/// none is added or 15 fits are made.
+/// present solution. Of those that lower the rms by 3 %, by chance with p < 0.05 over all
+/// candidates, the best is fitted, or what has some of its terms only and gains half as much; it is
+/// added unless its fit does not converge, gains less, ends at a bound or leaves the half gap, else
+/// the next one is tried. The rounds end when none is added or 15 fits are made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
 /// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:

@@ -81,8 +81,8 @@ struct Thresholds {
   /// [p] The gain of a term that is added has no greater probability by chance, over all
   /// candidates of a round. One selection in twenty adds a term too many.
   double added_by_chance = 0.05;
-  /// [of the error of prediction] A term that is added reduces it by more. Three per cent of a
-  /// misfit change no verdict.
+  /// [of the rms] A term that is added reduces it by more. Three per cent of a misfit change no
+  /// verdict.
   double worthwhile_gain = 0.03;
   /// [of the misfit] A term is advised if it reduces the misfit by more. Another fit is asked for:
   /// less cannot be seen in the loop.
