@@ -147,12 +147,44 @@ std::string DifferentLoads(const Report& report) {
                      report.is_torsional() ? "" : "different loads? --normal-load N1,N2,…; ");
 }
 
+/// Returns a question where half gaps over loads differ between files of a series by more than
+/// their loops can explain: of one μ the half gap over N grows with the slip, and no faster than
+/// the square of the half gap over the peak force, which no load enters.
+std::string LoadsOfOtherFiles(const Report& report) {
+  if (!report.fit.is_load_series()) return "";
+  if (report.fit.adequacy.verdict == AdequacyVerdict::kAdequate) return "";
+  const auto friction = [](const RecordFit& record) {
+    return std::abs(record.facts.half_gap.value_or(0.0)) / record.normal_load.value_or(1.0);
+  };
+  const auto fullness = [](const RecordFit& record) {
+    return std::abs(record.facts.half_gap.value_or(0.0)) / record.facts.peak_force;
+  };
+  double most = report.options.thresholds.other_test;
+  std::string question;
+  for (std::size_t a = 0; a < report.files.size(); ++a) {
+    for (std::size_t b = 0; b < report.files.size(); ++b) {
+      const RecordFit& less = report.fit.records[a];
+      const RecordFit& more = report.fit.records[b];
+      const double slips = std::max(1.0, fullness(more) / fullness(less));
+      const double ratio = friction(more) / friction(less) / (slips * slips);
+      if (!(ratio > most) || !std::isfinite(ratio)) continue;
+      most = ratio;
+      question = fmt::format(
+          "do the loads belong to these files? half gap / N is {:.2g} in {} and {:.2g} in {}",
+          friction(less), NameOf({&report.files[a], 1}), friction(more),
+          NameOf({&report.files[b], 1}));
+    }
+  }
+  return question;
+}
+
 std::string WhatToCheck(const Report& report) {
   if (!report.is_torsional()) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
     if (std::string found = ImpossibleContact(report); !found.empty()) return found;
   }
-  return DifferentLoads(report);
+  const std::string loads = LoadsOfOtherFiles(report);
+  return loads.empty() ? DifferentLoads(report) : loads;
 }
 
 }  // namespace

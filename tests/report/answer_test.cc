@@ -227,6 +227,34 @@ TEST(Answer, AsksForTheLoadsOfFilesWhoseHalfGapsDiffer) {
   EXPECT_EQ(LineOf(input, "check"), "");
 }
 
+TEST(Answer, AsksWhetherLoadsBelongToFilesWhoseLoopsAreAsFullAtAnotherHalfGapOverLoad) {
+  ReportInput input =
+      testing::MadeInput({testing::MadeRecord(2e-6), testing::MadeRecord(2e-6)}, 2e-6);
+  testing::AddParameter(input.fit, "load_exponent", "-", -1.1, 1.0);
+  const auto set = [&](double first_load, double second_load) {
+    input.fit.records[0].facts = Facts(10.0);
+    input.fit.records[0].normal_load = first_load;
+    input.fit.records[1].facts = Facts(60.0);
+    input.fit.records[1].normal_load = second_load;
+    input.fit.normal_load = (first_load + second_load) / 2;
+  };
+  set(120.0, 20.0);
+  EXPECT_EQ(LineOf(input, "check"), "") << "of a model that describes the records";
+  input.fit.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  EXPECT_EQ(LineOf(input, "check"),
+            "do the loads belong to these files? half gap / N is 0.083 in loop_1.csv and 3 in "
+            "loop_2.csv");
+  set(20.0, 120.0);
+  EXPECT_EQ(LineOf(input, "check"), "");
+  // Of a loop that slips less the half gap over the load is smaller: half the gap over the peak
+  // explains a quarter.
+  set(120.0, 120.0);
+  input.fit.records[0].facts.peak_force = 20.0;
+  EXPECT_EQ(LineOf(input, "check"), "");
+}
+
+}
+
 TEST(Answer, HasTheNextStepThatWasTried) {
   ReportInput input = Doubtful();
   input.next =
