@@ -186,12 +186,17 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
   }
   ContactQuantity gross_slip{
       .name = "gross_slip_displacement", .symbol = "δc", .unit = "m", .parameter = "alpha"};
+  const ParameterEstimate& shape = *fit.Find("alpha");
+  const double alpha = shape.status == ParameterStatus::kFixed ? shape.value : kThird;
   if (!sigma.is_known() || !slip_force.is_known()) {
     gross_slip.why = "needs an identifiable sigma and slip_force";
   } else if (TestAlpha(fit).is_rejected.value_or(false)) {
     gross_slip.why = "of Mindlin's contact, α = 1/3, which is rejected";
+  } else if (alpha >= 1) {
+    gross_slip.why = "slip is never complete where alpha is 1 or more";
   } else {
-    Fill(fit, 1.5 * slip_force.value / sigma.value, {&slip_force, 1}, {&sigma, -1}, gross_slip);
+    Fill(fit, slip_force.value / (sigma.value * (1 - alpha)), {&slip_force, 1}, {&sigma, -1},
+         gross_slip);
   }
   quantities.push_back(std::move(gross_slip));
   quantities.push_back(NormalLoad(fit, known));

@@ -96,6 +96,21 @@ TEST(DescribeContact, GivesGrossSlipOfMindlinsContactAlone) {
   EXPECT_FALSE(Of(DescribeContact(fit, {}), "gross_slip_displacement").value);
 }
 
+TEST(DescribeContact, GivesGrossSlipOfAnExponentThatIsHeld) {
+  identification::FitResult fit = Fit();
+  fit.parameters[1].status = identification::ParameterStatus::kFixed;
+  for (const double alpha : {0.0, 0.6}) {
+    fit.parameters[1].value = alpha;
+    EXPECT_NEAR(*Of(DescribeContact(fit, {}), "gross_slip_displacement").value /
+                    (kSlipForce / (kSigma * (1 - alpha))),
+                1, kExact);
+  }
+  fit.parameters[1].value = 1.0;
+  const ContactQuantity none = Of(DescribeContact(fit, {}), "gross_slip_displacement");
+  EXPECT_FALSE(none.value);
+  EXPECT_THAT(none.why, HasSubstr("never complete"));
+}
+
 TEST(DescribeContact, NamesTheSlipForcesOfEitherDirection) {
   identification::FitResult fit = Fit();
   testing::AddParameter(fit, "asymmetry", "-", 0.1, 0.005);
