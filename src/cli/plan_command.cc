@@ -9,6 +9,7 @@
 #include "mindahl/identification/plan.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/io/plot.h"
+#include "mindahl/models/steady_loop.h"
 #include "report/statements.h"
 
 namespace mindahl::cli {
@@ -55,21 +56,31 @@ identification::FitResult FitOfRecord(const PlanOptions& options,
                                       std::vector<std::string>& notes) {
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
   notes = file.notes;
-  if (options.law.alpha) fit_options.fixed["alpha"] = *options.law.alpha;
   const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
   if (options.rig_stiffness && !fits_rig) {
     RequirePositive("--rig-stiffness [N/m]", *options.rig_stiffness);
     fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   }
-  identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
+  const auto fitted = [&] {
+    identification::FitResult of_law = identification::Fit({&file.record, 1}, fit_options);
+    if (!of_law.law_choice || !of_law.law_choice->prefers_alternative()) return of_law;
+    identification::FitOptions of_other = fit_options;
+    of_other.model = of_law.law_choice->alternative;
+    return identification::Fit({&file.record, 1}, of_other);
+  };
+  identification::FitResult fit = fitted();
   const auto is_inadequate = [&] {
     return fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
   };
   if (fit.converged && !is_inadequate() && !fit.Find("alpha")->is_known()) {
-    notes.emplace_back(
-        "alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
-    fit_options.fixed["alpha"] = 1.0 / 3;
-    fit = identification::Fit({&file.record, 1}, fit_options);
+    if (!options.law.alpha) {
+      notes.emplace_back(
+          "alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
+    }
+    fit_options.fixed["alpha"] = options.law.alpha.value_or(1.0 / 3);
+    fit = fitted();
+  } else if (options.law.alpha) {
+    notes.emplace_back("--alpha is not used: the record has an alpha of its own");
   }
   if (!fit.converged) {
     throw InputError(
@@ -99,6 +110,15 @@ Expectation Expect(const PlanOptions& options, const identification::FitOptions&
     }
     const identification::FitResult fit = FitOfRecord(options, fit_options, notes);
     expected = {fit.law, fit.rig, fit.force_noise, fit.records.front().displacement_noise};
+    if (fit.model->memory != models::Memory::kReturnPoint) {
+      const double amplitude =
+          identification::ContactAmplitude(fit, fit.law, fit.records.front().measures.amplitude);
+      expected.law = models::MasingEquivalent(fit.law, amplitude);
+      notes.push_back(fmt::format(
+          "Dahl's own law describes the record: the plan is for the Masing law of the same loop at "
+          "{:.4g} m",
+          amplitude));
+    }
   } else {
     if (!options.force_noise) {
       throw InputError("--force-noise missing: give the standard deviation of the force [N]");

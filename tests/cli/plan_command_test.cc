@@ -2,6 +2,7 @@
 
 #include "cli/command_line.h"
 #include "mindahl/identification/plan.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::cli::plan_command_test {
 namespace {
@@ -102,14 +103,29 @@ TEST_F(PlanCommand, TakesTheLawOfItsRecordAndSaysWhatIsNotKnown) {
     const std::string loop = Simulated("--cycles 3 --noise-force 0.2 --lambda " + lambda);
     return JsonOf(("plan --amplitude 3e-6 --record " + loop) + more);
   };
-  const json held = plan("2", "--alpha 0.25 --force-noise 0.75");
-  EXPECT_EQ(held["expected"]["alpha"], 0.25);
-  EXPECT_NEAR(held["expected"]["slip_force"], 40.0, 1.0);  // at another α, a little off
-  EXPECT_EQ(held["expected"]["force_noise"], 0.75);
+  const json known = plan("2", "--alpha 0.25 --force-noise 0.75");
+  EXPECT_NEAR(known["expected"]["alpha"], 1.0 / 3, 0.02);
+  EXPECT_NEAR(known["expected"]["slip_force"], 40.0, 0.2);
+  EXPECT_EQ(known["expected"]["force_noise"], 0.75);
+  EXPECT_THAT(known["notes"].get<std::vector<std::string>>(),
+              Contains(HasSubstr("--alpha is not used")));
+  EXPECT_EQ(plan("0.02", "--alpha 0.25")["expected"]["alpha"], 0.25);
   const json guessed = plan("0.02", {});
   EXPECT_EQ(guessed["expected"]["alpha"], 1.0 / 3);
   EXPECT_THAT(guessed["notes"].get<std::vector<std::string>>(),
               Contains(HasSubstr("alpha is not identified: Mindlin's 1/3 is assumed")));
+}
+
+TEST_F(PlanCommand, OfARecordOfDahlsLawTakesTheMasingLawOfTheSameLoop) {
+  const json plan = JsonOf("plan --amplitude 3e-6 --record " +
+                           Simulated("--model dahl --alpha 0.5 --amplitude 1.2e-6 --cycles 3 "
+                                     "--noise-force 0.1"));
+  const models::BranchLaw masing = models::MasingEquivalent({4e7, 0.5, 40.0}, 1.2e-6);
+  EXPECT_NEAR(plan["expected"]["sigma"].get<double>() / masing.tangential_stiffness, 1, 0.01);
+  EXPECT_NEAR(plan["expected"]["slip_force"].get<double>() / masing.slip_force, 1, 0.01);
+  EXPECT_NEAR(plan["expected"]["force_noise"], 0.1, 0.02);
+  EXPECT_THAT(plan["notes"].get<std::vector<std::string>>(),
+              Contains(HasSubstr("Dahl's own law describes the record")));
 }
 
 }  // namespace
