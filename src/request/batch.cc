@@ -10,7 +10,9 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <future>
+#include <map>
 #include <new>
 #include <optional>
 #include <utility>
@@ -134,9 +136,34 @@ Json RepeatsRow(const std::vector<double>& values, const std::vector<double>& er
           {"says", says}};
 }
 
+/// Returns the laws of the fits that are done, that of most of them first: parameters of one law
+/// are no repeats of another's.
+std::vector<std::string> LawsOf(std::span<const BatchEntry> entries) {
+  std::map<std::string, std::size_t> counts;
+  std::vector<std::string> laws;
+  for (const BatchEntry& entry : entries) {
+    const Json model = At(DocumentOf(entry), "/model");
+    if (!entry.done || !model.is_string()) continue;
+    if (++counts[model] == 1) laws.push_back(model);
+  }
+  std::ranges::stable_sort(laws, std::greater(), [&](const auto& law) { return counts.at(law); });
+  return laws;
+}
+
+/// Returns which parameters are compared where the fits are of several laws; "" where of one.
+std::string LawsCompared(std::span<const BatchEntry> entries) {
+  const std::vector<std::string> laws = LawsOf(entries);
+  if (laws.size() < 2) return "";
+  return fmt::format(
+      "fits are by several laws, {}: parameters by {} alone are compared; --model NAME fits all by "
+      "one",
+      fmt::join(laws, ", "), laws.front());
+}
+
 /// Returns what repeats of a test say of each quantity that two files or more have.
 Json RepeatRows(std::span<const BatchEntry> entries) {
   const Json table = TableRows(entries);
+  const std::vector<std::string> laws = LawsOf(entries);
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
     std::vector<double> values;
@@ -151,6 +178,7 @@ Json RepeatRows(std::span<const BatchEntry> entries) {
       const std::string_view parameter = quantity.parameter;
       if (!row["done"].get<bool>() || std::isnan(value)) continue;
       if (!parameter.empty()) {
+        if (laws.size() > 1 && row["model"] != laws.front()) continue;
         const Json& verdict = row[fmt::format("{}_verdict", parameter)];
         if (verdict == "bounded_below" || verdict == "not_identifiable") continue;
         constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
@@ -253,6 +281,7 @@ std::string ToText(std::span<const BatchEntry> entries, const std::string& outpu
                                  output.empty() ? "" : ", in ", output);
   const Json repeats = RepeatRows(entries);
   if (!repeats.empty()) text += "\nif these are repeats:\n" + report::TableText(repeats);
+  if (const std::string laws = LawsCompared(entries); !laws.empty()) text += laws + '\n';
   return text;
 }
 
@@ -282,6 +311,7 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
                      entry.verdict.empty() ? "" : report::JudgementOf(entry.verdict),
                      Address(entry.page)});
   }
+  const std::string laws = LawsCompared(entries);
   const std::string repeats = report::TableHtml(
       "over the fitted files in which the quantity is known", RepeatRows(entries));
   return report::PageHtml(
@@ -291,7 +321,8 @@ std::string IndexPage(std::span<const BatchEntry> entries, const report::Provena
                                      {"file", "number", "verdict", "sigma", "alpha", "slip_force",
                                       "why not done"},
                                      files)) +
-          report::SectionHtml("If these are repeats", repeats) +
+          report::SectionHtml("If these are repeats",
+                              repeats + (laws.empty() ? "" : report::ParagraphHtml(laws))) +
           report::ProvenanceHtml(provenance));
 }
 

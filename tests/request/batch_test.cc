@@ -118,6 +118,27 @@ TEST(Repeats, OfTwoAreDescribedByHand) {
   EXPECT_TRUE(RepeatsOf({{10, 1, kNormal95}}).empty());
 }
 
+TEST(Repeats, CompareParametersOfOneLaw) {
+  std::vector<BatchEntry> entries = EntriesOf({{40, 1, 2, "identifiable", 39},
+                                               {50, 1, 2, "identifiable", 39},
+                                               {42, 1, 2, "identifiable", 39}});
+  const auto set_law = [&](std::size_t k, const char* law) {
+    auto json = nlohmann::ordered_json::parse(entries[k].fit);
+    json["model"] = law;
+    entries[k].fit = json.dump();
+  };
+  for (const std::size_t k : {0U, 1U, 2U}) set_law(k, "mindlin-dahl");
+  EXPECT_THAT(ToText(entries, ""), Not(HasSubstr("several laws")));
+  set_law(1, "dahl");
+  const auto repeats = nlohmann::json::parse(ToJson(entries, ""))["repeats"];
+  EXPECT_EQ(repeats["slip_force"]["files"], 2);
+  EXPECT_NEAR(repeats["slip_force"]["mean"], 41.0, kRounding);
+  EXPECT_EQ(repeats["half_gap"]["files"], 3);
+  EXPECT_THAT(ToText(entries, ""),
+              HasSubstr("several laws, mindlin-dahl, dahl: parameters by mindlin-dahl alone"));
+  EXPECT_THAT(IndexPage(entries), HasSubstr("fits are by several laws"));
+}
+
 TEST(Repeats, StateTheErrorOfTheNoiseWhereTheIntervalIsNarrower) {
   const auto repeats = RepeatsOf({{40, 3, kNormal95}, {41, 4, kNormal95}});
   EXPECT_NEAR(repeats["slip_force"]["stated_error"], std::sqrt((9.0 + 16.0) / 2), 10 * kRounding);
