@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "mindahl/convert/conversion.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -43,8 +44,23 @@ const models::FrictionModel& ModelOf(const ConvertOptions& request) {
   return *models::FindFrictionModel(request.from == "dahl" ? "dahl" : "mindlin-dahl");
 }
 
-/// Takes law and amplitude from a fit where they are not given.
-void TakeFit(const Json& fit, ConvertOptions& request) {
+/// Returns the terms of a fit that the target does not have: all but the law's, what a rig takes,
+/// what is of the record, and a viscous force where the target has one.
+std::vector<std::string> TermsLeftOut(const Json& fit, const TargetRow& target) {
+  std::vector<std::string> left_out;
+  const Json parameters = report::At(fit, "/parameters");
+  for (const auto& [name, parameter] : parameters.items()) {
+    const identification::Term* term = identification::TermOfParameter(name);
+    const bool is_of_law = term == nullptr || term->presence == identification::Presence::kAlways;
+    const bool is_apart = name == "rig_stiffness" || (name == "viscous" && target.Uses(name));
+    if (is_of_law || is_apart || term->scope == identification::Scope::kRecord) continue;
+    if (parameter.value("value", Json()) != 0.0) left_out.push_back(name);
+  }
+  return left_out;
+}
+
+/// Takes law, amplitude and viscous force from a fit where they are not given.
+void TakeFit(const Json& fit, const TargetRow& target, ConvertOptions& request) {
   if (request.from.empty()) request.from = report::At(fit, "/model") == "dahl" ? "dahl" : "masing";
   const auto take = [&](std::optional<double>& value, const std::string& place) {
     const Json found = report::At(fit, place);
@@ -58,6 +74,9 @@ void TakeFit(const Json& fit, ConvertOptions& request) {
     const bool is_open = known == "not_identifiable" || known == "bounded_below";
     if (!is_open || report::At(fit, place + "/status") == "fixed") take(*value, place + "/value");
   }
+  std::optional<double> viscous;
+  if (target.Uses("viscous")) take(viscous, "/parameters/viscous/value");
+  if (request.normal.viscous == 0) request.normal.viscous = std::max(viscous.value_or(0.0), 0.0);
   const LawOptions& law = request.law;
   if (request.amplitude || !law.sigma || !law.slip_force) return;
   take(request.amplitude, "/measured/amplitude");
@@ -94,8 +113,12 @@ std::string ErrorAtAmplitude(const LoopError& error, double amplitude) {
 }
 
 void RunConvert(ConvertOptions request, Console& console) {
+  const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
+  std::vector<std::string> left_out;
   if (!request.fit.empty()) {
-    TakeFit(ReadFit(request.fit), request);
+    const Json fit = ReadFit(request.fit);
+    TakeFit(fit, target, request);
+    left_out = TermsLeftOut(fit, target);
     Require(request.law.alpha, "--alpha", request);
   }
   if (request.from.empty()) request.from = "masing";
@@ -105,7 +128,6 @@ void RunConvert(ConvertOptions request, Console& console) {
   const double amplitude = Require(request.amplitude, "--amplitude", request);
   request.options.amplitude = amplitude;
   const double tolerance = request.options.tolerance;
-  const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   Validate(request.normal, target);
   const convert::Conversion made =
       convert::Convert({&ModelOf(request), law}, target, request.options);
@@ -122,7 +144,11 @@ void RunConvert(ConvertOptions request, Console& console) {
     }
   }
   const LoopError& error = made.at_amplitude;
-  const std::string error_text = ErrorAtAmplitude(error, amplitude);
+  const std::string error_text =
+      ErrorAtAmplitude(error, amplitude) +
+      (left_out.empty()
+           ? ""
+           : fmt::format(", of the law alone: without the fit's {}", fmt::join(left_out, ", ")));
   const auto& within = made.within;
   constexpr int kDigits = 8;
   const std::string text =
@@ -143,7 +169,8 @@ void RunConvert(ConvertOptions request, Console& console) {
        {"elements", elements},
        {"error_at_amplitude",
         {{"force", NumberOrNull(error.force)}, {"energy", NumberOrNull(error.energy)}}},
-       {"within", within ? Json({within->lower, within->upper}) : Json()}});
+       {"within", within ? Json({within->lower, within->upper}) : Json()},
+       {"left_out", left_out}});
   const std::string& lines_path = request.input_lines_path;
   if (!lines_path.empty()) {
     const std::vector<std::string> lines =
@@ -194,8 +221,10 @@ void AddConvertCommand(CLI::App& app, Console& console) {
                      "N", "N");
   result.AddQuantity("--contact-radius", options->normal.contact_radius,
                      "contact radius [m] for --to lammps: the stiffness follows it", "M", "m");
-  result.Add("--viscous", options->normal.viscous,
-             "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
+  result.Add(
+      "--viscous", options->normal.viscous,
+      "force per speed [N s/m], by default the fit's: lugre, mujoco,\nmujoco-joint, urdf, sdf",
+      "C");
   const OptionGroup outputs(command, "Output");
   outputs.Add("--input-lines", options->input_lines_path,
               "lines as the other program reads them; - for standard output", "PATH");

@@ -85,6 +85,24 @@ TEST_F(Convert, TakesLawAndAmplitudeOfAFitUnlessTheyAreGivenOrNotDetermined) {
   ExpectRefused(command("{}"), "is not the result of a fit");
 }
 
+TEST_F(Convert, SaysWhatOfAFitTheTargetHasNot) {
+  const std::string fit = Write("fit.json", R"({"schema": "mindahl.fit/2", "model": "dahl",
+      "parameters": {"sigma": {"value": 5e7}, "alpha": {"value": 0.5}, "slip_force": {"value": 30},
+      "asymmetry": {"value": -0.2}, "viscous": {"value": 12.5}, "force_offset_2": {"value": 1},
+      "slip_slope": {"value": 0, "status": "fixed"}, "force_drift": {"value": 0.1}},
+      "measured": {"amplitude": 2e-6}})");
+  const json joint = JsonOf("convert --to mujoco-joint " + fit);
+  EXPECT_EQ(joint["left_out"], json({"asymmetry"}));
+  EXPECT_EQ(Value(joint, "damping"), 12.5);
+  EXPECT_EQ(Value(JsonOf("convert --to mujoco-joint --viscous 3 " + fit), "damping"), 3.0);
+  EXPECT_EQ(JsonOf("convert --to dahl " + fit)["left_out"], json({"asymmetry", "viscous"}));
+  EXPECT_THAT(Done("convert --to dahl --input-lines - " + fit + " --json " + Path("c.json")).out +
+                  Done("convert --to dahl " + fit).out,
+              HasSubstr("of the law alone: without the fit's asymmetry, viscous\n"));
+  EXPECT_THAT(Done("convert --to urdf --input-lines - " + fit).out,
+              AllOf(HasSubstr("without the fit's asymmetry -->"), HasSubstr("damping=\"12.5\"")));
+}
+
 TEST_F(Convert, OfAContactThatSticksHasNoRelativeErrorOfTheEnergy) {
   // Half of what Jenkins' element slips at.
   const std::string text =
