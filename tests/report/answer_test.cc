@@ -253,6 +253,14 @@ TEST(Answer, AsksWhetherLoadsBelongToFilesWhoseLoopsAreAsFullAtAnotherHalfGapOve
   EXPECT_EQ(LineOf(input, "check"), "");
 }
 
+TEST(Answer, SaysThatTheTimeIsCounted) {
+  ReportInput input = MadeInput();
+  input.records[0].displacement = {.name = "x [m]", .index = 1, .unit = "m"};
+  input.sample_rate = 100.0;
+  EXPECT_EQ(LineOf(input, "columns"),
+            "loop_1.csv: displacement 'x [m]' (1), time by --sample-rate 100 Hz");
+}
+
 }
 
 TEST(Answer, HasTheNextStepThatWasTried) {
