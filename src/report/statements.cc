@@ -115,7 +115,8 @@ void RequireFitted(const Report& report, std::string_view what) {
 namespace {
 
 /// Sentences by the code of a finding. Of one that has a kind the row "code.kind" goes before that
-/// of its code, and where the record shows a loop that slides the row "code.slides". Numbers of the
+/// of its code, and where the record shows a loop that slides the row "code.slides", else where the
+/// least Tc is next to the largest force that was measured "code.near". Numbers of the
 /// finding stand in braces: {count}, {share%}, {gate:excitation} in a unit.
 constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::string_view>>({
     // about the record
@@ -147,6 +148,9 @@ constexpr auto kSentences = std::to_array<std::pair<std::string_view, std::strin
     {"slip_force_bounded_below",
      "the loop does not come near slip: raise the amplitude until the force levels off (mindahl "
      "plan says how far)"},
+    {"slip_force_bounded_below.near",
+     "whether it slips is not known: raise the amplitude until the force levels off (mindahl plan "
+     "says how far)"},
     {"slip_force_bounded_below.slides", "the force keeps changing while the contact slides"},
     {"alpha_limited_by_load", "at the limit of the law for a load that varies"},
     {"search_limit", "the search stopped at its limit; give --bound {parameter}=LO:HI"},
@@ -216,14 +220,33 @@ std::string ValueOf(std::string_view place, const Finding& finding, const FitRes
                                       : fmt::format("{:.2g}", number);
 }
 
+/// True if the least slip force is no more than 1.2 times the largest force of the widest record.
+bool IsNearSlip(const FitResult& fit) {
+  constexpr double kNear = 1.2;
+  const ParameterEstimate* slip_force = fit.Find("slip_force");
+  if (slip_force == nullptr || !slip_force->lower95) return false;
+  const ParameterEstimate* offset = fit.Find("force_offset");
+  const RecordFit& record = fit.WidestRecord();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < record.fitted_force.size(); ++i) {
+    const bool is_of_force = fit.response == loop::Channel::kForce;
+    const double force = record.fitted_force[i] - (is_of_force ? record.residual[i] : 0.0);
+    largest = std::max(largest, std::abs(force - (offset == nullptr ? 0.0 : offset->value)));
+  }
+  return *slip_force->lower95 <= kNear * largest;
+}
+
 }  // namespace
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;
   const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
+  const char* const state = slides                                    ? "slides"
+                            : !fit.records.empty() && IsNearSlip(fit) ? "near"
+                                                                      : "";
   std::string_view text = code;
   for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind),
-                                 fmt::format("{}.{}", code, slides ? "slides" : "")}) {
+                                 fmt::format("{}.{}", code, state)}) {
     const auto row =
         std::ranges::find(kSentences, key, [](const auto& each) { return each.first; });
     if (row != kSentences.end()) text = row->second;

@@ -145,6 +145,26 @@ TEST(Answer, OfALowerLimitHasThatAlone) {
               StartsWith("μ > 0.784, Tc > 39.2 N: the loop does not come near slip"));
 }
 
+TEST(Answer, OfALowerLimitNextToTheLargestForceDoesNotKnowWhetherItSlips) {
+  ReportInput input = MadeInput();
+  auto& slip_force = input.fit.parameters[2];
+  slip_force.identifiability = Identifiability::kBoundedBelow;
+  slip_force.upper95.reset();
+  input.fit.findings = {{.code = "slip_force_bounded_below", .parameters = {"slip_force"}}};
+  const std::vector<double>& force = input.records[0].record.force;
+  const double offset = 100.0;
+  testing::AddParameter(input.fit, "force_offset", "N", offset, 0.1);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    input.fit.records[0].fitted_force[i] += offset;
+    largest = std::max(largest, std::abs(force[i]));
+  }
+  input.fit.parameters[2].lower95 = 1.19 * largest;
+  EXPECT_THAT(LineOf(input, "friction"), HasSubstr("N: whether it slips is not known: raise"));
+  input.fit.parameters[2].lower95 = 1.21 * largest;
+  EXPECT_THAT(LineOf(input, "friction"), HasSubstr("N: the loop does not come near slip: raise"));
+}
+
 TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
   ReportInput input = MadeInput();
   input.known.normal_load = 50.0;
