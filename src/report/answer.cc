@@ -218,8 +218,10 @@ class Writer {
   void AddLoad() {
     const ParameterEstimate* exponent = fit_.Find("load_exponent");
     if (exponent == nullptr) return;
+    const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
     const char* const hertz = report_.is_torsional() || !exponent->is_known() ? ""
                               : DeniesHertz(fit_) ? "Hertz's 1/3 is rejected, "
+                              : by_rig            ? "Hertz's 1/3 fits in a compliant rig, "
                                                   : "Hertz's 1/3 fits, ";
     AddParameter("load", "σ ∝ N^p, p", *exponent,
                  fmt::format("{}σ and Tc are at the mean of {} loads", hertz, fit_.records.size()));

@@ -281,6 +281,15 @@ TEST(Answer, SaysThatTheTimeIsCounted) {
             "loop_1.csv: displacement 'x [m]' (1), time by --sample-rate 100 Hz");
 }
 
+TEST(Answer, OfALoadSeriesThatARigMayBendDoesNotRejectHertz) {
+  ReportInput input = MadeInput();
+  auto& exponent = testing::AddParameter(input.fit, "load_exponent", "-", 0.216, 0.002);
+  exponent.upper95 = 0.333;
+  EXPECT_THAT(LineOf(input, "load"), HasSubstr("Hertz's 1/3 is rejected"));
+  input.fit.findings = {{.code = "shape_or_rig", .numbers = {{"rig_stiffness", 8e7}}}};
+  EXPECT_THAT(LineOf(input, "load"), HasSubstr("Hertz's 1/3 fits in a compliant rig"));
+  input.fit.parameters.back().upper95 = 0.3;
+  EXPECT_THAT(LineOf(input, "load"), HasSubstr("Hertz's 1/3 is rejected"));
 }
 
 TEST(Answer, HasTheNextStepThatWasTried) {
