@@ -283,6 +283,7 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
   constexpr double kStiffestModulus = 2e12;   // [Pa]
   constexpr double kLargestCompliance = 1.0;  // [1/Pa]
   constexpr double kLargestFriction = 5.0;    // [-]
+  constexpr double kLeastPressure = 1e3;      // [Pa]
   constexpr double kLargestRadiusShare = 1.0 / 3.0;
   std::vector<std::string> doubts;
   if (known.tangential_compliance && known.tangential_compliance->value > kLargestCompliance) {
@@ -312,6 +313,17 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
         "contact radius a = {:.4g} m is more than a third of the radius {:.4g} m of a body, beyond "
         "Hertz's theory: check load, radii, moduli and their units",
         *large, smallest_radius));
+  }
+  const auto* const known_radius =
+      std::ranges::find_if(radii, [](double radius) { return radius > 0; });
+  if (known.normal_load && known_radius != radii.end()) {
+    const double pressure = HertzMaximumPressure(known.normal_load->value, *known_radius);
+    if (pressure < kLeastPressure) {
+      doubts.push_back(fmt::format(
+          "maximum pressure = {:.4g} Pa of contact radius a = {:.4g} m is below 1 kPa: check load "
+          "and radius and their units",
+          pressure, *known_radius));
+    }
   }
   if (friction_coefficient && *friction_coefficient > kLargestFriction) {
     doubts.push_back(

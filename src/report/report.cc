@@ -181,7 +181,11 @@ std::string LoadsOfOtherFiles(const Report& report) {
 std::string WhatToCheck(const Report& report) {
   if (!report.is_torsional()) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
-    if (std::string found = ImpossibleContact(report); !found.empty()) return found;
+    if (std::string found = ImpossibleContact(report); !found.empty()) {
+      // What is beyond any solid among the inputs is the likelier fault.
+      const std::vector<std::string> doubts = contact::DoubtsAbout(report.known, std::nullopt);
+      return doubts.empty() ? found : doubts.front();
+    }
   }
   const std::string loads = LoadsOfOtherFiles(report);
   return loads.empty() ? DifferentLoads(report) : loads;

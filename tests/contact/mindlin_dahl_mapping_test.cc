@@ -429,6 +429,13 @@ TEST(Doubts, AreOfAContactAsLargeAsTheSmallerOfItsBodies) {
   }
 }
 
+TEST(Doubts, AreOfAPressureThatNoSphereHas) {
+  KnownContact known{.normal_load = 50.0, .contact_radius = 0.25};  // mm as m
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("pressure = 382 Pa of contact")));
+  known.contact_radius = 2.5e-4;
+  EXPECT_THAT(DoubtsAbout(known, 0.3), IsEmpty());
+}
+
 TEST(Doubts, AreOfAFrictionBeyondWhatSlides) {
   EXPECT_THAT(DoubtsAbout({}, 5.0), IsEmpty());
   EXPECT_THAT(DoubtsAbout({}, 6.0), ElementsAre(HasSubstr("mu = 6 is above 5")));

@@ -273,6 +273,14 @@ TEST(Answer, AsksWhetherLoadsBelongToFilesWhoseLoopsAreAsFullAtAnotherHalfGapOve
   EXPECT_EQ(LineOf(input, "check"), "");
 }
 
+TEST(Answer, NamesAModulusThatNoSolidHasBeforeTheUnitOfTheDisplacement) {
+  ReportInput input = MadeInput();
+  input.known = kSphereOnPlane;
+  for (auto* body : {&input.known.body_1, &input.known.body_2}) body->youngs_modulus = 210e3;
+  EXPECT_THAT(LineOf(input, "check"),
+              StartsWith("Young's modulus of body 1 = 2.1e+05 Pa is below"));
+}
+
 TEST(Answer, SaysThatTheTimeIsCounted) {
   ReportInput input = MadeInput();
   input.records[0].displacement = {.name = "x [m]", .index = 1, .unit = "m"};

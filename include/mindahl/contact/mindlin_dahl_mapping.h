@@ -129,6 +129,7 @@ std::optional<UncertainValue> IdentifyContact(ContactQuantity quantity, double s
 ///   E < 1 MPa      softer than rubber
 ///   E > 2 TPa      stiffer than diamond
 ///   a > R/3        of the smaller radius: Hertz's parabola is no sphere any more (Johnson §4.1)
+///   p₀ < 1 kPa     a gram on a coin, of the given a, else the identified one, else Hertz's
 ///   μ > 5
 /// @param friction_coefficient  μ [-], given or identified
 /// @param fitted_radius  a [m] as identified; a given one and Hertz's are taken from `known`
