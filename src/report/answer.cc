@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -188,13 +189,26 @@ class Writer {
                     std::ranges::any_of(others, names_no_unit) ? ", units among them" : ""));
   }
 
+  /// Returns what the column of the load says where another load was given; "" where they agree.
+  std::string OtherLoad(double given) {
+    constexpr double kAgree = 0.1;
+    double sum = 0.0;
+    double count = 0.0;
+    for (const io::RecordFile& file : report_.records) {
+      for (const double load : file.record.normal_load) sum += load;
+      count += static_cast<double>(file.record.normal_load.size());
+    }
+    if (count == 0 || std::abs(sum / count - given) <= kAgree * given) return "";
+    return fmt::format(" as given, not the {} of the load column", Quantity(sum / count, "N", 4));
+  }
+
   void AddFriction() {
     const ParameterEstimate& slip_force = *fit_.Find("slip_force");
     const ContactQuantity* load = report_.Find("normal_load");
     std::string remark;
     if (load != nullptr && load->value &&
         !QuantityText(*report_.Find("friction_coefficient")).empty()) {
-      remark = fmt::format("at N = {}", Quantity(*load->value, "N", 4));
+      remark = fmt::format("at N = {}{}", Quantity(*load->value, "N", 4), OtherLoad(*load->value));
     } else if (load != nullptr && !load->value && slip_force.is_known()) {
       remark = "μ needs --normal-load";
     }

@@ -281,6 +281,16 @@ TEST(Answer, NamesAModulusThatNoSolidHasBeforeTheUnitOfTheDisplacement) {
               StartsWith("Young's modulus of body 1 = 2.1e+05 Pa is below"));
 }
 
+TEST(Answer, NamesTheLoadOfTheColumnWhereAnotherIsGiven) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 200.0;
+  input.records[0].record.normal_load.assign(input.records[0].record.size(), 20.0);
+  EXPECT_THAT(LineOf(input, "friction"),
+              EndsWith("at N = 200 N as given, not the 20 N of the load column"));
+  input.known.normal_load = 21.0;
+  EXPECT_THAT(LineOf(input, "friction"), EndsWith("at N = 21 N"));
+}
+
 TEST(Answer, SaysThatTheTimeIsCounted) {
   ReportInput input = MadeInput();
   input.records[0].displacement = {.name = "x [m]", .index = 1, .unit = "m"};
