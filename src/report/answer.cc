@@ -23,8 +23,10 @@ std::string QuantityText(const ContactQuantity& quantity) {
         "{} {}", quantity.symbol,
         QuantityWithInterval(*quantity.value, quantity.lower, quantity.upper, quantity.unit));
   }
-  if (!quantity.lower) return "";
-  return fmt::format("{} > {}", quantity.symbol, Quantity(*quantity.lower, quantity.unit, 3));
+  const std::optional<double>& limit = quantity.lower ? quantity.lower : quantity.upper;
+  if (!limit) return "";
+  return fmt::format("{} {} {}", quantity.symbol, quantity.lower ? ">" : "<",
+                     Quantity(*limit, quantity.unit, 3));
 }
 
 bool IsInadequate(const Report& report) {

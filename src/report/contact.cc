@@ -179,6 +179,14 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
       }
     } else {
       Fill(fit, *found, dependence, {&parameter}, quantity);
+      const Shown shown = WhatIsShown(parameter);
+      if (dependence.exponent != 0 &&
+          (shown == Shown::kLowerLimit || shown == Shown::kUpperLimit)) {
+        quantity.value.reset();
+        const bool has_lower = (shown == Shown::kLowerLimit) == (dependence.exponent > 0);
+        (has_lower ? quantity.upper : quantity.lower).reset();
+        quantity.why = fmt::format("{} is at its bound: it has a limit only", row.parameter);
+      }
     }
     if (row.name != "friction_coefficient" || fit.Find("asymmetry") == nullptr) continue;
     quantities.push_back(SlipForce(fit, "slip_force_positive", "Tc up", 1));

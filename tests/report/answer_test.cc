@@ -165,6 +165,15 @@ TEST(Answer, OfALowerLimitNextToTheLargestForceDoesNotKnowWhetherItSlips) {
   EXPECT_THAT(LineOf(input, "friction"), HasSubstr("N: the loop does not come near slip: raise"));
 }
 
+TEST(Answer, OfALowerBoundSaysNoMoreOfWhatFollows) {
+  ReportInput input = MadeInput();
+  input.known.normal_load = 50.0;
+  auto& slip_force = input.fit.parameters[2];
+  slip_force.status = ParameterStatus::kAtLowerBound;
+  slip_force.identifiability = Identifiability::kEffective;
+  EXPECT_THAT(LineOf(input, "friction"), StartsWith("μ < 0.816, Tc < 40.8 N"));
+}
+
 TEST(Answer, OfAnUpperBoundHasTheIntervalOfWhatFollows) {
   ReportInput input = MadeInput();
   input.known.normal_load = 50.0;
