@@ -270,7 +270,7 @@ std::string ToText(const PlanOptions& options, const Plan& plan) {
     const Json& fewest = reached["fewest_cycles"];
     text += fmt::format("  {}: ", report::CellText(reached["initial_state"]));
     if (!least.is_null()) {
-      text += fmt::format("X >= {:.3g} m, {:.3g} times the displacement at slip\n",
+      text += fmt::format("X = {:.3g} m (least), {:.3g} times the displacement at slip\n",
                           least.get<double>(), least.get<double>() / plan.slip);
     } else if (!fewest.is_null()) {
       text += fmt::format(
