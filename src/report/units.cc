@@ -21,13 +21,13 @@ constexpr std::array<std::string_view, 6> kPrefixed = {"N", "m", "J", "Pa", "s",
 
 }  // namespace
 
-ScaledUnit UnitFor(std::string_view unit, double magnitude) {
+ScaledUnit UnitFor(std::string_view unit, double magnitude, int digits) {
   const double size = std::abs(magnitude);
   if (unit == "-") return {1.0, ""};
   if (!(size > 0) || !std::isfinite(size)) return {1.0, std::string(unit)};
-  // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
-  constexpr double kRoundsUp = 1 - 5e-5;
-  const int thousands = static_cast<int>(std::floor(std::log10(size / kRoundsUp) / 3));
+  // A value that rounds to 1000 is shown as 1 of the next prefix.
+  const double rounds_up = 1 - 0.5 * std::pow(10.0, -digits);
+  const int thousands = static_cast<int>(std::floor(std::log10(size / rounds_up) / 3));
   const auto factor = [](int power) { return std::pow(10.0, 3 * power); };
   if (unit == "N/m") {
     const int power = std::clamp(thousands, 0, 3);
@@ -68,14 +68,12 @@ void ScaleAxes(io::PlotPanel& panel, std::string_view x_name, std::string_view x
 }
 
 std::string Quantity(double value, std::string_view unit, int digits) {
-  const ScaledUnit scaled = UnitFor(unit, value);
+  constexpr int kLeast = 3;
+  const ScaledUnit scaled = UnitFor(unit, value, std::max(digits, kLeast));
   const double number = value / scaled.factor;
-  // 120 of two digits is not 1.2e+02.
-  constexpr double kThousand = 1000.0;
-  const int places = std::abs(number) < 10          ? 1
-                     : std::abs(number) < 100       ? 2
-                     : std::abs(number) < kThousand ? 3
-                                                    : digits;
+  // 120 of two digits is not 1.2e+02, nor is 99.6.
+  const double size = std::abs(number);
+  const int places = size < 9.5 ? 1 : size < 99.5 ? 2 : size < 1000 ? kLeast : digits;
   return fmt::format("{:.{}g}{}{}", number, std::max(digits, places),
                      scaled.name.empty() ? "" : " ", scaled.name);
 }

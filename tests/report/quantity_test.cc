@@ -16,6 +16,9 @@ TEST(Quantity, IsInTheUnitThatMakesANumberFromOneToAThousand) {
   EXPECT_EQ(Quantity(0.125, "N", 2), "125 mN");  // not 1.2e+02
   EXPECT_EQ(Quantity(9.996e-4, "m", 4), "999.6 µm");
   EXPECT_EQ(Quantity(9.9996e-4, "m", 4), "1 mm");  // not 1000 µm
+  EXPECT_EQ(Quantity(0.9996, "N", 3), "1 N");      // not 1e+03 mN
+  EXPECT_EQ(Quantity(-0.9996, "N", 2), "-1 N");
+  EXPECT_EQ(Quantity(99.6, "-", 2), "99.6");  // not 1e+02
   // A unit that takes no prefix is kept, and so is the unit of zero.
   EXPECT_EQ(Quantity(4.2e-11, "1/Pa", 3), "4.2e-11 1/Pa");
   EXPECT_EQ(Quantity(0.25, "-", 3), "0.25");

@@ -41,7 +41,8 @@ struct ScaledUnit {
 };
 
 /// @param unit  one that the reports use, as "m", "N/m" or "N m"; of another the factor is 1
-ScaledUnit UnitFor(std::string_view unit, double magnitude);
+/// @param digits  of the number that is written
+ScaledUnit UnitFor(std::string_view unit, double magnitude, int digits = 4);
 
 /// Returns "sigma [N/µm]"; the name alone of a unit that is empty or "-".
 std::string WithUnit(std::string_view name, std::string_view unit);
