@@ -67,7 +67,13 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
     excitation.amplitude = *options.lambda * gross_slip;
   }
   motion = models::MakeExcitation(excitation);
-  if (excitation.waveform != models::Waveform::kGrowingSine) motion.envelope.clear();
+  if (excitation.waveform == models::Waveform::kGrowingSine) return motion;
+  motion.envelope.clear();
+  if (excitation.growth != models::ExcitationOptions().growth) {
+    throw InputError(
+        fmt::format("--growth has no effect with --waveform {}: give --waveform growing-sine",
+                    options.waveform));
+  }
   return motion;
 }
 

@@ -147,6 +147,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"simulate --sigma 1 --slip-force 1 -o #", "--lambda or --amplitude"},
     {"simulate --sigma 1 --slip-force 1 --lambda 1 --amplitude 1", "--lambda or --amplitude"},
     {"simulate --sigma 1 --slip-force 1 --amplitude 1 --contact-radius 1", "exclude"},
+    {"simulate --sigma 1 --slip-force 1 --amplitude 1 --growth 5", "--growth has no effect with"},
     {"simulate --sigma 1 --slip-force 1 --path p.csv --waveform sine", "excludes --path"},
     {"simulate --sigma 1 --slip-force 1 --lambda 1 --waveform triangel",
      "--waveform: 'triangel' is unknown: did you mean 'triangle'?"},
