@@ -482,6 +482,9 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddJoin(command, options->fit);
   AddColumnOptions(command, options->fit.columns);
   AddModelOptions(command, options->fit);
+  for (const char* refused : {"--compare", "--covariate", "--noise-in"}) {
+    command.get_option(refused)->group("");
+  }
   AddContactOptions(command, options->fit.contact);
   const OptionGroup cycles(command, "Cycles");
   cycles.AddCount("--average", options->track.together,
