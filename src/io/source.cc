@@ -171,8 +171,8 @@ void LinePieces::FindEncoding(std::string_view head) {
   if (head.empty()) Refuse("{}: the file is empty", name_);
   if (head.starts_with("PK\x03\x04") || head.starts_with("\xD0\xCF\x11\xE0")) {
     Refuse(
-        "{}: is a workbook of a spreadsheet: save its sheet as CSV there, or read it by "
-        "mindahl.read_excel() in Python",
+        "{}: is a workbook of a spreadsheet: save its sheet as CSV there, or read it "
+        "in Python by pandas.read_excel(), whose frame mindahl.fit() takes",
         name_);
   }
   const bool is_found = encoding_.empty();
