@@ -31,6 +31,7 @@ def fit(
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, prior: Optional[Mapping[str, Range]] = None,
+    select: Union[None, str, Sequence[str], Mapping[str, Range]] = None,
     cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None,
     trim: Union[bool, str] = True, time_window: Optional[Range] = None,
@@ -82,7 +83,8 @@ def fit(
             units.
 
     What counts
-        cycles, samples: (first, last), counted from 1.
+        select: "cycles=2:5", or a dict of cycles, samples, time and load with (first, last), cycles
+            and samples counted from 1. cycles, samples: the same of one.
         trim: leaves out what at the ends is not of the test, with a note.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known

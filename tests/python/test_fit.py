@@ -54,6 +54,9 @@ def arrays_of(path):
      ["--fix", f"alpha={1 / 3!r}", "--bound", "slip_force=5:50", "--start", "sigma=3e7"]),
     ({"rig_stiffness": 1e9, "terms": "force_drift", "cycles": (1, 2)},
      ["--rig-stiffness", "1e9", "--terms", "force_drift", "--select", "cycles=1:2"]),
+    ({"select": {"cycles": (1, 2), "samples": (1, 400)}},
+     ["--select", "cycles=1:2", "--select", "samples=1:400"]),
+    ({"select": ["time=0.2:2.5"]}, ["--select", "time=0.2:2.5"]),
     ({"fix": {"slip_trend": 0.01, "inertia": 0.001, "viscous": 5.0}},
      ["--fix", "slip_trend=0.01", "--fix", "inertia=0.001", "--fix", "viscous=5"]),
     ({"terms": "asymmetry", "initial_state": "steady", "fix": {"force_offset": 0}},
@@ -340,7 +343,7 @@ def test_every_option_of_the_program_s_fit_is_a_keyword():
     options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help-all"), re.M))
     keywords = set(inspect.signature(mindahl.fit).parameters)
     outputs = {"json", "residuals", "plot", "strict", "report", "details"}
-    general = {"help", "help-all", "config", "version", "select"}  # select: cycles, samples, …
+    general = {"help", "help-all", "config", "version"}
     missing = {option.replace("-", "_")
                for option in options - outputs - general} - keywords - {"with"}
     assert len(options) > 30
