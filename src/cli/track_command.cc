@@ -231,7 +231,9 @@ std::uint64_t SeedOf(const CLI::App& command) {
     if (option->count() == 0) words += "=" + option->get_default_str();
   }
   std::uint64_t seed = 0xcbf29ce484222325U;
-  for (const unsigned char letter : words) seed = (seed ^ letter) * 0x100000001b3U;
+  for (const char letter : words) {
+    seed = (seed ^ static_cast<unsigned char>(letter)) * 0x100000001b3U;
+  }
   return seed;
 }
 

@@ -495,8 +495,9 @@ FitResult Selection::FitFromHere() {
   return FitTo(from_here, depth_);
 }
 
-/// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose Tc
-/// or leave more than is known to be left, else from where it is. The law stays where its Tc would be lost.
+/// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
+/// Tc or leave more than is known to be left, else from where it is. The law stays where its Tc
+/// would be lost.
 void Selection::FitLast(const FitResult& law) {
   FitResult last = FitTo(base_.options, depth_);
   const double most_left = (1 + Limits().worthwhile_gain) * base_.fit.rms;

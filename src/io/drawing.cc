@@ -207,7 +207,7 @@ std::string DrawPoints(const PlotSeries& series, const std::string& look) {
   if (style == PlotStyle::kPoints) return draw("dots", Points(x, y, "h0"));
   if (style == PlotStyle::kMarkers) return draw("marker", Points(x, y, kCircle));
   // A path of one point draws nothing.
-  const std::string line = draw("line", Points(x, y, "") + "h0");
+  std::string line = draw("line", Points(x, y, "") + "h0");
   if (style == PlotStyle::kLineAndPoints) return line + draw("marker", Points(x, y, kCircle));
   if (style != PlotStyle::kBand) return line;
   const std::string back = Points({x.rbegin(), x.rend()}, {lower.rbegin(), lower.rend()}, "", 'L');

@@ -59,11 +59,11 @@ class RecordBuilder {
     }
     file_.notes = table.notes;
     for (Quantity& quantity : AssignRoles(names, asked, file_.notes)) {
-      ChosenColumn column = Choose(names, quantity, asked.*RulesOf(quantity.role).given);
-      if (quantity.role == Role::kDisplacement) file_.displacement = std::move(column);
-      if (quantity.role == Role::kForce) file_.force = std::move(column);
-      if (quantity.role == Role::kTime) file_.time = std::move(column);
-      if (quantity.role == Role::kNormalLoad) file_.normal_load = std::move(column);
+      const ChosenColumn column = Choose(names, quantity, asked.*RulesOf(quantity.role).given);
+      if (quantity.role == Role::kDisplacement) file_.displacement = column;
+      if (quantity.role == Role::kForce) file_.force = column;
+      if (quantity.role == Role::kTime) file_.time = column;
+      if (quantity.role == Role::kNormalLoad) file_.normal_load = column;
       quantities_.push_back(std::move(quantity));
     }
     file_.is_torsional = quantities_.front().unit.dimension == Dimension::kAngle;

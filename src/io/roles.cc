@@ -263,7 +263,7 @@ class RoleAssigner {
     }
     // The only column with evidence has it of both.
     if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
-    for (const std::size_t k : {0, 1}) {
+    for (const std::size_t k : {0U, 1U}) {
       if (!IsMissing(kPair[k]) || best[k].empty()) continue;
       if (best[k].size() > 1) names_.ThrowAmbiguous(kPair[k], {best[k].begin(), best[k].end()});
       Take(*best[k].begin(), kPair[k]);

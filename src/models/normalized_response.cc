@@ -28,7 +28,7 @@ struct KernelShape : backbone::GeneralShape<double> {};
 
 /// Returns the shape that is fastest for many displacements.
 template <typename Shape>
-const Shape& OfMany(const Shape& shape) {
+Shape OfMany(const Shape& shape) {
   return shape;
 }
 KernelShape OfMany(const backbone::GeneralShape<double>& shape) { return {shape}; }

@@ -91,8 +91,8 @@ Json Correlations(const Report& report) {
 }
 
 Json MeasuredJson(const Report& report) {
-  static const RecordFit kNone;
-  const RecordFit& widest = report.failed() ? kNone : report.fit.WidestRecord();
+  static const RecordFit none;
+  const RecordFit& widest = report.failed() ? none : report.fit.WidestRecord();
   const loop::LoopFacts& facts = widest.facts;
   const auto if_closed = [&](std::optional<double> value) {
     return facts.closed ? NumberOrNull(value) : Json();

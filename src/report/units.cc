@@ -39,8 +39,8 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude, int digits) {
   // Nobody reads kilometres or kiloradians.
   const bool is_length = unit == "m" || unit == "rad" || unit == "s";
   const int power = std::clamp(thousands, -kNoPrefix, is_length ? 0 : 3);
-  return {factor(power),
-          fmt::format("{}{}", kPrefixes.at(static_cast<std::size_t>(power + kNoPrefix)), unit)};
+  const int place = power + kNoPrefix;
+  return {factor(power), fmt::format("{}{}", kPrefixes.at(static_cast<std::size_t>(place)), unit)};
 }
 
 std::string WithUnit(std::string_view name, std::string_view unit) {

@@ -229,6 +229,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
     entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
     entry.verdict = report::VerdictWord(report);
+    entry.parameters.reserve(kParameters.size());
     for (const char* parameter : kParameters) {
       const identification::ParameterEstimate* estimate = report.fit.Find(parameter);
       entry.parameters.push_back(estimate == nullptr ? kNone : report::ValueText(*estimate));
