@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <vector>
 
 #include "core/from_chars.h"
 #include "core/text.h"
@@ -23,37 +22,41 @@ struct Entry {
 using enum Dimension;
 constexpr std::array kUnits = {
     Entry{kLength, "m", 1, 1, "meter meters metre metres м"},
-    Entry{kLength, "mm", 1, 1e3, "MM millimeter millimeters millimetre millimetres 毫米 мм"},
-    Entry{kLength, "um", 1, 1e6, "micron microns micrometer micrometers micrometre 微米 мкм"},
-    Entry{kLength, "nm", 1, 1e9},
-    Entry{kLength, "cm", 1, 1e2},
+    Entry{kLength, "mm", 1, 1e3,
+          "MM ㎜ millimeter millimeters millimetre millimetres millimètres milímetros 毫米 мм"},
+    Entry{kLength, "um", 1, 1e6,
+          "㎛ micron microns micrometer micrometers micrometre micrometres mikrometer 微米 мкм"},
+    Entry{kLength, "nm", 1, 1e9, "㎚ nanometer nanometers"},
+    Entry{kLength, "cm", 1, 1e2, "㎝"},
     Entry{kLength, "in", 254, 1e4, "inch inches \""},
     Entry{kLength, "ft", 3048, 1e4, "feet"},
-    Entry{kLength, "mil", 254, 1e7, "thou"},
+    Entry{kLength, "mil", 254, 1e7, "mils thou"},
     Entry{kLength, "pm", 1, 1e12},
     // A mass that stands for a force is its weight.
-    Entry{kForce, "N", 1, 1, "newton newtons 牛 Н"},
-    Entry{kForce, "mN", 1, 1e3},
+    Entry{kForce, "N", 1, 1, "newton newtons 牛 牛顿 Н"},
+    Entry{kForce, "mN", 1, 1e3, "millinewton millinewtons millin"},
     Entry{kForce, "uN", 1, 1e6},
-    Entry{kForce, "kN", 1e3, 1, "KN kilonewton kilonewtons 千牛 кН"},
+    Entry{kForce, "kN", 1e3, 1, "KN kilonewton kilonewtons 千牛 千牛顿 кН"},
     Entry{kForce, "MN", 1e6, 1},
-    Entry{kForce, "lbf", 4.4482216152605, 1, "lb lbs pounds"},
-    Entry{kForce, "kgf", 9.80665, 1, "kg kp"},
+    Entry{kForce, "lbf", 4.4482216152605, 1, "lb lbs pound pounds"},
+    Entry{kForce, "kgf", 9.80665, 1, "kg ㎏ ㎏f kp кгс"},
     Entry{kForce, "kip", 4448.2216152605, 1, "kips"},
     Entry{kForce, "gf", 9.80665, 1e3, "g gram grams gramm"},
     Entry{kForce, "daN", 10, 1},
     Entry{kForce, "dyn", 1, 1e5, "dyne dynes"},
+    Entry{kForce, "ozf", 4.4482216152605, 16, "oz"},
+    Entry{kForce, "cN", 1, 1e2},
     Entry{kAngle, "rad", 1, 1, "radian radians"},
     Entry{kAngle, "mrad", 1, 1e3},
     Entry{kAngle, "deg", std::numbers::pi, 180, "° degree degrees 度"},
     Entry{kAngle, "rev", 2 * std::numbers::pi, 1, "revolutions"},
-    Entry{kTorque, "N m", 1, 1, "Nm N·m N⋅m N*m N-m"},
-    Entry{kTorque, "mN m", 1, 1e3, "mNm mN·m mN⋅m mN*m mN-m"},
-    Entry{kTorque, "uN m", 1, 1e6, "uNm uN·m uN⋅m uN*m uN-m"},
-    Entry{kTorque, "kN m", 1e3, 1, "kNm kN·m kN⋅m kN*m kN-m"},
-    Entry{kTorque, "N mm", 1, 1e3, "Nmm N·mm N⋅mm N*mm N-mm"},
-    Entry{kTorque, "lbf in", 4.4482216152605 * 0.0254, 1, "lbfin lbf·in lbf⋅in lbf*in lbf-in"},
-    Entry{kTorque, "lbf ft", 4.4482216152605 * 0.3048, 1, "lbfft lbf·ft lbf⋅ft lbf*ft lbf-ft"},
+    Entry{kTorque, "N m", 1, 1},
+    Entry{kTorque, "mN m", 1, 1e3},
+    Entry{kTorque, "uN m", 1, 1e6},
+    Entry{kTorque, "kN m", 1e3, 1},
+    Entry{kTorque, "N mm", 1, 1e3},
+    Entry{kTorque, "lbf in", 4.4482216152605 * 0.0254, 1},
+    Entry{kTorque, "lbf ft", 4.4482216152605 * 0.3048, 1},
     Entry{kTime, "s", 1, 1, "sec secs second seconds sek seg 秒 с"},
     Entry{kTime, "ms", 1, 1e3, "msec 毫秒 milliseconds millis"},
     Entry{kTime, "us", 1, 1e6, "usec"},
@@ -70,6 +73,17 @@ constexpr std::array kUnits = {
     Entry{kPressure, "psi", 6894.757293168, 1},
     Entry{kPressure, "kgf/cm2", 98066.5, 1, "kgf/cm²"},
 };
+
+/// True if one of the words between blanks is this.
+bool HasWord(std::string_view words, std::string_view word) {
+  for (std::size_t at = words.find(word); at != words.npos; at = words.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' ')) {
+      return true;
+    }
+  }
+  return false;
+}
 
 /// "µ", which has two code points, and a power of ten, "10^-6 m", as the prefix that they are.
 std::string WithAsciiPrefix(std::string_view symbol) {
@@ -91,6 +105,30 @@ std::string WithAsciiPrefix(std::string_view symbol) {
   return std::string(symbol);
 }
 
+/// Finds the torque that two units make, a force by a length: "N·m", "Nm", "kgf.cm", "ft-lb".
+std::optional<Unit> FindProduct(std::string_view symbol) {
+  constexpr std::size_t kLongest = 12;
+  if (symbol.size() > kLongest) return std::nullopt;
+  for (const std::string_view sign : {" ", "·", "⋅", "*", "-", ".", ""}) {
+    // Without a sign only behind newtons; "in lb" may be pounds.
+    const std::size_t at = sign.empty() ? symbol.find('N') + 1 : symbol.find(sign);
+    if (at == 0 || at >= symbol.size()) continue;
+    std::optional<Unit> force = FindUnit(symbol.substr(0, at));
+    std::optional<Unit> length = FindUnit(Trimmed(symbol.substr(at + sign.size())));
+    if (!force || !length) continue;
+    if (sign != " " && force->dimension == kLength) std::swap(force, length);
+    if (force->dimension != kForce || length->dimension != kLength) continue;
+    const std::string product = force->symbol + " " + length->symbol;
+    const auto* const entry = std::ranges::find(kUnits, product, &Entry::symbol);
+    if (entry != kUnits.end()) {
+      return Unit{product, kTorque, entry->numerator, entry->denominator};
+    }
+    return Unit{product, kTorque, force->numerator * length->numerator,
+                force->denominator * length->denominator};
+  }
+  return std::nullopt;
+}
+
 /// Returns a value in a unit's base from one in `symbol`; empty where that is of another kind.
 std::optional<double> InBaseOf(double value, std::string_view symbol, std::string_view base) {
   if (const std::optional<Unit> base_unit = FindUnit(base)) {
@@ -108,14 +146,12 @@ std::optional<Unit> FindUnit(std::string_view symbol) {
   const std::string ascii = WithAsciiPrefix(symbol);
   const std::string lower = LowerCase(symbol);
   const auto is_it = [&](const Entry& entry) {
-    if (entry.symbol == ascii) return true;
-    const std::vector<std::string_view> words = PartsOf(entry.words, ' ');
     // A single letter, or two, differ by their case: g and G, mN and MN.
-    return std::ranges::find(words, ascii) != words.end() ||
-           (symbol.size() >= 3 && std::ranges::find(words, lower) != words.end());
+    return entry.symbol == ascii || HasWord(entry.words, ascii) ||
+           (symbol.size() >= 3 && HasWord(entry.words, lower));
   };
   const auto* const entry = std::ranges::find_if(kUnits, is_it);
-  if (entry == kUnits.end()) return std::nullopt;
+  if (entry == kUnits.end()) return FindProduct(ascii);
   return Unit{std::string(entry->symbol), entry->dimension, entry->numerator, entry->denominator};
 }
 

@@ -149,10 +149,10 @@ x¶1¶ | - | - | : no column for the force: the file has 1 column
 x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known for the displacement:
    must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in --displacement '1 [m]'
 ¶t,x [m],F [V]¶1,2,3¶ | - | - | :2:3: the unit 'V' of 'F [V]' (column 3) is not known for the
-   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, as in
+   force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
    --force '3 [N]'
 t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'N x10' of 'F (N x10)' (column 3) is not known
-   for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, as in
+   for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
    --force '3 [N]'
 x (1e-5 m),F [N]¶1,2¶ | - | - | :1:1: the unit '1e-5 m' of 'x (1e-5 m)' (column 1) is not known
    for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in

@@ -24,8 +24,8 @@ struct Unit {
 /// Finds a unit by its symbol or another way to write it; nullopt where it is not known.
 ///   length    m, cm, mm, um/µm/micron, nm, pm, in/inch, ft/feet, mil/thou
 ///   angle     rad, mrad, deg/°, rev
-///   force     N, mN, uN/µN, daN, kN, MN, lbf/lb, kgf/kg, gf/g/grams, kip, dyn
-///   torque    N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m
+///   force     N, mN, uN/µN, cN, daN, kN, MN, lbf/lb, kgf/kg, gf/g/grams, kip, dyn, ozf/oz
+///   torque    a force by a length: N m, kgf cm, lbf in; "Nm", "N·m", "N*m" and "N-m" are N m
 ///   time      s/sec, ms, us/µs, ns, min, h
 ///   pressure  Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2
 /// Case decides between mN (10⁻³) and MN (10⁶).
