@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -14,8 +15,6 @@
 
 namespace mindahl::io {
 namespace {
-
-constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 /// The texts that spreadsheets write for a number that they could not compute, and other marks.
 constexpr std::array<std::string_view, 19> kMissingMarks = {
@@ -136,6 +135,9 @@ std::string_view CellCursor::Take() {
 }
 
 Cell ReadCell(std::string_view text, bool decimal_comma) {
+  if (text.find("\u2212") != text.npos) {  // the sign of minus of word processors
+    return ReadCell(boost::replace_all_copy(std::string(text), "\u2212", "-"), decimal_comma);
+  }
   if (text.empty() || IsMissingMark(text)) return {.kind = Cell::Kind::kMissing};
   std::string_view digits = text;
   const bool negative = digits.front() == '-';

@@ -11,6 +11,8 @@ namespace mindahl::io {
 
 inline constexpr double kDay = 86'400.0;  // [s]
 
+constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
 /// Takes the first row off a text, without its end: a line, and those below it while a quotation
 /// mark is open.
 /// @param lines       increased by the number of lines taken

@@ -59,6 +59,7 @@ struct Row {
   [[nodiscard]] std::optional<Strings> NamesByBlanks(std::size_t number) const {
     Strings names;
     for (const std::string& word : cells) {
+      if (names.empty() && (word == "%" || word == "//")) continue;  // the mark of a comment
       const bool is_within = !names.empty() && names.back().find_first_of("[(") != text.npos &&
                              names.back().find_first_of("])") == text.npos;
       if (!names.empty() && (is_within || word.starts_with('[') || word.starts_with('('))) {
@@ -110,7 +111,6 @@ class Reading {
     std::vector<std::size_t> numbers;
     for (const Row& row : rows_) {
       if (!row.HasData()) continue;
-      most_cells_ = std::max(most_cells_, row.columns);
       numbers.resize(std::max(numbers.size(), row.kinds.size()));
       layout_.holds_numbers.resize(numbers.size());
       for (std::size_t column = 0; column < row.kinds.size(); ++column) {
@@ -139,6 +139,9 @@ class Reading {
     layout_.header.file = file;
     data_ = FirstDataRow();
     PassResults();
+    for (const Row& row : std::span(rows_).subspan(data_)) {
+      if (row.HasData()) most_cells_ = std::max(most_cells_, row.columns);
+    }
     layout_.data_offset = rows_[data_].offset;
     layout_.data_line = rows_[data_].line;
     FindNames();
@@ -279,7 +282,9 @@ class Reading {
       if (!cells) continue;
       if (IsUnitsRow(*cells)) {
         const bool states = StatesUnits(cells->front());
-        if (!units_.empty() || (!states && !names_.empty())) continue;
+        // Units may stand above the names, or above a row of types, "double", where names would.
+        const bool are_above = k + 1 == header && std::ranges::all_of(*cells, LooksLikeUnit);
+        if (!units_.empty() || (!states && !names_.empty() && !are_above)) continue;
         if (states) cells->front().clear();
         units_ = std::move(*cells);
         layout_.units_row = row.text;
@@ -316,6 +321,12 @@ class Reading {
               : "");
     }
     layout_.header.header_line = rows_[header].line;
+    for (const Row& row : std::span(rows_).subspan(begin, header - begin)) {
+      const bool speaks = std::ranges::any_of(row.cells, StatesUnits);
+      if (speaks && row.text != layout_.units_row) {
+        layout_.header.unit_lines.emplace_back(row.line, row.text);
+      }
+    }
     if (header > 0) {
       layout_.header.notes.push_back(fmt::format("{}:{}: {} row{} above the header skipped", file,
                                                  rows_[header].line, header,
@@ -369,7 +380,7 @@ class Reading {
   std::vector<Row> rows_;
   std::size_t columns_ = 0;     ///< number in most rows with data
   long score_ = 0;              ///< numbers less broken numbers in the rows with so many columns
-  std::size_t most_cells_ = 0;  // of a row with data
+  std::size_t most_cells_ = 0;  // of a row from the data on
   std::size_t data_ = 0;        // index of the first data row
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "io/roles.h"
@@ -155,7 +156,8 @@ class RecordBuilder {
     }
     return {.name = is_plain ? columns[first].name : text,
             .index = first + 1,
-            .unit = quantity.unit.symbol};
+            .unit = quantity.unit.symbol,
+            .has_no_unit = quantity.has_no_unit};
   }
 
   /// Converts a time.
@@ -246,6 +248,21 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
   }
 }
 
+/// Leaves out a load about zero, as of a cell that was tared under it.
+void LeaveOutTaredLoad(const std::string& name, RecordFile& file) {
+  std::vector<double>& load = file.record.normal_load;
+  if (load.empty()) return;
+  const double mean = std::reduce(load.begin(), load.end()) / static_cast<double>(load.size());
+  const auto [least, greatest] = std::ranges::minmax(load);
+  if (std::abs(mean) > (greatest - least) / 8) return;
+  file.notes.push_back(
+      fmt::format("{}: normal load '{}' (column {}) is about zero, as of a tared "
+                  "load cell: left out",
+                  name, file.normal_load->name, file.normal_load->index));
+  load.clear();
+  file.normal_load.reset();
+}
+
 /// Returns the time of a table, by which another is joined to it, where it has one.
 std::optional<Quantity> TimeOf(const CsvTable& table, const std::string& given) {
   const ColumnNames names(table);
@@ -330,6 +347,7 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
   file.lines = std::move(samples.lines);
   file.record = std::move(samples);
+  if (columns.normal_load.empty()) LeaveOutTaredLoad(table.file, file);
   AddCovariates(names, columns.covariates, file);
   return std::move(file);
 }

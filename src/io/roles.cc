@@ -51,11 +51,30 @@ ColumnNames::Column ObservedIn(const std::vector<double>& values) {
       .name = {},
       .is_numeric = !values.empty() && 2 * numbers >= values.size(),
       .is_constant = rise == 0 && fall == 0,
+      .least = least,
+      .greatest = greatest,
       .trend = fall == 0   ? int{rise > 0}
                : rise == 0 ? -1
                            : 0,
       .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least),
       .first = first};
+}
+
+/// True for whole numbers that stay or grow by one from row to row.
+bool IsCounter(const std::vector<double>& values) {
+  const auto breaks = [](double one, double next) { return next != one && next != one + 1; };
+  return std::ranges::adjacent_find(values, breaks) == values.end() &&
+         std::ranges::all_of(values, [](double value) { return value == std::floor(value); });
+}
+
+/// Returns the mean step from row to row over the range: it is large where that is mere noise.
+double MeanStep(const std::vector<double>& values, double range) {
+  double path = 0.0;
+  for (std::size_t row = 1; row < values.size(); ++row) {
+    const double step = std::abs(values[row] - values[row - 1]);
+    if (std::isfinite(step)) path += step;
+  }
+  return path / range / static_cast<double>(values.size());
 }
 
 /// Returns the evidence that a column has a role: 0 is none. A unit counts more than a word.
@@ -135,7 +154,10 @@ class RoleAssigner {
     TakeLeft();
     if (finds_displacement) RequireMoving(Role::kDisplacement, Role::kForce);
     if (finds_force) RequireMoving(Role::kForce, Role::kDisplacement);
+    if (finds_force) RequireNoLoad();
     RequireForce();
+    TakeMagnitudeOfLoad();
+    if (finds_displacement) NoteTravelOfMachine();
     const bool is_torsional = RequireOneKind();
     std::erase_if(roles_, [](const Quantity& quantity) { return quantity.terms.empty(); });
     for (Quantity& quantity : roles_) {
@@ -242,11 +264,15 @@ class RoleAssigner {
   /// Takes the displacement and the force of the most evidence that go together.
   void FindPair() {
     constexpr int kMismatch = 40;
+    constexpr int kComplete = 60;  // of two columns by their words
+    constexpr double kNoise = 4;
     constexpr std::array kPair = {Role::kDisplacement, Role::kForce};
     const auto displacements = CandidatesFor(kPair[0]);
     if (!displacements.front() && LeftColumns().empty()) ThrowNoColumn(kPair[0]);
     int most = -kMismatch;
     std::array<std::set<std::size_t>, 2> best;
+    std::array<int, 2> most_of_kind = {};  // of a force by a length, and of a torque by an angle
+    std::array<std::array<std::size_t, 2>, 2> best_of_kind = {};
     for (const std::optional<std::size_t> force : CandidatesFor(kPair[1])) {
       for (const std::optional<std::size_t> displacement : displacements) {
         if (displacement && displacement == force) continue;
@@ -255,11 +281,32 @@ class RoleAssigner {
         int evidence = turns && twists && turns != twists ? -kMismatch : 0;
         if (displacement) evidence += EvidenceFor(names_[*displacement], kPair[0]);
         if (force) evidence += EvidenceFor(names_[*force], kPair[1]);
+        const bool kind = turns.value_or(false);
+        if (displacement && force && kind == twists.value_or(false) &&
+            evidence > most_of_kind[kind ? 1 : 0]) {
+          most_of_kind[kind ? 1 : 0] = evidence;
+          best_of_kind[kind ? 1 : 0] = {*displacement, *force};
+        }
         if (evidence < most) continue;
         if (evidence > std::exchange(most, evidence)) best = {};
         if (displacement) best[0].insert(*displacement);
         if (force) best[1].insert(*force);
       }
+    }
+    if (const bool is_free = IsMissing(kPair[0]) && IsMissing(kPair[1]);
+        is_free && std::ranges::min(most_of_kind) > kComplete) {
+      // The one that is mere noise rests.
+      const auto [line, turn] = best_of_kind;
+      const auto step = [&](std::size_t column) {
+        const double range = names_[column].greatest - names_[column].least;
+        return MeanStep(names_.table().columns[column].values, range);
+      };
+      const double ratio = step(line[0]) / step(turn[0]);
+      if (ratio < kNoise && 1 / ratio < kNoise) {
+        names_.ThrowAmbiguous(kPair[0], {line[0], turn[0]});
+      }
+      const auto& moving = ratio > 1 ? turn : line;
+      for (const std::size_t k : {0, 1}) best[k] = {moving[k]};
     }
     // The only column with evidence has it of both.
     if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
@@ -305,17 +352,71 @@ class RoleAssigner {
   }
 
   /// Refuses a coefficient of friction, one by its name or else by its numbers, as the force.
-  [[noreturn]] void ThrowCoefficient(std::size_t column) const {
+  [[noreturn]] void ThrowCoefficient(std::size_t column, double greatest = 0) const {
     const bool is_named = names_[column].name.evidence.names(Role::kFrictionCoefficient);
     Refuse(
         "{}:{}: {} {}: choose the force with --force, or multiply by the normal load, where that "
         "is 50 N by --force '#{}*50 [N]'{}",
         names_.Header(), column + 1, names_.Label(column),
-        is_named
-            ? "is a coefficient of friction and no force"
-            : "without a unit and with all values below 2 looks like a coefficient of friction",
+        is_named ? "is a coefficient of friction and no force"
+                 : fmt::format("without a unit and with all values below {} looks like a "
+                               "coefficient of friction",
+                               greatest),
         column + 1,
         is_named ? "" : fmt::format("; if it is a force, say so by --force '{} [N]'", column + 1));
+  }
+
+  /// Refuses a load as the force, the only one of the file, which never changes its sign, beside a
+  /// coefficient of friction or what seems to be one.
+  void RequireNoLoad() {
+    constexpr double kGreatest = 5;
+    const std::size_t force = ColumnOf(Role::kForce);
+    std::optional<std::size_t> coefficient;
+    for (std::size_t column = 0; column < names_.size(); ++column) {
+      const ColumnNames::Column& of = names_[column];
+      const NameEvidence& evidence = of.name.evidence;
+      if (column == force || !of.is_numeric || evidence.is_lesser) continue;
+      const bool has_unit = !of.unit.empty() && of.unit != "-";
+      const bool may_be = (evidence.word == "friction" || evidence.word == "f") && !has_unit &&
+                          of.GreatestMagnitude() < kGreatest;
+      if (may_be || evidence.names(Role::kFrictionCoefficient)) {
+        coefficient = column;
+      } else if (MayHaveRole(of.dimension, Role::kForce) || evidence.names(Role::kNormalLoad)) {
+        return;
+      }
+    }
+    const bool keeps_sign = names_[force].least > 0 || names_[force].greatest < 0;
+    if (coefficient && keeps_sign) ThrowCoefficient(*coefficient, kGreatest);
+  }
+
+  /// Takes the magnitude of a load that is negative throughout.
+  void TakeMagnitudeOfLoad() {
+    Quantity& load = Of(Role::kNormalLoad);
+    if (!load.is_plain()) return;
+    const ColumnNames::Column& of = names_[load.first_column()];
+    if (!(of.greatest < 0)) return;
+    load.is_magnitude = true;
+    load.terms.front().weight = -1.0;
+    notes_.push_back(
+        fmt::format("{}: normal load {} is negative throughout: its magnitude is taken", file_,
+                    names_.Label(load.first_column())));
+  }
+
+  /// Names what else may be the displacement where an extensometer is.
+  void NoteTravelOfMachine() {
+    const std::size_t taken = ColumnOf(Role::kDisplacement);
+    const std::string_view word = names_[taken].name.evidence.word;
+    for (std::size_t column = 0; column < names_.size(); ++column) {
+      const ColumnNames::Column& of = names_[column];
+      if ((word != "extensometer" && word != "*wegaufnehmer") || taken_[column] ||
+          of.dimension != Dimension::kLength || !of.goes_to_and_fro) {
+        continue;
+      }
+      notes_.push_back(
+          fmt::format("{}: displacement {} is taken, and not {}, in which the rig "
+                      "yields too",
+                      file_, names_.Label(taken), names_.Label(column)));
+    }
   }
 
   /// Refuses a coefficient of friction as the force, also a friction without a unit and below 2
@@ -328,12 +429,14 @@ class RoleAssigner {
     const auto is_load = [&](std::size_t other) {
       return names_[other].dimension == Dimension::kForce;
     };
-    const bool is_low = std::ranges::none_of(names_.table().columns[column].values,
-                                             [](double value) { return std::abs(value) >= 2; });
+    constexpr double kGreatest = 2;
+    const bool is_low = of.GreatestMagnitude() < kGreatest;
     const bool may_be =
         of.name.evidence.word == "friction" && of.unit.empty() && is_low &&
         std::ranges::any_of(std::views::iota(std::size_t{0}, names_.size()), is_load);
-    if (of.name.evidence.names(Role::kFrictionCoefficient) || may_be) ThrowCoefficient(column);
+    if (of.name.evidence.names(Role::kFrictionCoefficient) || may_be) {
+      ThrowCoefficient(column, kGreatest);
+    }
   }
 
   [[noreturn]] void ThrowNoColumn(Role role) const {
@@ -439,9 +542,12 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
     added.name = SplitColumnName(column.name);
     const std::string_view of_row = WithoutBrackets(column.unit);
     added.unit = added.name.unit.empty() ? of_row : added.name.unit;
-    if (!of_row.empty() && of_row != added.unit) added.other_unit = of_row;
+    added.other_unit = !of_row.empty() && of_row != added.unit ? of_row : added.name.other_unit;
     added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
+    // "N" counts cycles or rows.
+    const bool is_n = added.name.evidence.word == "N" && added.unit.empty() && added.trend > 0;
+    if (is_n && IsCounter(column.values)) added.name.evidence.role = Role::kOther;
   }
 }
 
@@ -490,9 +596,10 @@ std::string ColumnNames::UnitOf(std::size_t column, Role role) const {
   const std::string& unit = columns_[column].unit;
   const std::string& other_unit = columns_[column].other_unit;
   if (other_unit.empty()) return unit;
-  Refuse(
-      "{}: {} has the unit '{}' in its name and '{}' below it: choose its unit with {} '{} [{}]'",
-      Header(), Label(column), unit, other_unit, RulesOf(role).option, column + 1, unit);
+  Refuse("{}: {} has the unit '{}' in its name and '{}' {}: choose its unit with {} '{} [{}]'",
+         Header(), Label(column), unit, other_unit,
+         columns_[column].name.other_unit.empty() ? "below it" : "too", RulesOf(role).option,
+         column + 1, unit);
 }
 
 std::string ColumnNames::NameOf(std::size_t column) const {
@@ -567,11 +674,21 @@ void ColumnNames::FindUnitOf(Quantity& quantity, bool is_torsional,
           "an additional force, for which there is --covariate",
           where, Label(first), symbol, name);
     }
-    Refuse("{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]'",
-           where, ForMessage(symbol), Label(first), name, UnitSymbols(dimension), option, first + 1,
-           assumed);
+    const bool has_factor = symbol.find_first_of("0123456789") != symbol.npos;
+    Refuse(
+        "{}: the unit '{}' of {} is not known for the {}: must be one of {}, as in {} '{} [{}]'{}",
+        where, ForMessage(symbol), Label(first), name, UnitSymbols(dimension), option, first + 1,
+        assumed,
+        has_factor ? fmt::format(", or with a factor '#{}*0.001 [{}]'", first + 1, assumed) : "");
   }
   if (symbol.empty()) {
+    for (const auto& [line, text] : table_.unit_lines) {
+      const std::string stated = UnitAmongWords(text, quantity.role);
+      if (stated.empty() || stated == assumed) continue;
+      Refuse("{}:{}: '{}' states a unit in no column: choose it with {} '{} [{}]'", table_.file,
+             line, ForMessage(text), option, first + 1, stated);
+    }
+    quantity.has_no_unit = true;
     if (quantity.role == Role::kTime && !quantity.is_scaled) {
       const std::string implied = ImpliedTimeUnit(of.name.evidence.word, of.first);
       if (!implied.empty()) assumed = implied;

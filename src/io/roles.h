@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -34,12 +35,14 @@ struct Quantity {
   double offset = -0.0;          ///< to which adding -0 makes -0
   bool is_scaled = false;        ///< a factor or an offset is given
   std::string given_unit = {};   // "" where none is given
+  bool is_magnitude = false;     // of a column that is negative throughout
   Unit unit = {};                // set by ColumnNames::FindUnitOf()
+  bool has_no_unit = false;      ///< the unit is assumed
 
   [[nodiscard]] std::size_t first_column() const { return terms.front().column; }
   /// True if it is a column as it is.
   [[nodiscard]] bool is_plain() const {
-    return terms.size() == 1 && !is_scaled && terms.front().weight == 1.0;
+    return terms.size() == 1 && !is_scaled && (is_magnitude || terms.front().weight == 1.0);
   }
   /// Returns its value in a row, in its unit.
   [[nodiscard]] double ValueIn(const CsvTable& table, std::size_t row) const {
@@ -61,17 +64,19 @@ class ColumnNames {
   struct Column {
     ColumnName name;
     std::string unit = {};        // in the name, or else of the units row
-    std::string other_unit = {};  // that of the units row, where the name has another
+    std::string other_unit = {};  // that of the units row, or of the name, where it has another
     std::optional<Dimension> dimension = {};
-    bool is_numeric = false;   ///< half of its rows or more have a number
-    bool is_clock = false;     ///< its numbers are times of day
-    bool is_constant = false;  ///< all numbers are the same
+    bool is_numeric = false;             ///< half of its rows or more have a number
+    bool is_clock = false;               ///< its numbers are times of day
+    bool is_constant = false;            ///< all numbers are the same
+    double least = 0.0, greatest = 0.0;  // numbers; infinite the other way without any
     int trend = 0;  ///< 1 where it only grows, as a clock or a counter does; -1 where it only falls
     /// Both rises and falls by a good part of its range: noise does not, nor does a friction force
     /// along a single stroke. Half the range is what one cycle from the middle has.
     bool goes_to_and_fro = false;
     double first = 0.0;  ///< number
 
+    [[nodiscard]] double GreatestMagnitude() const { return std::max(-least, greatest); }
     /// Returns whether it is an angle or a torque, or else a length or a force, by a unit or else
     /// the name; empty where neither says.
     /// @param given_unit  in place of its own, where there is one

@@ -20,7 +20,8 @@ inline constexpr std::array kWords = {
     WordRow{Role::kDisplacement, 0, false,
             "tangential displacement|relative displacement|slip displacement|sliding displacement"},
     WordRow{Role::kDisplacement, 1, false,
-            "displacement|disp|displ|*verschiebung|déplacement|deplacement|desplazamiento|"
+            "displacement|disp|displ|extensometer|*wegaufnehmer|*verschiebung|déplacement|"
+            "deplacement|desplazamiento|"
             "spostamento|deslocamento|位移|変位"},
     WordRow{Role::kDisplacement, 2, false,
             "position|pos|travel|stroke|extension|lvdt|deflection|elongation|crosshead|qpos|*weg|"
@@ -57,7 +58,8 @@ inline constexpr std::array kWords = {
             "normal load|normal force|*normalkraft|*anpresskraft|*anpreßkraft|charge normale|force "
             "normale|effort normal|"
             "fuerza normal|carga normal|forza normale|carico normale|força normal|法向力|"
-            "法向载荷|法向荷载|正压力|垂直力|垂直荷重|押付力|押付け力"},
+            "法向载荷|法向荷载|正压力|垂直力|垂直荷重|押付力|押付け力|clamp force|clamping force|"
+            "clamp load|clamping load|*klemmkraft|*vorspannkraft"},
     WordRow{Role::kNormalLoad, 1, false, "normal|n load|normallast"},
     WordRow{Role::kNormalLoad, 2, false, "fn|f n|N"},
     WordRow{
@@ -79,7 +81,7 @@ inline constexpr std::array kWords = {
         "reibungskoeffizient|"
         "coefficient de frottement|coeficiente de fricción|coeficiente de friccion|"
         "coeficiente de rozamiento|coeficiente de atrito|coefficiente di "
-        "attrito|摩擦系数|摩擦係数"},
+        "attrito|摩擦系数|摩擦係数|коэффициент трения|마찰계수"},
     WordRow{Role::kOther, 1, false, "kt|k|K"},
 };
 

@@ -149,7 +149,8 @@ class Writer {
     std::vector<std::string> columns;
     const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
       if (column.index == 0) return;
-      const bool has_unit = column.name.find(column.unit) != std::string::npos;
+      const bool has_unit =
+          !column.has_no_unit && column.name.find(column.unit) != std::string::npos;
       columns.push_back(fmt::format(
           "{}{} ({}{}){}{}", role, column.name.empty() ? "" : fmt::format(" '{}'", column.name),
           column.index, remark, has_unit ? "" : " in ", has_unit ? "" : column.unit));

@@ -108,12 +108,26 @@ RobotWithActualValues 2 3 1.5 2.5 1.0 torsional | t,actual_q_0,actual_tau_0,actu
   1,2,3,2¶
 WideLettersAndBrackets 2 3 1.5e-3 2.5 1.0 | 時間（ｓ）,変位【ｍｍ】,荷重［Ｎ］¶0,1.5,2.5¶1,2,3¶
 ServoWithGoals 2 4 1.5 2.5 1.0 | t,Present Position,Goal Position,Present Load¶0,1.5,9,2.5¶1,2,9,3¶
+TypesBelowTheUnits 2 3 1.5e-3 2500 1.0 | Time,Displacement,Force¶[s],[mm],[kN]¶ACTUAL,ACTUAL,ACTUAL¶
+  0,1.5,2.5¶1,2,3¶
+UnitsAboveTheNames 2 3 1.5e-3 2500 1.0 | s;mm;kN¶Time;Displacement;Force¶0;1,5;2,5¶1;2;3¶
+UnitsAboveNamesThatAreNoneKnown 2 3 1.5e-3 2500 1.0 | s;mm;kN¶a;b;c¶0;1,5;2,5¶1;2;3¶
+ComsolWithBlanksInItsHeader 1 2 1.5e-3 2.5 - | % Date: Mar 5 2024¶% u (mm)   F (N)¶1.5    2.5¶2    3¶
+AxialAndTorsionOfWhichOneRests 4 5 0 2.5 - torsional | 
+  Axial Displacement (mm),Axial Force (N),,Rotation (rad),Torque (N m)¶1,0,0,0,2.5¶2,1,0,1,3¶1,0,0,2,4¶
+  2,1,0,3,3¶1,0,0,4,2¶2,1,0,3,1¶1,0,0,2,2¶2,1,0,1,2¶1,0,0,0,1¶2,1,0,0,1¶1,0,0,0,1¶2,1,0,0,1¶
+CrossheadBesideAnExtensometer 2 3 1.5e-3 2.5 - | 
+  Crosshead (mm),Extensometer (mm),Load (N)¶9,1.5,2.5¶8,1,1¶9,1.5,2.5¶
+CounterCalledN 2 3 1.5e-3 2.5 - | N,u [mm],Q [N]¶0,1.5,2.5¶1,2,3¶2,1.5,2.5¶
+ClampForceAndShearLoad 1 3 1.5e-3 2500 - | Displacement (mm),Clamp force (kN),Shear load (kN)¶1.5,5,2.5¶
+  2,5,3¶
+MinusOfAWordProcessor 1 2 -1.5e-3 2.5 - | x [mm],F [N]¶−1.5,2.5¶2,3e−1¶
 RussianByUnitsAlone 2 3 1.5e-3 2500 1.0 | Время, с;Перемещение, мм;Сила, кН¶0;1,5;2,5¶1;2;3¶
 )layouts";
 
 TEST(Layouts, AreReadWithoutAnOption) {
   const std::vector<Strings> layouts = RowsOf(kLayouts);
-  EXPECT_EQ(layouts.size(), 50U);
+  EXPECT_EQ(layouts.size(), 59U);
   for (const Strings& layout : layouts) {
     SCOPED_TRACE(layout[0]);
     std::vector<std::string> head;
@@ -131,6 +145,109 @@ TEST(Layouts, AreReadWithoutAnOption) {
   }
 }
 
+// Names of displacement and force, and their units.
+const std::string kUnitsInNames = R"names(
+Displacement_mm_,Force_kN_ | mm | kN
+Displacement..mm.,Force..N. | mm | N
+Displacement__um_,F_N_ | um | N
+disp.mm,force=kN | mm | kN
+disp-mm,force:kN | mm | kN
+disp <mm>,force {kN} | mm | kN
+Displacement@mm,Force|kN | mm | kN
+mm_pos,kN force | mm | kN
+pos_mm_filtered,CH1_force_mN_avg | mm | mN
+disp_mm1,force_kN_1 | mm | kN
+dispUm,forceMilliN | um | mN
+DispMM,ForceKN | mm | kN
+posMm,ForcekN | mm | kN
+Displacement mm (1),Force kN cell 1 | mm | kN
+x_um_raw,F_mN_raw | um | mN
+angle.deg,Torque_N_m_ | deg | N m
+angleRad,torque [lb-in] | rad | lbf in
+Angle (deg),torque N.mm | deg | N mm
+Winkel [rad],M_d [kgf.cm] | rad | kgf cm
+Displacement (in mm),Force (unit: kN) | mm | kN
+Weg in Mikrometer,Усилие: кгс | um | kgf
+変位(㎜),荷重(牛顿) | mm | N
+LVDT (mils),Load (pound) | mil | lbf
+Temperature deg C [um],Force raw N | um | N
+)names";
+
+TEST(Units, AreFoundAmongTheWordsOfANameAndAssumedWithAMark) {
+  for (const Strings& row : RowsOf(kUnitsInNames)) {
+    SCOPED_TRACE(row[0]);
+    const RecordFile file = Read(row[0] + "\n1,2\n2,3\n1,2\n");
+    EXPECT_EQ(file.displacement.unit, row[1]);
+    EXPECT_EQ(file.force.unit, row[2]);
+    EXPECT_FALSE(file.displacement.has_no_unit || file.force.has_no_unit);
+  }
+  for (const char* names : {"Dispm,Force", "DispM,ForceN", "x_in,F"}) {
+    EXPECT_TRUE(Read(names + std::string("\n1,2\n2,3\n1,2\n"), Choose("1", "2")).force.has_no_unit);
+  }
+}
+
+// Names, the one that is refused, and its unit that is none.
+const std::string kNoUnits = R"names(
+displacement ×10⁻³ (mm),F [N] | 1 | mm ×10⁻³
+displacement x1000 (mm),F [N] | 1 | mm x1000
+Displacement [mm] x1000,F [N] | 1 | mm x1000
+Displacement [mm] (x 0.001),F [N] | 1 | mm x 0.001
+Displacement E-3 [mm],F [N] | 1 | mm E-3
+Disp 1e-6 m,F [N] | 1 | m 1e-6
+x [mm],Force*10 | 2 | *10
+x [mm],Force/10 [N] | 2 | N /10
+x [mm],Force [10 N] | 2 | 10 N
+Displacement (0.01 mm),F [N] | 1 | 0.01 mm
+LVDT (5 mm),F [N] | 1 | 5 mm
+x [mm],Force 5 kN cell | 2 | 5 kN
+x [mm],Force (% FS) | 2 | % FS
+x [mm],Force % | 2 | %
+angle [rad],torque_percent | 2 | percent
+x [mm],Q/P | 2 | Q/P
+x [mm],Normalized force | 2 | normalized
+x [&micro;m],F [N] | 1 | &micro;m
+x [?m],F [N] | 1 | ?m
+)names";
+
+TEST(Units, ThatAreNoneAreRefusedWithARemedy) {
+  for (const Strings& row : RowsOf(kNoUnits)) {
+    SCOPED_TRACE(row[0]);
+    const std::string said = Refusal(row[0] + "\n1,2\n2,3\n1,2\n");
+    EXPECT_THAT(said, StartsWith("loop.csv:1:" + row[1] + ": the unit '" + row[2] + "' of '"));
+    const bool has_factor = row[2].find_first_of("0123456789") != row[2].npos;
+    EXPECT_EQ(said.find("or with a factor '#" + row[1] + "*0.001 [") != said.npos, has_factor);
+  }
+  EXPECT_EQ(Refusal("x_mm [um],F\n1,2\n"),
+            "loop.csv:1: 'x_mm [um]' (column 1) has the unit 'um' in its name and 'mm' too: choose "
+            "its unit with --displacement '1 [um]'");
+  for (const char* names : {"AI 1/10 Force [N],x10 [mm]", "Force X 2 [N],x [mm] 2",
+                            "Kraft/AVE [N],Laser/Weg [mm]", "Load [23.8 N],x [mm] 10 Hz"}) {
+    EXPECT_EQ(Read(names + std::string("\n1,2\n2,3\n1,2\n")).force.unit, "N") << names;
+  }
+}
+
+TEST(Units, OfLinesAboveTheHeaderAreNotPassedOver) {
+  const std::string text =
+      "Force unit: kN\nDisplacement unit: mm\nTime,Displacement,Force\n0,1,2\n1,2,3\n";
+  EXPECT_EQ(Refusal(text),
+            "loop.csv:2: 'Displacement unit: mm' states a unit in no column: choose it with "
+            "--displacement '2 [mm]'");
+  EXPECT_THAT(Refusal(text, Choose("[mm]")), HasSubstr("loop.csv:1: 'Force unit: kN' states"));
+  EXPECT_EQ(Read(text, Choose("[mm]", "[kN]")).record.force.front(), 2e3);
+}
+
+TEST(Load, ThatIsNegativeOrTared) {
+  const RecordFile file = Read("Normal force [N],F [N],x [mm]\n-50,1,1\n-51,2,2\n-50,1,1\n");
+  EXPECT_EQ(file.record.normal_load, (Numbers{50, 51, 50}));
+  EXPECT_THAT(file.notes.back(), HasSubstr("is negative throughout: its magnitude is taken"));
+  const TemporaryDirectory directory;
+  const RecordFile tared = ReadRecord(
+      directory.Write("loop.csv", "Normal force [N],F [N],x [mm]\n0.1,1,1\n-0.1,2,2\n0,1,1\n"));
+  EXPECT_FALSE(tared.normal_load);
+  EXPECT_TRUE(tared.record.normal_load.empty());
+  EXPECT_THAT(tared.notes.back(), HasSubstr("is about zero, as of a tared load cell: left out"));
+}
+
 TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
   EXPECT_THAT(
       Refusal("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n"),
@@ -140,6 +257,11 @@ TEST(Evidence, ThatIsMissingOrContradictsIsRefusedWithTheColumns) {
   EXPECT_THAT(Refusal("Position [mm],Present Load\n0,3\n1,121\n-1,1025\n1,1100\n2,7\n"),
               HasSubstr("'Present Load' (column 2) holds no value between 121 and 1023, as a "
                         "register whose bit 1024 is the sign of the force"));
+  EXPECT_THAT(
+      Refusal("Axial Displacement (mm),Axial Force (N),Rotation (deg),Torque (N m)\n0,1,0,5\n"
+              "1,2,3,6\n0,1,0,5\n"),
+      HasSubstr("'Axial Displacement (mm)' (column 1) and 'Rotation (deg)' (column 3) may "
+                "each be the displacement"));
   EXPECT_EQ(Read("x [mm],Load\n0,1\n1,2\n-1,3\n1,4\n", Choose("", "Load")).force.index, 2U)
       << "whoever names a column is believed";
 }
@@ -158,7 +280,14 @@ TEST(Evidence, OfACoefficientOfFrictionIsNoneOfAForce) {
                   remedy);
     EXPECT_EQ(Read(text, Choose("1", "#2*50 [N]")).record.force.front(), 5.0);
     EXPECT_EQ(Read(text, Choose("1", "2 [N]")).record.force.front(), 0.1);
-    EXPECT_EQ(Read(text).force.index, 3U);
+    EXPECT_EQ(Refusal(text), Refusal(text, Choose("1", "2"))) << "a load is no friction force";
+    EXPECT_EQ(Read(text, Choose("1", "3")).force.index, 3U) << "whoever names a column is believed";
+  }
+  for (const char* names :
+       {"Load [N],Friction,x [mm]", "荷重(N),f,変位(mm)", "Last,Reibungszahl,Weg"}) {
+    EXPECT_THAT(Refusal(names + std::string("\n50,0.1,0\n51,0.3,1\n50,-0.3,0\n")),
+                HasSubstr("coefficient of friction"))
+        << names;
   }
   EXPECT_THAT(Refusal("x [mm],mu\n0,0.1\n1,0.3\n"), HasSubstr("'mu' (column 2) is a coeff"));
   EXPECT_EQ(Refusal("x [mm],Friction" + rows),

@@ -153,10 +153,10 @@ x,F¶1,2¶ | [furlong] | - | : the unit 'furlong' of 'x' (column 1) is not known
    --force '3 [N]'
 t,x [m],F (N x10)¶1,2,3¶ | - | - | :1:3: the unit 'N x10' of 'F (N x10)' (column 3) is not known
    for the force: must be one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, dyn, ozf, cN, as in
-   --force '3 [N]'
+   --force '3 [N]', or with a factor '#3*0.001 [N]'
 x (1e-5 m),F [N]¶1,2¶ | - | - | :1:1: the unit '1e-5 m' of 'x (1e-5 m)' (column 1) is not known
    for the displacement: must be one of m, mm, um, nm, cm, in, ft, mil, pm, as in
-   --displacement '1 [m]'
+   --displacement '1 [m]', or with a factor '#1*0.001 [m]'
 x [m],p [bar]¶1,2¶ | - | p | :1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force:
    choose another column; pressure times area is an additional force, for which there is
    --covariate

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mindahl::io {
@@ -46,6 +47,8 @@ struct CsvTable {
   std::vector<std::size_t> blocks = {};  ///< rows below a header that is repeated among them
   std::size_t header_line = 0;           ///< physical line of the header, 0 when there is none
   double interval = 0.0;  ///< [s] between rows, where the header states it instead of times
+  /// Lines above the header that speak of a unit, "Force unit: kN", which is no column's.
+  std::vector<std::pair<std::size_t, std::string>> unit_lines = {};
   std::vector<std::string> notes = {};  ///< sentences on what was assumed of the file
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
@@ -68,11 +71,11 @@ struct CsvTable {
 /// comments, which begin with '#'. Text among the rows is an error, unless it repeats the header.
 ///
 /// *Header.* The row above the data has the names; or, when at least half of its cells are symbols
-/// of units, these, with the names above it. Of several rows of text, one with a name for every
-/// column of numbers and the most words that are known has the names. What is above the header is
-/// skipped, but a row that states units ("Unit;mm;N") and the interval of a LabVIEW file. A file
-/// whose first row is data has the header of a last comment above it, or none. Anything else above
-/// the data is an error.
+/// of units, these, with the names above it, or below it where all are. Of several rows of text,
+/// one with a name for every column of numbers and the most words that are known has the names.
+/// What is above the header is skipped, but a row that states units ("Unit;mm;N") and the interval
+/// of a LabVIEW file. A file whose first row is data has the header of a last comment above it, or
+/// none. Anything else above the data is an error.
 ///
 /// About 0.1 s for 10⁶ cells; keeps 8 bytes a number.
 /// @param path         kStandardInput reads that, called "standard input" in messages

@@ -35,9 +35,10 @@ struct RecordColumns {
 
 /// A column as it was read.
 struct ChosenColumn {
-  std::string name;       ///< header cell as written, or the sum; "" in a file without names
-  std::size_t index = 0;  ///< 1-based; of a sum the first
-  std::string unit;       ///< symbol the numbers were taken to be in
+  std::string name;          ///< header cell as written, or the sum; "" in a file without names
+  std::size_t index = 0;     ///< 1-based; of a sum the first
+  std::string unit;          ///< symbol the numbers were taken to be in
+  bool has_no_unit = false;  ///< the file and the request name none: the unit is assumed
 };
 
 /// A record and where it came from.
@@ -76,7 +77,8 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// with a note. Several columns with the same evidence, a displacement or force that only grows
 /// while the other goes to and fro, and a register with a sign bit are refused, with the columns.
 ///
-/// *Units.* As given; else of the header; else m, N, s, with a note. An angle and a torque go
+/// *Units.* As given; else of the header, where two that differ are an error; else m, N, s, with a
+/// note, unless a line above the header states another. An angle and a torque go
 /// together: one of the two has the other's unit, rad or N m, where it names none.
 ///
 /// *Time.* A number; a stamp since 1970, in s, ms, us or ns, taken as seconds since the first; or a
