@@ -1,5 +1,7 @@
 #include "io/column_name.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
@@ -181,7 +183,7 @@ std::vector<UnitWord> UnitsIn(std::string_view text) {
     }
     const bool is_one = !next.empty() && words[k + 1].begin == end;  // "MilliN"
     if (is_one || (unit && !next.empty() && words[k + 1].begin == end + 1)) {
-      const auto product = FindUnit(word + (is_one ? "" : " ") + next);
+      const auto product = FindUnit(fmt::format("{}{}{}", word, is_one ? "" : " ", next));
       if (product && (is_one || product->dimension == Dimension::kTorque)) {
         unit = product;
         end = words[++k].end;

@@ -306,7 +306,7 @@ class RoleAssigner {
         names_.ThrowAmbiguous(kPair[0], {line[0], turn[0]});
       }
       const auto& moving = ratio > 1 ? turn : line;
-      for (const std::size_t k : {0, 1}) best[k] = {moving[k]};
+      for (const std::size_t k : {0U, 1U}) best[k] = {moving[k]};
     }
     // The only column with evidence has it of both.
     if (best[0].empty() && displacements.front()) best[0].insert(*displacements.front());
