@@ -60,7 +60,7 @@ FitOptions OptionsOfOther(const FitOptions& options, const FitResult& fit,
     others.start.erase("alpha");
     others.fixed["alpha"] = fit.law.shape_exponent;
   }
-  // Where one law is flat, the other may be so where their loops are the same.
+  // A fit that determines only a combination of parameters gives no start for the other law.
   if (fit.FindFinding("undetermined_combination") != nullptr) others.start.clear();
   return others;
 }

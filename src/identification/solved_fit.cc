@@ -121,7 +121,7 @@ BestState FitBestState(const Attempt& attempt) {
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
   const double steady_cost = find_starts(steady, virgin_look);
   const double clearly_worse = options.thresholds.hopeless;
-  // Of several records, some may be of either; a start that is given has no cost.
+  // Several records may differ in their initial state, and a start from the options has no cost.
   const bool is_one = attempt.data.records.size() == 1;
   const bool is_looked_at = is_one && options.start.empty();
   if (is_looked_at && steady_cost > clearly_worse * virgin_cost) {

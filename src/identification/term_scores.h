@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "identification/held_out.h"
 #include "identification/inference/local.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/fit.h"

@@ -406,12 +406,11 @@ class RoleAssigner {
   void NoteTravelOfMachine() {
     const std::size_t taken = ColumnOf(Role::kDisplacement);
     const std::string_view word = names_[taken].name.evidence.word;
+    if (word != "extensometer" && word != "*wegaufnehmer") return;
     for (std::size_t column = 0; column < names_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      if ((word != "extensometer" && word != "*wegaufnehmer") || taken_[column] ||
-          of.dimension != Dimension::kLength || !of.goes_to_and_fro) {
-        continue;
-      }
+      const bool may_be = of.dimension == Dimension::kLength && of.goes_to_and_fro;
+      if (taken_[column] || !may_be) continue;
       notes_.push_back(
           fmt::format("{}: displacement {} is taken, and not {}, in which the rig "
                       "yields too",

@@ -137,7 +137,7 @@ void TableReader::ReadCell(std::size_t column, std::string_view text) {
   } else if (cell.kind != Cell::Kind::kNumber) {
     const bool is_missing = cell.kind == Cell::Kind::kMissing;
     if (!is_missing) values_[column] = kBroken;
-    // Of most cells that are at fault nothing is said.
+    // A message describes the first cell of a column that is missing or broken.
     if ((is_missing ? of.missing : of.broken).empty()) {
       faults_[column] = At(column, DescribeCellFault(text, cell.kind));
     }

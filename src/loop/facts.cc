@@ -269,7 +269,7 @@ LoopFacts MeasureInSense(const RecordView& record, std::span<const std::size_t> 
     facts.cycles[k].steady = facts.cycles[k].amplitude >= CycleRules::kSteady * widest;
     if (facts.cycles[k].steady) steady.push_back(cycles[k]);
   }
-  // Of the steady cycles that have it.
+  // Returns the values of the steady cycles that have the fact.
   const auto values_of = [&](auto fact) {
     std::vector<double> values;
     for (const CycleFacts& cycle : facts.cycles) {

@@ -103,8 +103,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range) {
 /// True if one step makes much of the excursion; false for long ones, which no jump makes.
 bool Jumps(std::span<const double> displacement, const Excursion& excursion) {
   constexpr std::size_t kLongest = 64;  // [samples]
-  return excursion.duration() <= kLongest &&
-         LargestStep(displacement, excursion) >= ReversalRules::kJump * excursion.range;
+  return excursion.duration() <= kLongest && IsOneStep(displacement, excursion);
 }
 
 /// Looks at excursions one by one; empty where none is brief, so that there is no noise.

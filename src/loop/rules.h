@@ -12,7 +12,7 @@ struct ReversalRules {
   /// loop that the drive makes on its way may last longer.
   static constexpr double kSudden = 1.0 / 8;
   /// [of the excursion's range] Least fraction in one step between samples of a jump: a drive that
-  /// turns twice takes more samples to do so.
+  /// turns twice takes more samples to do so, while noise and an encoder's last digit take one.
   static constexpr double kJump = 0.4;
   /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
   /// twentieth of records exceed, and whose deviation is an estimate.
@@ -110,9 +110,6 @@ struct TestPartRules {
   /// [of the time from the first to the last of them] Least part that the strokes fill: the widest
   /// swings of a random motion are far apart.
   static constexpr double kFilled = 0.8;
-  /// [of the excursion's range] Least fraction in one step between samples of a jump, which noise
-  /// and an encoder's last digit make.
-  static constexpr double kJump = 0.4;
   /// [of the widest stroke] Farther outside of all strokes an end is travel: a first loading, a
   /// growing amplitude and a nested loop are inside.
   static constexpr double kTravel = 0.25;

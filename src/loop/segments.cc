@@ -170,7 +170,7 @@ std::optional<RepeatedStrokes> StrokesOf(std::span<const double> displacement,
   std::size_t count = 0;
   double lasting = 0.0;  // [samples]
   for (const Excursion& excursion : excursions) {
-    if (LargestStep(displacement, excursion) >= TestPartRules::kJump * excursion.range) continue;
+    if (IsOneStep(displacement, excursion)) continue;
     count += excursion.reversals;
     lasting += static_cast<double>(excursion.duration() * excursion.reversals);
     strokes.first = std::min(strokes.first, excursion.first);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/extremes.h"
+#include "loop/rules.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
 
@@ -46,13 +47,13 @@ struct Excursion {
   [[nodiscard]] std::size_t duration() const { return last - first; }
 };
 
-/// Returns the largest step [m] between two samples of an excursion.
-inline double LargestStep(std::span<const double> displacement, const Excursion& excursion) {
-  double largest = 0.0;
+/// True if one step between samples makes much of an excursion, which is then a jump.
+inline bool IsOneStep(std::span<const double> displacement, const Excursion& excursion) {
   for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
-    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
+    const double step = std::abs(displacement[i] - displacement[i - 1]);
+    if (step >= ReversalRules::kJump * excursion.range) return true;
   }
-  return largest;
+  return false;
 }
 
 /// Returns the excursions of a displacement, by range. Closed inner loops by the four-point rule

@@ -182,7 +182,7 @@ std::string WhatToCheck(const Report& report) {
   if (!report.is_torsional()) {
     if (std::string found = LargeRadius(report); !found.empty()) return found;
     if (std::string found = ImpossibleContact(report); !found.empty()) {
-      // What is beyond any solid among the inputs is the likelier fault.
+      // An input that no solid can have is the more likely error.
       const std::vector<std::string> doubts = contact::DoubtsAbout(report.known, std::nullopt);
       return doubts.empty() ? found : doubts.front();
     }

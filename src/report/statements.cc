@@ -241,9 +241,8 @@ bool IsNearSlip(const FitResult& fit) {
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::string_view code = finding.code;
   const bool slides = !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
-  const char* const state = slides                                    ? "slides"
-                            : !fit.records.empty() && IsNearSlip(fit) ? "near"
-                                                                      : "";
+  const bool is_limit = !fit.records.empty() && code == "slip_force_bounded_below";
+  const char* const state = slides ? "slides" : is_limit && IsNearSlip(fit) ? "near" : "";
   std::string_view text = code;
   for (const std::string& key : {std::string(code), fmt::format("{}.{}", code, finding.kind),
                                  fmt::format("{}.{}", code, state)}) {

@@ -20,7 +20,7 @@ using identification::ParameterEstimate;
 using identification::ParameterStatus;
 using identification::RecordFit;
 
-// What the reports call the values of an enumeration.
+// Each returns the name of an enumerator in reports.
 constexpr std::string_view Name(ParameterStatus status) {
   return std::array{"free", "fixed", "at_lower_bound", "at_upper_bound"}.at(
       static_cast<std::size_t>(status));

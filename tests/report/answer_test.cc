@@ -275,7 +275,7 @@ TEST(Answer, AsksWhetherLoadsBelongToFilesWhoseLoopsAreAsFullAtAnotherHalfGapOve
             "loop_2.csv");
   set(20.0, 120.0);
   EXPECT_EQ(LineOf(input, "check"), "");
-  // Of a loop that slips less the half gap over the load is smaller: half the gap over the peak
+  // A loop that slips less has a smaller half gap under its load: half the gap over the peak force
   // explains a quarter.
   set(120.0, 120.0);
   input.fit.records[0].facts.peak_force = 20.0;

@@ -73,7 +73,7 @@ struct CsvTable {
 /// *Header.* The row above the data has the names; or, when at least half of its cells are symbols
 /// of units, these, with the names above it, or below it where all are. Of several rows of text,
 /// one with a name for every column of numbers and the most words that are known has the names.
-/// What is above the header is skipped, but a row that states units ("Unit;mm;N") and the interval
+/// Rows above the header are skipped, except a row that states units ("Unit;mm;N") and the interval
 /// of a LabVIEW file. A file whose first row is data has the header of a last comment above it, or
 /// none. Anything else above the data is an error.
 ///

@@ -31,15 +31,6 @@ class CrossProduct {
   double product_ = 0.0;
 };
 
-/// Includes a closed interval times each of the ratios.
-void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios) {
-  if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) return;
-  const Ends ends{estimate.lower95, estimate.upper95};
-  for (const double ratio : ratios) {
-    Include(estimate, {.lower = ratio * *ends.lower, .upper = ratio * *ends.upper});
-  }
-}
-
 /// Half the width of the interval in which a further cycle of the same loop has its half gap:
 /// Student's for so few cycles.
 double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {

@@ -194,6 +194,14 @@ void Include(ParameterEstimate& estimate, Ends ends) {
   SetInterval(estimate, {.lower = lower, .upper = upper});
 }
 
+void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios) {
+  if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) return;
+  const Ends ends{estimate.lower95, estimate.upper95};
+  for (const double ratio : ratios) {
+    Include(estimate, {.lower = ratio * *ends.lower, .upper = ratio * *ends.upper});
+  }
+}
+
 void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.standard_error.reset();
   estimate.lower95.reset();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "identification/inference/local.h"
@@ -36,6 +37,9 @@ void SetInterval(ParameterEstimate& estimate, Ends ends);
 /// Extends the interval by a part: an end that is open in either is open from then on. Leaves an
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, Ends ends);
+
+/// Extends a closed interval to itself times each of the ratios; leaves an open one as it is.
+void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios);
 
 /// Takes back the interval and the standard error.
 void WithdrawInterval(ParameterEstimate& estimate);

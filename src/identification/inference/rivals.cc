@@ -1,5 +1,6 @@
 #include "identification/inference/rivals.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,10 +26,11 @@ ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameter
     if (estimate.name != "sigma" && estimate.name != "slip_force") continue;
     const double value =
         estimate.name == "sigma" ? rival.law.tangential_stiffness : rival.law.slip_force;
-    const double ratio = value / estimate.value;
-    const bool is_closed = estimate.lower95 && estimate.upper95;
-    include(is_closed ? ratio * *estimate.lower95 : value,
-            is_closed ? ratio * *estimate.upper95 : value);
+    if (estimate.lower95 && estimate.upper95) {
+      IncludeRatios(estimate, std::array{value / estimate.value});
+    } else {
+      include(value, value);
+    }
   }
   return parameters;
 }
