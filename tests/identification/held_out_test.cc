@@ -1,4 +1,5 @@
 #include "identification/held_out.h"
+
 #include "identification/term_scores.h"
 #include "recovery/recovered.h"
 #include "support/prelude.h"
