@@ -177,6 +177,17 @@ TEST(FitOptions, BoundThatExcludesTheTruthHoldsAndIsReported) {
   EXPECT_EQ(FitOne(Loop(), options).Find("alpha")->status, ParameterStatus::kFree);
 }
 
+TEST(FitOptions, NarrowBoundsAboutTheTruthKeepTheFit) {
+  for (const char* const name : {"sigma", "alpha", "slip_force"}) {
+    const double truth = FitOne(Loop()).Find(name)->value;
+    FitOptions options;
+    options.bounds[name] = {0.9995 * truth, 1.0005 * truth};
+    const FitResult fit = FitOne(Loop(), options);
+    EXPECT_EQ(fit.initial_state, InitialState::kVirgin) << name;
+    EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree)) << name;
+  }
+}
+
 TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
   // The fit turns an opposite force round: its lower bound is the file's upper one.
   const Record opposite = testing::Scaled(Loop(), 1, -1);

@@ -270,7 +270,9 @@ double ProjectedResidual::EvaluateFreely(const LawPoint& at, std::span<double> t
   const bool fixed = problem_->parameters[of_scale].fixed;
   const double held = is_forced() ? -at.log_rate - theta_[kStiffness] : theta_[kSlipForce];
   const double cost = Regress(at.log_rate, !fixed, std::exp(held));
-  if (!fixed && !scale_is_free_) return std::numeric_limits<double>::infinity();
+  if (!fixed && !(response_values_.dot(measured_) > 0)) {
+    return std::numeric_limits<double>::infinity();
+  }
   if (is_forced()) theta[kSlipForce] = -at.log_rate;
   theta[of_scale] = is_forced() ? -at.log_rate - std::log(scale_) : std::log(scale_);
   columns_.Solve(LinearProducts(), theta);
