@@ -176,6 +176,17 @@ FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
   return Fitter(open).Fit(records, std::min(depth, Depth::kErrors));
 }
 
+/// Cuts intervals at bounds that are given: what the model misses and rivals widened them by.
+void CutAtBounds(const FitOptions& options, FitResult& result) {
+  for (ParameterEstimate& estimate : result.parameters) {
+    const auto bounds = options.bounds.find(estimate.name);
+    if (bounds == options.bounds.end()) continue;
+    const auto& [lower, upper] = bounds->second;
+    if (estimate.lower95) estimate.lower95 = std::clamp(*estimate.lower95, lower, upper);
+    if (estimate.upper95) estimate.upper95 = std::clamp(*estimate.upper95, lower, upper);
+  }
+}
+
 }  // namespace
 
 struct Fitter::State {
@@ -187,6 +198,7 @@ struct Fitter::State {
     Fit(records, depth, given);
     const std::optional<FitOptions> within = WithinMeasuredForce(result, given);
     if (within) Fit(records, depth, *within);
+    CutAtBounds(given, result);
   }
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;

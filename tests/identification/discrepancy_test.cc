@@ -128,6 +128,11 @@ TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
   options.bounds["slip_force"] = {1.0, 500.0};
   const FitResult fit = FitNoisy(OfPosition(0.1), 1, options);
   EXPECT_EQ(fit.Find("slip_force")->status, ParameterStatus::kFree);
+  const double value = fit.Find("slip_force")->value;
+  options.bounds["slip_force"] = {0.999 * value, 1.001 * value};
+  const ParameterEstimate within = *FitNoisy(OfPosition(0.1), 1, options).Find("slip_force");
+  EXPECT_GE(within.lower95.value(), 0.999 * value);
+  EXPECT_LE(within.upper95.value(), 1.001 * value);
   options.bounds.clear();
   options.fixed["slip_force"] = 40.0;
   EXPECT_FALSE(FitNoisy(OfPosition(0.1), 1, options).Find("slip_force")->includes_discrepancy);
