@@ -223,9 +223,10 @@ class Writer {
     const AlphaTest& test = report_.alpha;
     if (test.is_rejected) {
       const bool by_rig = fit_.FindFinding("shape_or_rig") != nullptr;
-      remark = *test.is_rejected ? "Mindlin's 1/3 is rejected"
-               : by_rig          ? "Mindlin's 1/3 fits in a compliant rig"
-                                 : "Mindlin's 1/3 fits";
+      remark = fmt::format("Mindlin's 1/3 {}{}", *test.is_rejected ? "is rejected" : "fits",
+                           !by_rig             ? ""
+                           : *test.is_rejected ? " in a rigid rig"
+                                               : " in a compliant rig");
     } else if (test.minus_third && !IsInadequate(report_)) {
       remark = "Mindlin's 1/3 is not tested";
     }

@@ -270,8 +270,10 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
                                              std::span<const Record> records,
                                              const FitResult& fit) {
   constexpr std::size_t kMostTried = 3;
+  constexpr double kLeastMisfit = 1e-4;  // that the answer tells from none
   const std::optional<double> before = fit.adequacy.misfit_over_half_gap;
-  if (!fit.converged || !before || fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
+  if (!fit.converged || !(before > kLeastMisfit) ||
+      fit.adequacy.verdict == AdequacyVerdict::kAdequate ||
       fit.FindFinding("force_at_limit") != nullptr || !options.terms.empty() ||
       !options.covariates.empty()) {
     return std::nullopt;
