@@ -38,10 +38,11 @@ ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameter
 std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver) {
   const auto& [problem, best, noise, estimates] = fitted;
-  // The law of a load that varies has none, nor has that of an imposed force.
+  // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
+  // is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
-      shape.status == ParameterStatus::kFixed || !shape.upper95 ||
-      !(*shape.upper95 < kMindlinShapeExponent) ||
+      problem.parameters[kShape].has_prior() || shape.status == ParameterStatus::kFixed ||
+      !shape.upper95 || !(*shape.upper95 < kMindlinShapeExponent) ||
       !(kMindlinShapeExponent - shape.value > options.thresholds.shape_effect)) {
     return std::nullopt;
   }
