@@ -127,7 +127,6 @@ class TinySearch {
 
   void Try(const double* x, double* residuals);
   void Accept(const double* x, double* residuals, double* jacobian);
-  [[nodiscard]] double RadiusOfFirstStep() const;
   /// A residual that refuses a trial by less than the function tolerance, which ends the search.
   [[nodiscard]] double EndOfSearch() const {
     return std::sqrt(cost_ * (1 + options_.function_tolerance / 2));
@@ -193,31 +192,6 @@ void TinySearch::CountAccepted() {
   cost_before_ = cost_;
 }
 
-/// Returns the largest radius, of those tried, with which TinySolver's first step is not too long.
-double TinySearch::RadiusOfFirstStep() const {
-  constexpr double kLargestRadius = 1e3;
-  constexpr int kTries = 40;
-  // TinySolver scales the columns, and keeps the damping of those without effect from vanishing.
-  constexpr double kLeastDiagonal = 1e-6;
-  const Eigen::VectorXd scaling =
-      1 / (1 + compressed_.jacobian.colwise().norm().transpose().array());
-  const Eigen::MatrixXd jacobian = compressed_.jacobian * scaling.asDiagonal();
-  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-  const Eigen::VectorXd gradient = jacobian.transpose() * compressed_.residual;
-  double radius = kLargestRadius;
-  for (int tries = 0; tries < kTries; ++tries, radius /= 4) {
-    Eigen::MatrixXd damped = normal;
-    damped.diagonal() += normal.diagonal().cwiseMax(kLeastDiagonal) / radius;
-    const Eigen::VectorXd step = -scaling.cwiseProduct(damped.ldlt().solve(gradient));
-    bool is_short = true;
-    for (std::size_t j = 0; j < count_; ++j) {
-      is_short = is_short && !IsTooLong(j, step[static_cast<Eigen::Index>(j)]);
-    }
-    if (is_short) break;
-  }
-  return radius;
-}
-
 void TinySearch::Try(const double* x, double* residuals) {
   const auto size = static_cast<Eigen::Index>(count_);
   Eigen::Map<Eigen::VectorXd> rows(residuals, size + 1);
@@ -269,7 +243,6 @@ void TinySearch::Accept(const double* x, double* residuals, double* jacobian) {
   const double left = compressed_.Explained();
   if (is_slow_ || left <= options_.function_tolerance * cost_) return;
   is_last_ = left <= options_.last_step * cost_ && cost_ > floor_;
-  if (is_first_) tiny_.options.initial_trust_region_radius = RadiusOfFirstStep();
   is_first_ = false;
   rows = compressed_.residual;
   columns = compressed_.jacobian;
@@ -280,6 +253,7 @@ void TinySearch::Run(std::span<double> u) {
   constexpr double kOnlyZero = std::numeric_limits<double>::min();
   // A search that ends with more than this fraction of the cost to gain was damped too much.
   constexpr double kGainWorthGoingOn = 1e-6;
+  constexpr double kLargestRadius = 1e3;
   tiny_.options.gradient_tolerance = kOnlyZero;
   tiny_.options.cost_threshold = 0.0;
   tiny_.options.parameter_tolerance = options_.parameter_tolerance;
@@ -288,11 +262,17 @@ void TinySearch::Run(std::span<double> u) {
   Eigen::VectorXd point =
       Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
   double last_cost = std::numeric_limits<double>::infinity();
+  double radius = kLargestRadius;
   do {
     is_first_ = true;
     is_last_ = goes_on_ = false;
     tiny_.options.max_num_iterations = options_.max_iterations - iterations_;
+    tiny_.options.initial_trust_region_radius = radius;
     tiny_.Solve(Function{this}, &point);
+    // A first step that is too long costs no evaluation.
+    const bool is_first_too_long = goes_on_ && tiny_.summary.iterations <= 1;
+    radius = is_first_too_long ? radius / 4 : kLargestRadius;
+    if (is_first_too_long) continue;
     iterations_ += std::max(tiny_.summary.iterations, 1);
     // A step that ends the search is not accepted by a call.
     if (!std::equal(raw_.begin(), raw_.end(), point.data())) {
