@@ -4,7 +4,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "identification/dense.h"
@@ -14,32 +13,17 @@ namespace {
 
 /// Singular values below this fraction of the largest are rounding of a Jacobian of unit columns.
 constexpr double kRankTolerance = 1e-11;
-/// Far from that: substitution then leaves the inverse all but five digits.
-constexpr double kRegular = 1e-5;
 /// A parameter with more than this component in a null direction is not determined.
 constexpr double kNullComponent = 1e-3;
 
 /// Returns R of J = QR, of as many rows as J has columns, which has J's singular values and is
-/// small, however long the record; its diagonal is not negative.
+/// small, however long the record.
 Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> factors(columns);
   Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
   const Eigen::Index rows = std::min(columns.cols(), columns.rows());
   triangle.topRows(rows) = factors.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
-  for (Eigen::Index j = 0; j < triangle.rows(); ++j) {
-    if (triangle(j, j) < 0) triangle.row(j) *= -1;
-  }
   return triangle;
-}
-
-/// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
-std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
-  if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
-  Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
-      Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
-  // |R|·|R⁻¹| bounds the ratio of the singular values.
-  if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;
-  return inverse;
 }
 
 /// Returns H with HHᵀ = (RᵀR)⁻¹ on the directions with an effect, a column each, and names those
@@ -170,9 +154,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   // Columns are scaled to one, whatever their units.
   const Eigen::VectorXd inverse_norms = norms.cwiseInverse();
   triangle *= inverse_norms.asDiagonal();
-  std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
-  const Eigen::MatrixXd half =
-      inverse ? std::move(*inverse) : HalfOfPseudoInverse(triangle, norms, result);
+  const Eigen::MatrixXd half = HalfOfPseudoInverse(triangle, norms, result);
   // The columns U = JH are orthonormal, so that the noise makes a product UᵀRU of order one:
   // between two inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
   Eigen::MatrixXd root = half;
