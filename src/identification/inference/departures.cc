@@ -32,22 +32,18 @@ double BulgeOfDisplacement(const Place& at) {
 constexpr auto kDepartures = std::to_array<Departure>({
     {.code = "channel_lag",
      .group = "lag",
-     .term = "lag",
      .columns = {{{Lag}}},
      // A force that is read late meets the displacement of later.
      .of_displacement = {{{[](const Place& at) { return at.rate; }}}}},
-    {.code = "viscous_force",
-     .group = "viscous",
-     .term = "viscous",
-     .columns = {{{[](const Place& at) { return at.velocity; }}}}},
-    {.code = "plateau_slope",
-     .group = "plateau_slope",
-     .term = "plateau_slope",
-     .columns = {{{[](const Place& at) { return at.displacement; }}}}},
-    {.code = "force_drift",
-     .group = "force_drift",
-     .term = "force_drift",
-     .columns = {{{[](const Place& at) { return at.time; }}}}},
+    {.code = "viscous_force", .group = "viscous", .columns = {{{[](const Place& at) {
+                                                    return at.velocity;
+                                                  }}}}},
+    {.code = "plateau_slope", .group = "plateau_slope", .columns = {{{[](const Place& at) {
+                                                          return at.displacement;
+                                                        }}}}},
+    {.code = "force_drift", .group = "force_drift", .columns = {{{[](const Place& at) {
+                                                      return at.time;
+                                                    }}}}},
     {.code = "normal_load",
      .columns = {{{[](const Place& at) { return at.force * at.load_change; }}}}},
     {.code = "shape_of_law",
@@ -58,13 +54,11 @@ constexpr auto kDepartures = std::to_array<Departure>({
     {.code = "guide_friction", .columns = {{{[](const Place& at) { return at.direction; }}}}},
     {.code = "rig_in_series",
      .group = "rig_stiffness",
-     .term = "rig_stiffness",
      .columns = {{{[](const Place& at) { return -at.slope * (at.carried - at.origin_carried); },
                    true}}},
      .of_displacement = {{{[](const Place& at) { return at.force; }}}}},
     {.code = "backlash",
      .group = "backlash",
-     .term = "backlash",
      .columns = {{{[](const Place& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; },
                    true}}},
      .of_displacement = {{{[](const Place& at) { return at.virgin ? 0.0 : at.direction / 2; }}}}},
@@ -79,18 +73,16 @@ constexpr auto kDepartures = std::to_array<Departure>({
                    true}}},
      .of_displacement = {{{[](const Place& at) { return -at.displacement * at.displacement; }},
                           {[](const Place& at) { return -Cube(at.displacement); }}}}},
-    {.code = "inertia", .group = "inertia", .term = "inertia", .columns = {{{[](const Place& at) {
-                                                                 return at.acceleration;
-                                                               }}}}},
+    {.code = "inertia", .group = "inertia", .columns = {{{[](const Place& at) {
+                                              return at.acceleration;
+                                            }}}}},
     {.code = "unequal_directions",
      .group = "asymmetry",
-     .term = "asymmetry",
      .columns = {{{[](const Place& at) { return std::abs(at.force); }},
                   {[](const Place& at) { return at.asymmetry; }}}}},
-    {.code = "running_in",
-     .group = "slip_trend",
-     .term = "slip_trend",
-     .columns = {{{[](const Place& at) { return at.force * at.time; }}}}},
+    {.code = "running_in", .group = "slip_trend", .columns = {{{[](const Place& at) {
+                                                    return at.force * at.time;
+                                                  }}}}},
     {.code = "force_saturates",
      .columns = {{{[](const Place& at) {
                     constexpr double kFrom = 0.9;  // of the largest force
@@ -106,14 +98,13 @@ constexpr auto kDepartures = std::to_array<Departure>({
      .columns = {{{[](const Place& at) { return at.displacement * at.displacement; }},
                   {[](const Place& at) { return Cube(at.displacement); }}}}},
     // Its columns are those of the file.
-    {.code = "covariate", .group = "covariate", .term = "covariate"},
+    {.code = "covariate", .group = "covariate"},
     {.code = "smoothing", .columns = {{{[](const Place& at) { return at.curvature / 2; }}}}},
     // A turn is the first of its repeats, where nothing is missed.
     {.code = "held_displacement",
      .columns = {{{[](const Place& at) { return at.slope * at.missed; }, true}}}},
     {.code = "displacement_drift",
      .group = "displacement_drift",
-     .term = "displacement_drift",
      .of_displacement = {{{[](const Place& at) { return at.time; }}}}},
     {.code = "speed_power",
      .group = "slip_speed",
@@ -172,8 +163,9 @@ std::vector<std::size_t> NewCovariates(const Problem& problem, double own_part) 
 }
 
 bool HasTermOf(const Problem& problem, const Departure& departure) {
+  const std::string_view name = departure.term.empty() ? departure.group : departure.term;
   return std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
-    return problem.parameters[p].term->name == departure.term;
+    return problem.parameters[p].term->name == name;
   });
 }
 
@@ -219,7 +211,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   };
   std::size_t taken = 0;  // of the covariates
   for (const Departure& departure : kDepartures) {
-    if (departure.term == "covariate") {
+    if (departure.group == "covariate") {
       taken = std::min(covariates.size(), most - static_cast<std::size_t>(count));
       continue;
     }
@@ -238,7 +230,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     }
     if (!term.places.empty()) result.terms.push_back(std::move(term));
   }
-  const auto& covariate = *std::ranges::find(kDepartures, "covariate", &Departure::term);
+  const auto& covariate = *std::ranges::find(kDepartures, "covariate", &Departure::group);
   covariates.resize(taken);
   for (const std::size_t c : covariates) {
     const std::span<double> values = column_at(count);

@@ -24,7 +24,8 @@ struct DepartureColumn {
 struct Departure {
   std::string_view code;
   std::string_view group = {};  // of terms that fits it; empty where there is none
-  /// Names the term of a fit that is the same: it is not looked for where that is fitted.
+  /// Names the term of a fit that is the same, if not as the group: it is not looked for where that
+  /// is fitted.
   std::string_view term = {};
   std::array<DepartureColumn, 4> columns = {};
   std::array<DepartureColumn, 3> of_displacement = {};  // that answers an imposed force
