@@ -11,10 +11,6 @@ Eigen::MatrixXd TransposedProduct(const MatrixView& a, const MatrixView& b) {
   return a.transpose() * b;
 }
 
-Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b) {
-  return a.ldlt().solve(b);
-}
-
 Eigen::MatrixXd LeftOver(const MatrixView& a, const MatrixView& b) {
   if (a.cols() == 0) return b;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(a);

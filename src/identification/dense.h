@@ -14,8 +14,6 @@ Eigen::MatrixXd Product(const MatrixView& a, const MatrixView& b);
 /// Returns AᵀB.
 Eigen::MatrixXd TransposedProduct(const MatrixView& a, const MatrixView& b);
 
-/// Solves AX = B with a symmetric A, by LDLᵀ with pivots.
-Eigen::MatrixXd SolveSymmetric(const MatrixView& a, const MatrixView& b);
 /// Returns what the columns of A leave of B: B − A·argmin |B − AX|.
 Eigen::MatrixXd LeftOver(const MatrixView& a, const MatrixView& b);
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/probability.h"
@@ -17,8 +16,8 @@
 namespace mindahl::identification {
 namespace {
 
-/// Takes a column of unit norm for one that the others have where less of its square is its own.
-constexpr double kOwnSquare = 1e-9;
+/// Takes a column for one that the others have where less of its norm is its own.
+constexpr double kOwnPart = 3e-5;
 /// Exponents at which the columns that they shape are tried.
 constexpr std::array kTriedExponents = {0.25, 0.5, 1.0};
 /// Fraction of the distance to a bound beyond which no search begins.
@@ -29,27 +28,6 @@ double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   const Parameter& parameter = parameters[p];
   if (p == kRig || parameter.is_exponent()) return parameter.upper;
   return parameter.term->positive ? parameter.theta : parameter.ToTheta(0.0);
-}
-
-/// Solves the normal equations of some of the columns of unit norm, the residuals' products last.
-Eigen::VectorXd StepBy(const Eigen::MatrixXd& products, const std::vector<Eigen::Index>& places) {
-  Eigen::MatrixXd matrix = products(places, places);
-  matrix.diagonal().array() += kOwnSquare;
-  return -SolveSymmetric(matrix, products(places, products.cols() - 1));
-}
-
-/// Returns the sum of squares of the residuals after a step.
-double SquaresAfter(const Eigen::MatrixXd& products, const std::vector<Eigen::Index>& places,
-                    const Eigen::VectorXd& step) {
-  const Eigen::Index last = products.cols() - 1;
-  return products(last, last) + 2 * step.dot(products(places, last)) +
-         step.dot(products(places, places) * step);
-}
-
-std::vector<Eigen::Index> Joined(std::vector<Eigen::Index> places,
-                                 std::span<const Eigen::Index> more) {
-  places.insert(places.end(), more.begin(), more.end());
-  return places;
 }
 
 }  // namespace
@@ -145,12 +123,11 @@ std::vector<TermScores::Added> TermScores::AddColumnsOf(const TermChoice& choice
   for (std::size_t c = 0; c < added.size(); ++c) {
     Added& one = result.emplace_back(Added{.name = parameters.NameOf(added[c]),
                                            .parameter = parameters[added[c]],
-                                           .theta = theta[added[c]],
-                                           .place = -1});
+                                           .theta = theta[added[c]]});
     if (derivatives.cols() == 0) continue;
     const auto column = derivatives.col(static_cast<Eigen::Index>(c));
     if (!(column.squaredNorm() > 0)) continue;
-    one.place = at_fit_.jacobian.cols() + std::ssize(columns);
+    one.place = std::ssize(columns);
     columns.emplace_back(column);
   }
   return result;
@@ -172,11 +149,10 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
     if (!free_.contains(problem.parameters.NameOf(p))) continue;
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
-  at_fit_ = LinearizeAt(problem, theta, response_, inside);
+  const auto& [jacobian, residual] = LinearizeAt(problem, theta, response_, inside);
   names_.clear();
   for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
-  const Eigen::VectorXd& residual = at_fit_.residual;
-  freed_ = LeftOver(at_fit_.jacobian, residual);
+  freed_ = LeftOver(jacobian, residual);
   effective_samples_ = EffectiveSamples(problem, theta, response_);
   choices_.clear();
   std::vector<Eigen::VectorXd> columns;
@@ -187,69 +163,45 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
       choices_.emplace_back();  // no lag where time does not go on
     }
   }
-  TakeProducts(columns);
-}
-
-void TermScores::TakeProducts(const std::vector<Eigen::VectorXd>& columns) {
-  const Eigen::Index of_law = at_fit_.jacobian.cols();
-  const Eigen::Index count = of_law + std::ssize(columns);
-  Eigen::MatrixXd all(at_fit_.jacobian.rows(), count + 1);
-  all.leftCols(of_law) = at_fit_.jacobian;
-  for (Eigen::Index c = of_law; c < count; ++c) {
-    all.col(c) = columns[static_cast<std::size_t>(c - of_law)];
+  Eigen::MatrixXd omitted(residual.size(), std::ssize(columns));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    omitted.col(static_cast<Eigen::Index>(c)) = columns[c];
   }
-  norms_ = all.leftCols(count).colwise().norm().transpose().unaryExpr(
-      [](double norm) { return norm > 0 ? norm : 1.0; });
-  for (Eigen::Index c = 0; c < count; ++c) all.col(c) /= norms_[c];
-  all.col(count) = at_fit_.residual;
-  products_ = TransposedProduct(all, all);
-  of_fit_.resize(static_cast<std::size_t>(of_law));
-  std::iota(of_fit_.begin(), of_fit_.end(), Eigen::Index{0});
-  squares_of_fit_ = SquaresAfter(products_, of_fit_, StepBy(products_, of_fit_));
-}
-
-/// Writes the values of a choice's parameters after a step, well inside their bounds.
-void TermScores::PutValues(std::size_t choice, const Eigen::VectorXd& step,
-                           std::map<std::string, double>& to) const {
-  Eigen::Index next = std::ssize(of_fit_);
-  for (const Added& added : choices_[choice]) {
-    const Parameter& parameter = added.parameter;
-    double theta = added.theta;
-    if (added.place >= 0) {
-      const double moved = step[next++] / norms_[added.place];
-      // The linear step of a rig is one of its compliance, which starts at zero.
-      theta +=
-          parameter.term->id == TermId::kRigStiffness ? -std::log(std::max(-moved, 1.0)) : moved;
-    }
-    const double inside =
-        std::clamp(theta, kOfBound * parameter.lower + (1 - kOfBound) * parameter.upper,
-                   kOfBound * parameter.upper + (1 - kOfBound) * parameter.lower);
-    to[added.name] = parameter.ToValue(inside);
-  }
+  gram_.emplace(jacobian, omitted, residual, kOwnPart);
 }
 
 std::optional<TermScore> TermScores::Of(std::size_t choice) const {
-  std::vector<Eigen::Index> added;
-  for (const Added& one : choices_[choice]) {
-    if (one.place >= 0) added.push_back(one.place);
+  std::vector<Eigen::Index> places;
+  for (const Added& added : choices_[choice]) {
+    if (added.place) places.push_back(*added.place);
   }
-  if (added.empty()) return std::nullopt;
-  const std::vector<Eigen::Index> places = Joined(of_fit_, added);
-  const Eigen::VectorXd step = StepBy(products_, places);
+  if (places.empty()) return std::nullopt;
+  const GramAxes axes = gram_->AxesOf(places);
+  const GramStep step = gram_->StepBy(axes, axes.values.inverse());
   TermScore score;
-  PutValues(choice, step, score.values);
+  for (const auto& [name, parameter, at, place] : choices_[choice]) {
+    const double moved = place ? step.omitted[*place] : 0.0;
+    // The linear step of a rig is one of its compliance, which starts at zero.
+    const bool is_rig = place && parameter.term->id == TermId::kRigStiffness;
+    const double theta = at + (is_rig ? -std::log(std::max(-moved, 1.0)) : moved);
+    const double inside =
+        std::clamp(theta, kOfBound * parameter.lower + (1 - kOfBound) * parameter.upper,
+                   kOfBound * parameter.upper + (1 - kOfBound) * parameter.lower);
+    score.values[name] = parameter.ToValue(inside);
+  }
   for (const char* const name : {"sigma", "alpha", "slip_force"}) {
     const auto place = std::ranges::find(names_, name) - names_.begin();
-    if (place < std::ssize(names_)) score.law.emplace(name, step[place] / norms_[place]);
+    if (place < std::ssize(names_)) score.law.emplace(name, step.law[place]);
   }
   const auto samples = static_cast<double>(data_.counted);
   const double rounding = samples * kRoundingRms * kRoundingRms;
-  const double without = squares_of_fit_ + rounding;
-  const double with = SquaresAfter(products_, places, step) + rounding;
+  const double without = gram_->sum_of_squares() + rounding;
+  const double explained = axes.coefficients.square().sum();
+  const double with = std::max(without - explained, rounding);
   score.rms = data_.force * std::sqrt(with / samples);
-  score.gain = 1 - std::sqrt(std::min(with / without, 1.0));
+  score.gain = 1 - std::sqrt(with / without);
   const double ratio = Evidence(data_.counted, effective_samples_).LikelihoodRatio(without, with);
-  if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, static_cast<double>(added.size()));
+  if (ratio > 0) score.p_value = PValueOfChiSquared(ratio, static_cast<double>(places.size()));
   return score;
 }
 

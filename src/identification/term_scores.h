@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/inference/local.h"
+#include "identification/gram/gram.h"
 #include "identification/problem/problem.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
@@ -34,9 +34,8 @@ struct TermScore {
   std::map<std::string, double> law;     // by how much θ of σ, α and Tc moves
 };
 
-/// Scores terms by one Gauss-Newton step from a fit that does not have them: of the Jacobian of the
-/// fit and the derivatives by the terms' parameters the products are kept, and a step of any of the
-/// terms is algebra on these. Exact for terms that are linear.
+/// Scores terms by one Gauss-Newton step from a fit that does not have them, by the products of its
+/// Jacobian and the derivatives by the terms' parameters. Exact for terms that are linear.
 class TermScores {
  public:
   /// @param options  of the fits, with the sign of the force that was found
@@ -63,16 +62,13 @@ class TermScores {
   struct Added {
     std::string name;
     Parameter parameter;
-    double theta = 0.0;      // at which the derivatives are
-    Eigen::Index place = 0;  // among the columns of all; negative where it has no effect
+    double theta = 0.0;                      // at which the derivatives are
+    std::optional<Eigen::Index> place = {};  // of its column; empty where it has no effect
   };
   [[nodiscard]] Problem ProblemOf(const FitOptions& options) const;
   [[nodiscard]] std::vector<double> ThetaOf(const Problem& problem) const;
   [[nodiscard]] std::vector<Added> AddColumnsOf(const TermChoice& choice, const FitOptions& options,
                                                 std::vector<Eigen::VectorXd>& columns);
-  void TakeProducts(const std::vector<Eigen::VectorXd>& columns);
-  void PutValues(std::size_t choice, const Eigen::VectorXd& step,
-                 std::map<std::string, double>& to) const;
 
   std::vector<std::string> covariates_;
   loop::PreparedRecords prepared_;
@@ -83,16 +79,10 @@ class TermScores {
   std::set<std::string> free_;            // of these
   models::InitialState state_ = models::InitialState::kSteady;
   double effective_samples_ = 1.0;
-  Linearization at_fit_;  // in those that are inside their bounds; the first columns of all
-  std::vector<std::string> names_;  // of these
+  std::vector<std::string> names_;  // of those that are inside their bounds
   Eigen::VectorXd freed_;           // what these leave of the residuals
-  // The choices:
   std::vector<std::vector<Added>> choices_;
-  Eigen::VectorXd norms_;     // of all columns
-  Eigen::MatrixXd products_;  // of columns of unit norm, the residuals last
-  // The fit itself, against which choices are scored:
-  std::vector<Eigen::Index> of_fit_;  // its columns
-  double squares_of_fit_ = 0.0;       // after a step of its own
+  std::optional<Gram> gram_;  // of the fit and the columns of all choices
 };
 
 }  // namespace mindahl::identification

@@ -247,7 +247,6 @@ class Selection {
   bool Add(std::size_t candidate, Model model);
   bool Round();
   void KeepAlternatives(const Gain& added, std::span<const Gain> gains);
-  FitResult FitFromHere();
   void FitLast(const FitResult& law);
 
   static constexpr std::size_t kLastFits = 3;  // of a round and of FitLast()
@@ -296,16 +295,13 @@ bool Selection::Begin(const FitOptions& options, const FitResult& law,
   drawn_ = loop::DrawReadings(scores_->prepared());
   facts_ = law.WidestRecord().facts;
   base_ = {.options = options, .fit = law};
-  bool counts_alike = true;
-  for (std::size_t r = 0; r < held_out_.size(); ++r) {
-    counts_alike =
-        counts_alike && std::ranges::equal(held_out_[r], law.records[r].counts, {}, {},
-                                           [](unsigned char counts) { return counts == 0; });
-  }
+  // A lag only leaves out more.
+  const bool counts_alike =
+      std::ranges::equal(scores_->prepared().records, law.records, {},
+                         &loop::PreparedRecord::left_out, &RecordFit::left_out);
   const std::map<std::string, double> none;
   if (!counts_alike) base_ = FitWith({}, &none);
-  if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
-  return true;
+  return IsFitted(base_.fit) && base_.fit.converged;
 }
 
 /// Scores the candidates at the present solution and returns them, the best first.
@@ -487,13 +483,6 @@ void Selection::Run(const FitOptions& options) {
   });
 }
 
-/// Fits the model with all terms at the depth that is asked for, from where it is.
-FitResult Selection::FitFromHere() {
-  FitOptions from_here = base_.options;
-  StartFrom(base_.fit, from_here);
-  return FitTo(from_here, depth_);
-}
-
 /// Fits the chosen model: from starts of its own, as where the terms are named, unless these lose
 /// Tc or leave more than is known to be left, else from where it is. The law stays where its Tc
 /// would be lost.
@@ -503,7 +492,11 @@ void Selection::FitLast(const FitResult& law) {
   const auto is_kept = [&](const FitResult& fit) {
     return IsFitted(fit) && !Leaves(fit) && !OpensSlipForce(law, fit, Limits().widest_ratio);
   };
-  if (!is_kept(last) || last.rms > most_left) last = FitFromHere();
+  if (!is_kept(last) || last.rms > most_left) {
+    FitOptions from_here = base_.options;
+    StartFrom(base_.fit, from_here);
+    last = FitTo(from_here, depth_);
+  }
   if (is_kept(last)) {
     // One term that leaves but noise rules out what leaves much more.
     const bool is_settled =
