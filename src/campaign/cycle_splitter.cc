@@ -134,7 +134,7 @@ io::Samples ReadHead(io::RecordStream& stream) {
 
 loop::ReversalGate ChooseGate(const loop::RecordView& head, FitOptions& fit) {
   const loop::PreparedRecords prepared = loop::Prepare({&head, 1}, fit.preparation);
-  loop::ReversalGate gate = prepared.records.front().gate_choice;
+  loop::ReversalGate gate = prepared.records.front().gate;
   fit.preparation.reversal_gate = gate.gate;
   fit.preparation.force_sense = prepared.force_sense;
   return gate;

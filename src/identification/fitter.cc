@@ -92,20 +92,14 @@ void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& res
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
     RecordFit& fit = result.records[r];
-    fit.gate = prepared.gate_choice;
-    fit.glitches = prepared.glitches;
-    fit.reversals = prepared.reversals;
-    fit.measures = prepared.measures;
+    static_cast<loop::RecordReading&>(fit) = prepared;
     fit.facts = attempt.depth < Depth::kErrors
                     ? loop::LoopFacts()
                     : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
     fit.initial_state = solved.best.problem.state.Of(r);
     fit.response_noise =
         (noise.of_records.empty() ? noise.force : noise.of_records[r]) * data.response_unit();
-    fit.displacement_noise =
-        data.is_forced() ? noise.force * data.length : prepared.displacement_noise;
-    fit.counts = prepared.counts;
-    fit.left_out = prepared.left_out;
+    if (data.is_forced()) fit.displacement_noise = noise.force * data.length;
     if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
     fit.load_ratio = data.records[r].load;
     fit.load_varies = !data.records[r].load_ratio.empty();

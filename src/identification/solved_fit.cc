@@ -184,8 +184,8 @@ std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate
   const Thresholds& thresholds = attempt.options.thresholds;
   // A gate means noise in the displacement: its outermost samples are the noisiest, and say
   // nothing of where the motion turned.
-  const bool gated = std::ranges::any_of(
-      attempt.prepared.records, [](const auto& record) { return record.gate_choice.gate > 0; });
+  const bool gated = std::ranges::any_of(attempt.prepared.records,
+                                         [](const auto& record) { return record.gate.gate > 0; });
   // Turning points are not fitted together with a term that moves the samples off them, nor under a
   // load that varies: the path between the samples is not the displacement's alone. An imposed
   // force is taken as it was sampled.

@@ -31,7 +31,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = ExtremesOf(displacement);
   const bool is_coarse = prepared.encoder_step > CycleRules::kCoarse * (highest / 2 - lowest / 2);
-  return prepared.gate_choice.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
+  return prepared.gate.gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement) : 0.0;
 }
 
 void Smooth(PreparedRecord& prepared) {
@@ -61,7 +61,7 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options) {
   const RecordView readings = prepared.readings();
   const std::span<const double> excitation =
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
-  ReversalGate& choice = prepared.gate_choice;
+  ReversalGate& choice = prepared.gate;
   if (!options.reversal_gate) choice = ChooseReversalGate(excitation);
   choice.gate = options.reversal_gate.value_or(
       std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));

@@ -140,19 +140,19 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
 
 TEST(Preparation, GateIsGivenFoundOrFromAKnownNoise) {
   PreparationOptions options;
-  EXPECT_EQ(PrepareAll({Made()}, options).records[0].gate_choice.gate, 0.0);
+  EXPECT_EQ(PrepareAll({Made()}, options).records[0].gate.gate, 0.0);
   options.displacement_noise = 1e-3;
   const std::vector<Record> records = {Made()};
   const double reach = 2e-3 * std::sqrt(2 * std::log(static_cast<double>(records[0].size())));
-  EXPECT_NEAR(PrepareAll(records, options).records[0].gate_choice.gate, reach, 1e-12);
+  EXPECT_NEAR(PrepareAll(records, options).records[0].gate.gate, reach, 1e-12);
   options.reversal_gate = 0.25;
-  EXPECT_EQ(PrepareAll(records, options).records[0].gate_choice.gate, 0.25);
-  EXPECT_TRUE(PrepareAll(records, options).records[0].gate_choice.certain);
+  EXPECT_EQ(PrepareAll(records, options).records[0].gate.gate, 0.25);
+  EXPECT_TRUE(PrepareAll(records, options).records[0].gate.certain);
   Generator generator(2);
   Record noisy = Made();
   for (double& x : noisy.displacement) x += 0.02 * Normal(generator);
   const PreparedRecords found = PrepareAll({noisy}, {});
-  EXPECT_GT(found.records[0].gate_choice.gate, 0.02);
+  EXPECT_GT(found.records[0].gate.gate, 0.02);
   EXPECT_EQ(found.records[0].reversals.size(), 6U);
 }
 
@@ -168,7 +168,7 @@ TEST(Preparation, NoisyDisplacementIsSmoothedAndItsReversalsMoved) {
   EXPECT_NEAR(one.displacement_noise, 0.02, 0.005);
   EXPECT_EQ(one.displacement().data(), one.smoothed.data());
   EXPECT_EQ(one.reversals,
-            MoveReversals(one.smoothed, FindReversals(noisy.displacement, one.gate_choice.gate)));
+            MoveReversals(one.smoothed, FindReversals(noisy.displacement, one.gate.gate)));
   // What is exact is not touched.
   EXPECT_TRUE(PrepareAll({clean}, {}).records[0].smoothed.empty());
 }

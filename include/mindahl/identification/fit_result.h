@@ -9,10 +9,9 @@
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
-#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/facts.h"
+#include "mindahl/loop/preparation.h"
 #include "mindahl/loop/record.h"
-#include "mindahl/loop/reversals.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
@@ -84,14 +83,10 @@ struct ParameterEstimate {
 const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& parameters,
                                       std::string_view name);
 
-/// Holds the fit of one record.
-struct RecordFit {
-  loop::ReversalGate gate;             ///< `certain` where it was given
-  loop::GlitchCount glitches;          ///< glitches left out, by kind
-  std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  loop::LoopMeasures measures;
-  loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
-  double displacement_noise = 0.0;  ///< noise of the readings [m]; 0 if exact
+/// Holds the fit of one record, and how that was read. In a fit of the displacement the noise of
+/// its readings is that of the fit.
+struct RecordFit : loop::RecordReading {
+  loop::LoopFacts facts;  ///< what it shows, cycle by cycle; from depth kErrors on
   models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.
@@ -99,8 +94,6 @@ struct RecordFit {
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
   /// measured, offsets included; else empty.
   std::vector<double> fitted_displacement;
-  std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
-  std::size_t left_out = 0;           ///< samples that do not count
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
   double load_ratio = 1.0;            ///< load over the mean load of a load series; else 1
   bool load_varies = false;           ///< within the record, if the law knows it

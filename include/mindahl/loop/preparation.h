@@ -87,20 +87,24 @@ struct LoopMeasures {
   double peak_force = 0.0;
 };
 
-/// One record as every later stage sees it.
-struct PreparedRecord {
-  RecordView record;                              ///< measured record; must outlive this
-  GlitchCount glitches;                           ///< glitches left out
-  std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
-  std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
-  ReversalGate gate_choice;            ///< [unit of the excitation]; `certain` where it was given
+/// How a record was read.
+struct RecordReading {
+  ReversalGate gate;                   ///< [unit of the excitation]; `certain` where it was given
+  GlitchCount glitches;                ///< glitches left out
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;
-  double encoder_step = 0.0;          ///< [m]; 0 where the displacement is no encoder's
-  double displacement_noise = 0.0;    ///< [m]; 0 where readings are not smoothed
+  double displacement_noise = 0.0;    ///< [m]; 0 where readings are exact, and not smoothed
   std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
-  std::vector<double> smoothed;       ///< [m]; empty where readings count as exact
+};
+
+/// One record as every later stage sees it.
+struct PreparedRecord : RecordReading {
+  RecordView record;                              ///< measured record; must outlive this
+  std::vector<double> interpolated_displacement;  ///< [m]; empty if the channel has no glitch
+  std::vector<double> interpolated_force;         ///< [N]; empty if the channel has no glitch
+  double encoder_step = 0.0;                      ///< [m]; 0 where the displacement is no encoder's
+  std::vector<double> smoothed;                   ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
   std::vector<std::size_t> smoothing;
 
