@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/law_choice.h"
@@ -32,7 +32,7 @@ using models::InitialState;
 
 /// Returns the rms of weighted residuals times the geometric mean of what weighs them.
 /// @param residuals  of every sample, without weights
-double LikelihoodRmsOf(const ScaledRecords& data, std::span<const double> residuals) {
+double WeightedRms(const ScaledRecords& data, std::span<const double> residuals) {
   double squares = 0.0;
   double log_weights = 0.0;
   std::size_t k = 0;
@@ -56,6 +56,7 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
   Predict(problem, solved.solution().theta, attempt.solver.response, residuals);
   TakeOffMeasured(data, residuals);
   double squares = 0.0;
+  double logarithms = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
@@ -68,6 +69,7 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
     if (is_forced) fit.fitted_force.assign(view.force.begin(), view.force.end());
     fit.residual.resize(measured.size());
     fitted.resize(measured.size());
+    double own_squares = 0.0;
     std::size_t sample = 0;
     for (std::size_t i = 0; i < record.size(); ++i, ++k) {
       if (!record.inserted.empty() && record.inserted[i] != 0) continue;
@@ -75,14 +77,17 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
       const double residual = unit * residuals[k];
       fit.residual[sample] = residual;
       fitted[sample] = measured[sample] + residual;
-      if (record.counts[i] != 0) squares += residual * residual;
+      if (record.counts[i] != 0) own_squares += residual * residual;
       ++sample;
     }
+    const auto own = static_cast<double>(CountedSamplesOf(record));
+    if (own > 0) logarithms += own * std::log(own_squares / own) / 2;
+    squares += own_squares;
   }
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
-  if (solved.displacement_errors.any() && attempt.options.loss == Loss::kNone) {
-    result.likelihood_rms = data.response_unit() * LikelihoodRmsOf(data, residuals);
-  }
+  const bool is_weighted = solved.displacement_errors.any() && attempt.options.loss == Loss::kNone;
+  result.likelihood_rms = is_weighted ? data.response_unit() * WeightedRms(data, residuals)
+                                      : std::exp(logarithms / static_cast<double>(data.counted));
 }
 
 void FillRecords(const Attempt& attempt, const SolvedFit& solved, FitResult& result) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "identification/diagnosis/residuals.h"
-#include "identification/held_out.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
@@ -148,15 +147,13 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     if (choice.decided) choice.preferred = fit.model;
     return choice;
   }
-  const ScoredSamples samples = CountedSamples(fit, records);
-  const double rms = LikelihoodRms(fit, samples);
-  const double rms_of_other = LikelihoodRms(other, samples);
-  const Evidence evidence(samples.count, IndependentSamples(data, rms_of_other < rms ? other : fit,
-                                                            options.thresholds));
-  const auto criterion = [&](const FitResult& of, double its_rms) {
-    return evidence.Aicc(SumOfSquares(its_rms, samples), of.CountFreeParameters());
+  const FitResult& better = other.likelihood_rms < fit.likelihood_rms ? other : fit;
+  const Evidence evidence(data.counted, IndependentSamples(data, better, options.thresholds));
+  const auto criterion = [&](const FitResult& of) {
+    const double rms = of.likelihood_rms / data.response_unit();
+    return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());
   };
-  const double delta = criterion(other, rms_of_other) - criterion(fit, rms);
+  const double delta = criterion(other) - criterion(fit);
   // If the laws are one curve, a virgin start counts only if it is better.
   const bool is_undecided = std::abs(delta) < options.thresholds.undecided;
   if (is_one_curve && (delta > 0 || is_undecided)) return choice;

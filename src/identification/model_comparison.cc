@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 
-#include "identification/held_out.h"
+#include "core/extremes.h"
+#include "identification/continued_fit.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
+
+using loop::RecordView;
 
 namespace {
 
@@ -38,32 +41,31 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
   return options;
 }
 
-double Rms(const FitResult& fit, const ScoredSamples& samples) {
-  double sum = 0.0;
-  for (std::size_t r = 0; r < samples.mask.size(); ++r) sum += SquaresOf(fit, samples, r).sum;
-  return std::sqrt(sum / static_cast<double>(samples.count));
-}
-
 /// Scores the candidates by the criterion.
-/// @returns the position of the fit with the least rms
-std::size_t ScoreByCriterion(std::span<const FitResult> fits, const ScoredSamples& samples,
-                             std::vector<ModelScore>& scores) {
+/// @returns the fit with the least rms
+const FitResult& ScoreByCriterion(std::span<const FitResult> fits,
+                                  std::span<const RecordView> records,
+                                  std::vector<ModelScore>& scores) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  std::vector<double> rms;
-  rms.reserve(fits.size());
-  for (const FitResult& fit : fits) {
-    rms.push_back(IsFitted(fit) ? LikelihoodRms(fit, samples) : kNone);
+  // Differences below the rounding of the data, whose unit is half their range, mean nothing.
+  double half_range = 0.0;
+  for (const RecordView& record : records) {
+    const auto [lowest, highest] = ExtremesOf(record.force);
+    half_range = std::max(half_range, highest / 2 - lowest / 2);
   }
-  const auto best = static_cast<std::size_t>(std::ranges::min_element(rms) - rms.begin());
-  const Evidence evidence(samples.count, std::min(fits[best].residuals.effective_samples,
-                                                  static_cast<double>(samples.count)));
+  const FitResult& best = *std::ranges::min_element(
+      fits, {}, [](const FitResult& fit) { return IsFitted(fit) ? fit.likelihood_rms : kNone; });
+  const auto samples = static_cast<double>(best.residuals.samples);
+  const Evidence evidence(best.residuals.samples,
+                          std::min(best.residuals.effective_samples, samples));
   double least = kNone;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     ModelScore& score = scores[i];
     score.rms = score.aicc = kNone;
     if (!IsFitted(fits[i])) continue;
-    score.rms = Rms(fits[i], samples);
-    score.aicc = evidence.Aicc(SumOfSquares(rms[i], samples), score.free_parameters);
+    const double rms = fits[i].likelihood_rms / half_range;
+    score.rms = fits[i].rms;
+    score.aicc = evidence.Aicc(samples * rms * rms, score.free_parameters);
     if (score.converged) least = std::min(least, score.aicc);
   }
   for (ModelScore& score : scores) {
@@ -72,11 +74,90 @@ std::size_t ScoreByCriterion(std::span<const FitResult> fits, const ScoredSample
   return best;
 }
 
+/// A closed cycle, from one reversal to the next but one: samples [begin, end).
+struct HeldOutCycle {
+  std::size_t record = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// Returns the cycles of which samples count. A single one of a record is none: without it nothing
+/// of the kind would be left to fit.
+std::vector<HeldOutCycle> CyclesOf(const FitResult& fit) {
+  std::vector<HeldOutCycle> cycles;
+  for (std::size_t r = 0; r < fit.records.size(); ++r) {
+    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
+    std::vector<HeldOutCycle> closed;
+    for (std::size_t j = 0; j + 2 < reversals.size(); j += 2) {
+      const auto own =
+          std::span(fit.records[r].counts).subspan(reversals[j], reversals[j + 2] - reversals[j]);
+      if (std::ranges::count(own, 0) == std::ssize(own)) continue;
+      closed.push_back({r, reversals[j], reversals[j + 2]});
+    }
+    if (closed.size() > 1) cycles.insert(cycles.end(), closed.begin(), closed.end());
+  }
+  return cycles;
+}
+
+/// Returns options under which the fit is found again from where it is.
+FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
+  HoldInitialStates(fit, options);
+  options.preparation.force_sense = fit.force_sense;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.status == ParameterStatus::kFixed) continue;
+    // One that ran to a bound stays there.
+    (parameter.status == ParameterStatus::kFree ? options.start : options.fixed)[parameter.name] =
+        parameter.value;
+  }
+  return options;
+}
+
+/// Returns the root mean square error [N] of the prediction of cycles by fits to the others, dealt
+/// in turn to the folds so that slow changes of the contact are in every one; empty where a fit
+/// failed or refused its options. Samples held out still make history.
+/// @param options  of these fits; what they hold out stays so
+/// @param counted  fit to all, whose samples that count are predicted
+std::optional<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
+                                    const FitResult& counted,
+                                    std::span<const HeldOutCycle> cycles) {
+  const std::size_t folds = std::min(kFolds, cycles.size());
+  double squares = 0.0;
+  double predicted = 0.0;
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    FitOptions rest = options;
+    std::vector<std::vector<bool>>& held_out = rest.preparation.held_out;
+    held_out.resize(records.size());
+    for (std::size_t r = 0; r < records.size(); ++r) held_out[r].resize(records[r].size(), false);
+    for (std::size_t c = fold; c < cycles.size(); c += folds) {
+      for (std::size_t i = cycles[c].begin; i < cycles[c].end; ++i) {
+        held_out[cycles[c].record][i] = true;
+      }
+    }
+    FitResult fit;
+    try {
+      fit = Fitter(rest).Fit(records, Depth::kEstimate);
+    } catch (const InvalidArgument&) {
+      // Too few samples, or a rig that ran rigid, beyond what the rest of the record can see.
+      return std::nullopt;
+    }
+    if (!fit.converged) return std::nullopt;
+    for (std::size_t c = fold; c < cycles.size(); c += folds) {
+      const auto& [record, begin, end] = cycles[c];
+      for (std::size_t i = begin; i < end; ++i) {
+        if (counted.records[record].counts[i] == 0) continue;
+        squares += fit.records[record].residual[i] * fit.records[record].residual[i];
+        ++predicted;
+      }
+    }
+  }
+  return std::sqrt(squares / predicted);
+}
+
 }  // namespace
 
 std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
                                       const FitOptions& options) {
-  const std::vector<loop::RecordView> records(given.begin(), given.end());
+  const std::vector<RecordView> records(given.begin(), given.end());
   if (options.response() != loop::Channel::kForce) {
     throw InvalidArgument("models are compared by fits of the force: name one for a displacement");
   }
@@ -89,19 +170,13 @@ std::vector<ModelScore> CompareModels(std::span<const loop::Record> given,
     score.converged = fit.converged;
     score.free_parameters = fit.CountFreeParameters();
   }
-  const auto fitted = std::ranges::find_if(fits, IsFitted);
-  if (fitted == fits.end()) return scores;
-  const ScoredSamples samples = CountedSamples(*fitted, records);
-  const std::size_t best = ScoreByCriterion(fits, samples, scores);
-  const std::vector<Part> cycles = CyclesOf(fits[best], samples.mask);
-  const std::size_t folds = std::min(kFolds, cycles.size());
+  if (std::ranges::none_of(fits, IsFitted)) return scores;
+  const FitResult& best = ScoreByCriterion(fits, records, scores);
+  const std::vector<HeldOutCycle> cycles = CyclesOf(best);
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
-    ModelScore& score = scores[i];
-    if (!score.converged) continue;
-    const std::optional<double> mean_square =
-        PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
-                     score.free_parameters, samples, cycles, folds);
-    if (mean_square) score.held_out_rms = std::sqrt(*mean_square);
+    if (!scores[i].converged) continue;
+    const FitOptions from_here = ContinuedFrom(fits[i], OptionsOf(scores[i], options));
+    scores[i].held_out_rms = PredictCycles(records, from_here, best, cycles);
   }
   return scores;
 }

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "identification/continued_fit.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
-#include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"

@@ -76,6 +76,28 @@ TEST(CompareModels, AMindlinLoopIsMindlinsAndNotDahls) {
   EXPECT_GT(*ScoreOf(scores, "jenkins", false).held_out_rms, 3 * *mindlin.held_out_rms);
 }
 
+TEST(CompareModels, PredictionIsByFitsThatHaveNotSeenTheCycles) {
+  // Of two cycles, from the first turn at 15, one is predicted by a fit to the rest at a time.
+  const Record record = Measure({.cycles = 2.3}, 3);
+  const ModelScore score = ScoreOf(Compare({record}), "mindlin", false);
+  ASSERT_TRUE(score.held_out_rms);
+  double squares = 0.0;
+  for (const std::size_t begin : {15, 75}) {
+    FitOptions rest;
+    rest.model = score.model;
+    rest.initial_state = InitialState::kVirgin;
+    rest.preparation.held_out = {std::vector<bool>(record.size(), false)};
+    for (std::size_t i = begin; i < begin + 60; ++i) rest.preparation.held_out[0][i] = true;
+    const FitResult fit = FitOne(record, rest);
+    for (std::size_t i = begin; i < begin + 60; ++i) {
+      squares += fit.records[0].residual[i] * fit.records[0].residual[i];
+    }
+  }
+  // Two searches of one minimum, where the mean square is flat to the root of their tolerance.
+  constexpr double kSameMinimum = 1e-4;
+  EXPECT_NEAR(*score.held_out_rms / std::sqrt(squares / 120), 1.0, kSameMinimum);
+}
+
 TEST(CompareModels, CriterionFollowsItsFormula) {
   const Record record = Measure({}, 1);
   const std::vector<ModelScore> scores = Compare({record});

@@ -3,7 +3,6 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/residuals.h"
-#include "identification/held_out.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
