@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <ranges>
 
 #include "core/probability.h"
 
@@ -58,53 +59,35 @@ ResidualStatistics DescribeResiduals(std::span<const RecordFit> records,
   return statistics;
 }
 
-namespace {
-
-constexpr std::size_t kStrokeBins = 20;
-using BinMeans = std::array<double, kStrokeBins>;
-
-/// Means of one stroke's residuals over its parts; NaN where a part has none.
-BinMeans MeansOf(const Stroke& stroke, const ScaledRecord& record,
-                 std::span<const double> residual) {
-  BinMeans sum{};
-  std::array<std::size_t, kStrokeBins> count{};
-  const std::span<const double> excitation = record.excitation();
-  const double from = excitation[stroke.begin];
-  const double way = excitation[stroke.end] - from;
-  for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
-    if (record.counts[i] == 0) continue;
-    const double share = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
-    const auto bin = std::min(static_cast<std::size_t>(share * kStrokeBins), kStrokeBins - 1);
-    sum[bin] += residual[i];
-    ++count[bin];
-  }
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t bin = 0; bin < kStrokeBins; ++bin) {
-    sum[bin] = count[bin] > 0 ? sum[bin] / static_cast<double>(count[bin]) : kNone;
-  }
-  return sum;
-}
-
-}  // namespace
-
 ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const double> residual,
                                     const Thresholds& thresholds) {
+  constexpr std::size_t kParts = 20;
+  const std::span<const double> excitation = record.excitation();
   ResidualStructure structure;
-  std::array<std::vector<BinMeans>, 2> means;
-  std::vector<double> mean_squares;  // of strokes
+  std::array<std::array<std::vector<double>, kParts>, 2> means;  // of strokes
+  std::vector<double> mean_squares;                              // likewise
   double squares = 0.0;
   double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(record, thresholds)) {
     const std::size_t side = stroke.direction > 0 ? 0 : 1;
+    const double from = excitation[stroke.begin];
+    const double way = excitation[stroke.end] - from;
     double own_squares = 0.0;
-    double count = 0.0;
+    std::array<double, kParts> sums{};
+    std::array<double, kParts> counts{};
     for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
       if (record.counts[i] == 0) continue;
+      const double share = std::clamp((excitation[i] - from) / way, 0.0, 1.0);
+      const auto part = std::min(static_cast<std::size_t>(share * kParts), kParts - 1);
+      sums[part] += residual[i];
+      ++counts[part];
       own_squares += residual[i] * residual[i];
-      ++count;
     }
+    const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
     if (count < 2) continue;  // left out, but for a reversal that it shares
-    means[side].push_back(MeansOf(stroke, record, residual));
+    for (std::size_t part = 0; part < kParts; ++part) {
+      if (counts[part] > 0) means[side][part].push_back(sums[part] / counts[part]);
+    }
     ++structure.strokes[side];
     mean_squares.push_back(own_squares / count);
     squares += own_squares;
@@ -115,27 +98,17 @@ ResidualStructure DescribeStructure(const ScaledRecord& record, std::span<const 
   double parts = 0.0;
   double degrees_within = 0.0;
   double systematic = 0.0;  // Σ (m̄² − s²/n)
-  for (const std::vector<BinMeans>& of_side : means) {
-    for (std::size_t bin = 0; bin < kStrokeBins; ++bin) {
-      double sum = 0.0;
-      double count = 0.0;
-      for (const BinMeans& stroke : of_side) {
-        if (std::isnan(stroke[bin])) continue;
-        sum += stroke[bin];
-        ++count;
-      }
-      if (count < 2) continue;
-      const double mean = sum / count;
-      double scatter = 0.0;
-      for (const BinMeans& stroke : of_side) {
-        if (!std::isnan(stroke[bin])) scatter += (stroke[bin] - mean) * (stroke[bin] - mean);
-      }
-      between += count * mean * mean;
-      within += scatter;
-      degrees_within += count - 1;
-      systematic += mean * mean - scatter / (count - 1) / count;
-      ++parts;
-    }
+  for (const std::vector<double>& of_part : std::views::join(means)) {
+    const auto count = static_cast<double>(of_part.size());
+    if (count < 2) continue;
+    const double mean = std::accumulate(of_part.begin(), of_part.end(), 0.0) / count;
+    double scatter = 0.0;
+    for (const double stroke : of_part) scatter += (stroke - mean) * (stroke - mean);
+    between += count * mean * mean;
+    within += scatter;
+    degrees_within += count - 1;
+    systematic += mean * mean - scatter / (count - 1) / count;
+    ++parts;
   }
   const double mean_square = squares / samples;
   if (mean_square > 0) {
