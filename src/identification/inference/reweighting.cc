@@ -1,6 +1,7 @@
 #include "identification/inference/reweighting.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
@@ -61,33 +62,6 @@ constexpr int kMostRounds = 50;
 constexpr double kSettled = 1e-4;   // rms change of the forces, over the noise: a valley has no end
 constexpr double kHarmless = 1e-2;  // likewise, of what goes on for ever: it matters not
 
-/// ψ(z)/z and ψ'(z).
-struct Influence {
-  double weight;
-  double slope;
-};
-
-Influence InfluenceOf(Loss loss, double z) {
-  const double magnitude = std::abs(z);
-  switch (loss) {
-    case Loss::kNone:
-      break;
-    case Loss::kHuber:
-      if (magnitude <= kHuberConstant) break;
-      return {kHuberConstant / magnitude, 0.0};
-    case Loss::kCauchy: {
-      const double weight = 1 / (1 + (z / kCauchyConstant) * (z / kCauchyConstant));
-      return {weight, weight * weight * (1 - (z / kCauchyConstant) * (z / kCauchyConstant))};
-    }
-    case Loss::kTukey: {
-      if (magnitude >= kTukeyConstant) return {0.0, 0.0};
-      const double left = 1 - (z / kTukeyConstant) * (z / kTukeyConstant);
-      return {left * left, left * (1 - 5 * (z / kTukeyConstant) * (z / kTukeyConstant))};
-    }
-  }
-  return {1.0, 1.0};
-}
-
 /// Samples that count less the free parameters, at least 1.
 double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
   return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
@@ -124,11 +98,8 @@ class Weighting {
     Predict(problem_, theta, response, residual);
     std::vector<double> from_displacement = VarianceOfDraws(residual, theta);
     TakeOffMeasured(data_, residual);
-    Noise noise;
-    noise.samples = data_.counted;
-    noise.confidence = options_.confidence;
     const std::optional<double> known = options_.response_noise();
-    noise.is_known = known.has_value();
+    Noise noise = PlainNoise(data_, options_, 0.0, 0);
     if (by_record_ && !known) {
       SetNoiseOfRecords(residual, from_displacement, loss, noise);
     } else {
@@ -292,18 +263,21 @@ class Weighting {
 
   void SetWeights(const std::vector<double>& standardised, const std::vector<double>& root_weight,
                   double scale, Loss loss, double unit, Noise& noise) {
+    const std::unique_ptr<ceres::LossFunction> function = LossOf(loss);
     double influence_squares = 0.0;
     double slopes = 0.0;
     double weights = 0.0;
     ForEachWeight([&](std::size_t i, double& weight) {
       if (counts_[i] == 0) return;
       const double z = standardised[i] / scale;
-      const Influence influence = InfluenceOf(loss, z);
-      if (influence.weight < 0.5) ++noise.outliers;
-      influence_squares += influence.weight * influence.weight * z * z;
-      slopes += influence.slope;
-      weights += influence.weight;
-      weight = root_weight[i] * std::sqrt(influence.weight);
+      std::array<double, 3> rho = {0.0, 1.0, 0.0};  // and its derivatives by z²
+      if (function) function->Evaluate(z * z, rho.data());
+      const double of_loss = rho[1];  // ψ(z)/z
+      if (of_loss < 0.5) ++noise.outliers;
+      influence_squares += of_loss * of_loss * z * z;
+      slopes += rho[1] + 2 * z * z * rho[2];  // ψ'(z)
+      weights += of_loss;
+      weight = root_weight[i] * std::sqrt(of_loss);
     });
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
     // weight.

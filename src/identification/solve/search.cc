@@ -176,23 +176,19 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver
   if (IsAmongKinks(parameters, best)) SearchAcrossKinks(candidate.problem, rivals);
 }
 
-namespace {
-
 std::unique_ptr<ceres::LossFunction> LossOf(Loss loss) {
   switch (loss) {
     case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(kHuberConstant);
+      return std::make_unique<ceres::HuberLoss>(1.345);
     case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(kCauchyConstant);
+      return std::make_unique<ceres::CauchyLoss>(2.385);
     case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(kTukeyConstant);
+      return std::make_unique<ceres::TukeyLoss>(4.685);
     case Loss::kNone:
       break;
   }
   return nullptr;
 }
-
-}  // namespace
 
 void SolveRobustly(const Problem& problem, Loss loss, double scale, const SolverOptions& options,
                    Solution& solution) {

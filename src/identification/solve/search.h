@@ -1,5 +1,8 @@
 #pragma once
 
+#include <ceres/loss_function.h>
+
+#include <memory>
 #include <vector>
 
 #include "identification/problem/problem.h"
@@ -42,11 +45,9 @@ void Descend(Candidate& candidate, const FitOptions& options, Solver& solver);
 /// loaded before. Where a start is given it is the only one.
 void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Solver& solver);
 
-/// Constants of the losses, each 95 % efficient for normal noise (Huber 1981; Holland & Welsch
-/// 1977).
-inline constexpr double kHuberConstant = 1.345;
-inline constexpr double kCauchyConstant = 2.385;
-inline constexpr double kTukeyConstant = 4.685;
+/// Returns the loss ρ(z²) of a standardised residual z, which is 95 % efficient for normal noise
+/// (Huber 1981; Holland & Welsch 1977): null for none.
+std::unique_ptr<ceres::LossFunction> LossOf(Loss loss);
 
 /// Minimises ½ Σ ρ((w·r/scale)²) of the samples by ceres::Solve, one residual block with a
 /// ceres::LossFunction a sample and one without a loss a prior, over all free parameters within
