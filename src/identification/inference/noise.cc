@@ -205,31 +205,6 @@ std::size_t CountedSamplesOf(const ScaledRecord& record) {
   return record.counts.size() - static_cast<std::size_t>(std::ranges::count(record.counts, 0));
 }
 
-namespace {
-
-struct RecordVariance {
-  double variance = 0.0;
-  double degrees_of_freedom = 0.0;
-};
-
-RecordVariance VarianceOf(const Problem& problem, std::size_t r, std::span<const double> residual) {
-  const ScaledRecord& record = problem.data->records[r];
-  const auto samples = static_cast<double>(CountedSamplesOf(record));
-  double squares = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (record.counts[i] != 0) squares += residual[i] * residual[i];
-  }
-  const std::array series = {residual};
-  const std::array counts = {std::span<const unsigned char>(record.counts)};
-  const double independent =
-      samples / EstimateAutocorrelation(series, counts).SquaredCorrelations();
-  const double parameters = ParametersOfRecord(problem, r);
-  return {.variance = squares / std::max(samples - parameters, 1.0),
-          .degrees_of_freedom = independent - parameters};
-}
-
-}  // namespace
-
 bool LeavesOnlyRounding(const Problem& problem, double sum_of_squares) {
   return std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted)) < kOnlyRounding;
 }
@@ -260,16 +235,25 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
   double reciprocals = 0.0;
   std::size_t begin = 0;
   for (std::size_t r = 0; r < records; ++r) {
-    const std::size_t size = problem.data->records[r].size();
-    const RecordVariance of = VarianceOf(problem, r, residual.subspan(begin, size));
-    begin += size;
-    if (of.degrees_of_freedom < kFewest) continue;
+    const ScaledRecord& record = problem.data->records[r];
+    const std::array own = {residual.subspan(begin, record.size())};
+    const std::array counts = {Mask(record.counts)};
+    begin += record.size();
+    double squares = 0.0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] != 0) squares += own[0][i] * own[0][i];
+    }
+    const auto samples = static_cast<double>(CountedSamplesOf(record));
+    const double parameters = ParametersOfRecord(problem, r);
+    const double variance = squares / std::max(samples - parameters, 1.0);
+    const double independent = samples / EstimateAutocorrelation(own, counts).SquaredCorrelations();
+    const double own_degrees = independent - parameters;
+    if (own_degrees < kFewest) continue;
     ++count;
-    degrees += of.degrees_of_freedom;
-    pooled += of.degrees_of_freedom * of.variance;
-    logarithms +=
-        of.degrees_of_freedom * std::log(std::max(of.variance, kRoundingRms * kRoundingRms));
-    reciprocals += 1 / of.degrees_of_freedom;
+    degrees += own_degrees;
+    pooled += own_degrees * variance;
+    logarithms += own_degrees * std::log(std::max(variance, kRoundingRms * kRoundingRms));
+    reciprocals += 1 / own_degrees;
   }
   if (count < 2 || pooled < degrees * kOnlyRounding * kOnlyRounding) return 1.0;
   const double statistic = degrees * std::log(pooled / degrees) - logarithms;
