@@ -232,8 +232,12 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (depth < Depth::kFull) return;
   FitOptions others = given;
   others.preparation.drawn = drawn;
-  result.law_choice =
-      ReportedLaw(CompareLaws(records, others, data, result), result.adequacy.verdict);
+  result.law_choice = CompareLaws(records, others, data, result);
+  // Of a model that is inadequate only a choice against it, as the other law may be why.
+  const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
+  if (result.law_choice && is_inadequate && !result.law_choice->prefers_alternative()) {
+    result.law_choice.reset();
+  }
   Append(result.findings, FindOtherLaw(result.law_choice));
 }
 

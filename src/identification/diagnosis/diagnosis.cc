@@ -374,12 +374,6 @@ std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds&
                  .numbers = {{"r_squared", r_squared}}};
 }
 
-std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
-                                     AdequacyVerdict verdict) {
-  const bool is_inadequate = verdict == AdequacyVerdict::kInadequate;
-  return choice && is_inadequate && !choice->prefers_alternative() ? std::nullopt : choice;
-}
-
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
   if (!choice || (choice->decided && !choice->prefers_alternative())) return std::nullopt;
   Finding finding{.code = choice->prefers_alternative() ? FindingCode("other_law_fits_better")

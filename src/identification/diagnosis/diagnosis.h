@@ -79,11 +79,6 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
 /// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);
 
-/// Returns what is reported of the choice between Masing's law and Dahl's own: of a model that is
-/// inadequate only a choice against it, as the other law may be why.
-std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
-                                     AdequacyVerdict verdict);
-
 /// Finds the other law, of a choice that is reported, where it fits better or as well.
 std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
 
