@@ -86,7 +86,7 @@ const ParameterEstimate* FindEstimate(const std::vector<ParameterEstimate>& para
 /// Holds the fit of one record, and how that was read. In a fit of the displacement the noise of
 /// its readings is that of the fit.
 struct RecordFit : loop::RecordReading {
-  loop::LoopFacts facts;  ///< what it shows, cycle by cycle; from depth kErrors on
+  loop::LoopFacts facts;  ///< cycle by cycle; from depth kErrors on
   models::InitialState initial_state = models::InitialState::kVirgin;
   /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
   /// records unless they differ in it.

@@ -87,7 +87,7 @@ struct LoopMeasures {
   double peak_force = 0.0;
 };
 
-/// How a record was read.
+/// Describes how a record was read.
 struct RecordReading {
   ReversalGate gate;                   ///< [unit of the excitation]; `certain` where it was given
   GlitchCount glitches;                ///< glitches left out
