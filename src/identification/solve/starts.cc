@@ -29,10 +29,7 @@ constexpr std::array<StartRow, 4> kMobilisedRows = {
     StartRow{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
     StartRow{0.0, 2, {0.5, 0.99}}, StartRow{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
     StartRow{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
-/// Starting points where α is held: all are of one row.
-constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 90., 150.};
 constexpr double kNear = 4.0;
-constexpr std::array kMobilised = {0.05, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.997};
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
 /// Number of starts where α is held at 0 and there are several minima next to each other.
@@ -246,16 +243,15 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
                  {.reach = reach, .shape = alpha, .rig_ratio = ratio, .guess = guess});
     }
   };
+  const auto& rows = plane.is_forced() ? kMobilisedRows : kRows;
   if (shape.fixed) {
     constexpr std::size_t kThirds = 3;
-    const auto reaches =
-        plane.is_forced() ? std::span<const double>(kMobilised) : std::span<const double>(kReaches);
-    for (std::size_t i = 0; i < reaches.size(); ++i) {
-      look_at(i * kThirds / reaches.size(), reaches[i], shape.theta);
+    const StartRow& row = rows.front();
+    for (std::size_t i = 0; i < row.count; ++i) {
+      look_at(i * kThirds / row.count, row.reaches[i], shape.theta);
     }
     return;
   }
-  const auto& rows = plane.is_forced() ? kMobilisedRows : kRows;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double alpha = std::clamp(rows[k].shape, shape.lower, shape.upper);
     // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
