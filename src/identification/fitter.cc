@@ -219,12 +219,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     without_priors = FitWithoutPriors(records, depth, given);
     data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
   }
-  ThinnedRecords thin(data);
   RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
 
-  const Attempt attempt{given, depth, prepared, drawn,
-                        data,  thin,  solver,   without_priors ? &*without_priors : nullptr};
+  const Attempt attempt{
+      given, depth, prepared, drawn, data, solver, without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

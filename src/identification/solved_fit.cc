@@ -94,6 +94,7 @@ struct BestState {
 /// several records also some as virgin and some as steady, where all as one does not fit.
 BestState FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
+  ThinnedRecords thin(attempt.data);
   const auto make = [&](const RecordStates& state) {
     Candidate candidate(attempt.data, options, state);
     RequireEnoughSamples(candidate.problem, attempt.prepared);
@@ -101,10 +102,10 @@ BestState FitBestState(const Attempt& attempt) {
   };
   const auto find_starts = [&](Candidate& candidate,
                                double look = std::numeric_limits<double>::infinity()) {
-    return FindStartsOf(candidate, attempt.thin, options, look, attempt.solver);
+    return FindStartsOf(candidate, thin, options, look, attempt.solver);
   };
   const auto descend = [&](Candidate& candidate) {
-    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.solver);
+    AddStartsOfSmallerModels(candidate, thin, options, attempt.solver);
     Descend(candidate, options, attempt.solver);
     SearchBesideMinimum(candidate, options, attempt.solver);
   };
@@ -248,10 +249,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
       // Outliers, or the noisiest of the records, may have hidden the initial state: once
       // more from all starts, as weighted.
       if (options.loss != Loss::kNone || by_record) {
-        ThinnedRecords weighted_thin(data);
-        const Attempt weighted{options,       attempt.depth, attempt.prepared, attempt.drawn, data,
-                               weighted_thin, solver};
-        BestState again = FitBestState(weighted);
+        BestState again = FitBestState(attempt);
         if (std::isfinite(again.candidate.solution.sum_of_squares)) {
           best = std::move(again.candidate);
           solved.other_state = again.other;

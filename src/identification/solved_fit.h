@@ -28,7 +28,6 @@ struct Attempt {
   const loop::PreparedRecords& prepared;
   const std::shared_ptr<const loop::DrawnReadings>& drawn;  // of these; null where exact
   ScaledRecords& data;
-  ThinnedRecords& thin;
   Solver& solver;
   const FitResult* without_priors = nullptr;  ///< null where there is none
 };
