@@ -6,11 +6,13 @@
 #include <limits>
 #include <vector>
 
+#include "identification/continued_fit.h"
 #include "identification/diagnosis/residuals.h"
 #include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -40,6 +42,34 @@ bool StartsInside(const ScaledRecord& record, const Thresholds& thresholds) {
   const auto [low, high] = std::ranges::minmax(record.excitation());
   const double start = record.excitation().front();
   return std::min(start - low, high - start) > thresholds.starts_inside * (high - low);
+}
+
+/// True if a record begins under a force, with a past that it does not show.
+bool BeginsLoaded(const ScaledRecord& record) {
+  constexpr double kUnloaded = 0.05;  // of the half range
+  const auto [low, high] = std::ranges::minmax(record.force);
+  return std::abs(record.force.front() - (low + high) / 2) > kUnloaded * (high - low) / 2;
+}
+
+/// Fits a law without what lies before the first turns of records that begin loaded.
+/// @returns empty where that fails
+std::optional<FitResult> FitWithoutPast(std::span<const loop::RecordView> records,
+                                        FitOptions options, const ScaledRecords& data,
+                                        const FitResult& fit) {
+  std::vector<std::vector<bool>>& held_out = options.preparation.held_out;
+  held_out.resize(records.size());
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    held_out[r].resize(records[r].size());
+    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
+    if (reversals.empty() || !BeginsLoaded(data.records[r])) continue;
+    std::fill_n(held_out[r].begin(), reversals.front(), true);
+  }
+  try {
+    FitResult without = Fitter(options).Fit(records, Depth::kEstimate);
+    if (without.converged) return without;
+  } catch (const InvalidArgument&) {  // too few samples
+  }
+  return std::nullopt;
 }
 
 /// Returns the options of a fit of the other law, from that of the same steady loop. α stays as it
@@ -85,13 +115,20 @@ bool LawIsAtBound(const FitResult& fit) {
   });
 }
 
-/// True if all swings of the records are as wide as the widest, those to their ends no wider. Then
-/// a steady contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a
-/// Tc of its own (models/steady_loop.h).
-bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
+/// True if all swings of the records are as wide as the widest, but for the steps of an encoder,
+/// those to their ends no wider. Then a steady contact of Masing's law and one of Dahl's own run
+/// along one curve, each with a σ and a Tc of its own (models/steady_loop.h).
+bool HasOneAmplitude(std::span<const loop::RecordView> records, const ScaledRecords& data,
+                     const Thresholds& thresholds) {
   double widest = 0.0;
   double narrowest = std::numeric_limits<double>::infinity();
   double longest_end = 0.0;
+  double step = 0.0;
+  for (const loop::RecordView& record : records) {
+    if (!data.is_forced()) {
+      step = std::max(step, loop::EncoderStep(record.displacement) / data.length);
+    }
+  }
   for (const ScaledRecord& record : data.records) {
     if (record.reversals.empty()) return false;
     const std::vector<Stroke> strokes = StrokesOf(record.excitation(), record.reversals);
@@ -106,7 +143,7 @@ bool HasOneAmplitude(const ScaledRecords& data, const Thresholds& thresholds) {
       }
     }
   }
-  const double wider = (1 + thresholds.one_amplitude) * narrowest;
+  const double wider = (1 + thresholds.one_amplitude) * narrowest + 2 * step;
   return widest <= wider && longest_end <= wider;
 }
 
@@ -127,9 +164,9 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
   const bool is_steady = std::ranges::all_of(fit.records, [](const RecordFit& record) {
     return record.initial_state == InitialState::kSteady;
   });
-  const bool is_one_curve = is_steady && HasOneAmplitude(data, options.thresholds);
+  const bool is_open = !options.initial_state && options.initial_states.empty();
+  const bool is_one_curve = is_steady && HasOneAmplitude(records, data, options.thresholds);
   if (is_one_curve) {
-    const bool is_open = !options.initial_state && options.initial_states.empty();
     const auto starts_inside = [&](const ScaledRecord& record) {
       return StartsInside(record, options.thresholds);
     };
@@ -153,13 +190,25 @@ std::optional<LawChoice> CompareLaws(std::span<const loop::RecordView> records,
     const double rms = of.likelihood_rms / data.response_unit();
     return evidence.Aicc(static_cast<double>(data.counted) * rms * rms, of.CountFreeParameters());
   };
-  const double delta = criterion(other) - criterion(fit);
+  double delta = criterion(other) - criterion(fit);
   // If the laws are one curve, a virgin start counts only if it is better.
-  const bool is_undecided = std::abs(delta) < options.thresholds.undecided;
-  if (is_one_curve && (delta > 0 || is_undecided)) return choice;
-  choice.delta_aicc = delta;
+  const auto is_undecided = [&] { return std::abs(delta) < options.thresholds.undecided; };
+  if (is_one_curve && (delta > 0 || is_undecided())) return choice;
   choice.law = other.law;
-  choice.decided = !is_undecided;
+  // Before the first turn Dahl's own law takes any force for the past of an excerpt; Masing's would
+  // need turns that are not recorded. That alone does not decide for it.
+  const bool is_for_dahl = !is_undecided() && (delta > 0) != is_masing;
+  if (is_open && is_for_dahl && std::ranges::any_of(data.records, BeginsLoaded)) {
+    if (HasOneAmplitude(records, data, options.thresholds)) return choice;
+    FitOptions same = options;
+    StartFrom(fit, same);
+    const auto without = FitWithoutPast(records, std::move(same), data, fit);
+    const auto other_without = FitWithoutPast(records, std::move(others), data, fit);
+    if (!without || !other_without) return choice;
+    delta = criterion(*other_without) - criterion(*without);
+  }
+  choice.delta_aicc = delta;
+  choice.decided = !is_undecided();
   if (choice.decided) choice.preferred = delta > 0 ? fit.model : choice.alternative;
   return choice;
 }

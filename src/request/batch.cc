@@ -176,7 +176,9 @@ Json RepeatRows(std::span<const BatchEntry> entries) {
       };
       const double value = number(quantity.name, "");
       const std::string_view parameter = quantity.parameter;
-      if (!row["done"].get<bool>() || std::isnan(value)) continue;
+      const bool is_loop =
+          row["warnings"].get_ref<const std::string&>().find("loop_not_seen") == std::string::npos;
+      if (!row["done"].get<bool>() || !is_loop || std::isnan(value)) continue;
       if (!parameter.empty()) {
         if (laws.size() > 1 && row["model"] != laws.front()) continue;
         const Json& verdict = row[fmt::format("{}_verdict", parameter)];

@@ -212,7 +212,10 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
     TermSelection other = FitLaw(of_other, records, /*chooses_terms=*/false);
-    if (other.fit.converged) asked = std::move(other);
+    const auto& confirmed = other.fit.law_choice;
+    const bool is_preferred =
+        !confirmed || (confirmed->decided && !confirmed->prefers_alternative());
+    if (other.fit.converged && (is_preferred || !asked.fit.converged)) asked = std::move(other);
     // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
   }
@@ -247,20 +250,27 @@ std::string AddTermTo(FitRequest& request, const std::string& name,
   return fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
-bool KnowsSlipForce(const FitResult& fit) {
-  const ParameterEstimate* slip_force = fit.Find("slip_force");
-  return slip_force != nullptr && slip_force->is_known();
-}
-
-/// True if a term takes the slip force's place: it is known no more, or no longer the half gap of a
-/// loop that slides; of a column that makes a part of that gap, not even most of it.
+/// True if a term takes the slip force's place: it is known no more, or leaves what its interval
+/// said; of a column that makes a part of the half gap, not even most of that is left.
 bool LosesSlipForce(const FitResult& before, const FitResult& after, bool by_column,
                     const identification::Thresholds& thresholds) {
-  if (!by_column && !KnowsSlipForce(before)) return false;
-  if (!KnowsSlipForce(after)) return true;
-  const loop::LoopFacts& facts = after.WidestRecord().facts;
-  if (!by_column || !facts.half_gap) return loop::RanAway(facts, after.law.slip_force);
-  return after.law.slip_force < thresholds.rival * std::abs(*facts.half_gap);
+  const identification::ParameterEstimate& was = *before.Find("slip_force");
+  const identification::ParameterEstimate& is = *after.Find("slip_force");
+  if (was.is_known() && !is.is_known()) return true;
+  const std::optional<double>& half_gap = after.WidestRecord().facts.half_gap;
+  if (by_column && half_gap)
+    return !is.is_known() || is.value < thresholds.rival * std::abs(*half_gap);
+  return is.value < was.lower95.value_or(0.0) || is.value > was.upper95.value_or(is.value);
+}
+
+/// True if a term seems to describe the record where a cause that no term describes explains as
+/// much: the values would be quoted, and may be wrong.
+bool IsRivalled(const FitResult& before, const FitResult& after) {
+  if (after.adequacy.verdict != AdequacyVerdict::kAdequate) return false;
+  const double explained = 1 - std::pow(after.rms / before.rms, 2);
+  return std::ranges::any_of(before.adequacy.causes, [&](const identification::Cause& cause) {
+    return cause.term.empty() && cause.explains >= explained;
+  });
 }
 
 /// Fits the record again with the term that explains most of what the law misses, where the law
@@ -305,6 +315,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
           LosesSlipForce(fit, found, by_column, options.thresholds)) {
         continue;
       }
+      if (IsRivalled(fit, found)) return std::nullopt;
       for (const auto& record : found.records) step.fitted_force.push_back(record.fitted_force);
     } catch (const InvalidArgument&) {
       continue;  // the record does not determine it
