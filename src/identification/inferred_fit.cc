@@ -30,7 +30,7 @@ using loop::RecordView;
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
                   std::span<const double> residual, Noise& noise, FitResult& result) {
   if (!LeavesOnlyRounding(problem, solution.sum_of_squares)) {
-    noise.autocorrelation = AutocorrelationOf(*problem.data, residual);
+    noise.autocorrelation = EstimateAutocorrelation(problem.data->records, residual);
   }
   double widening = 1.0;
   std::vector<std::span<const double>> measured;
@@ -57,17 +57,17 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
 
 /// Adequacy, and intervals that cover what its causes would change.
 /// @param is_limited  did the search end at a limit of its own?
-void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& displacement,
-                        bool is_limited, const FitOptions& options, Solver& solver,
-                        FitResult& result) {
-  const auto& [problem, solution, noise, estimates] = fitted;
+void ConsiderDepartures(const Estimates& fitted, const Eigen::MatrixXd& drawn, bool is_limited,
+                        const FitOptions& options, Solver& solver, FitResult& result) {
+  const Problem& problem = fitted.problem();
+  const Solution& solution = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
   if (LeavesOnlyRounding(problem, solution.sum_of_squares)) {
     result.adequacy.tried = 1;
     result.adequacy = GradeUse(thresholds, result);
     return;
   }
-  AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, solver.response);
+  AdequacyTest test = TestAdequacy(fitted, drawn, thresholds, solver.response);
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
@@ -91,7 +91,7 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
 }
 
 /// Includes Mindlin's contact in a compliant rig, where the record does not distinguish it.
-void ConsiderRig(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
+void ConsiderRig(const Attempt& attempt, const Estimates& fitted, FitResult& result) {
   const auto rig = TryRig(fitted, result.parameters[kShape], attempt.options, attempt.solver);
   if (!rig) return;
   result.parameters = IncludeRig(*rig, attempt.options.thresholds, std::move(result.parameters));
@@ -145,11 +145,9 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Linearization at =
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  const DisplacementEffect displacement =
-      EffectOf(solved.displacement_errors, problem, solution, noise);
-  const Estimates estimates(problem, solution, noise, displacement, thresholds, std::move(at));
-  const FittedProblem fitted{problem, solution, noise, estimates};
-  FillErrors(problem, estimates, result);
+  const Eigen::MatrixXd drawn = EffectOf(solved.displacement_errors, problem, solution);
+  const Estimates fitted(problem, solution, noise, drawn, thresholds, std::move(at));
+  FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
   if (solved.other_state) ConsiderOtherState(*solved.other_state, result);
@@ -157,7 +155,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);
   if (is_judged) {
-    ConsiderDepartures(fitted, displacement, limit.has_value(), options, solver, result);
+    ConsiderDepartures(fitted, drawn, limit.has_value(), options, solver, result);
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));

@@ -140,14 +140,13 @@ TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
   EXPECT_EQ(std::ranges::max(structure.strokes), 50U);
   ASSERT_GT(structure.repeatable_share, 0.1);
   const double repeating = 1 + structure.repeatable_share * 49;
-  const std::span<const double> series = fit.records[0].residual;
-  const std::span<const unsigned char> counts = fit.records[0].counts;
-  const Autocorrelation process = EstimateAutocorrelation({&series, 1}, {&counts, 1});
+  Stages stages(record, Virgin());
+  const Autocorrelation process =
+      EstimateAutocorrelation(stages.data.records, fit.records[0].residual);
   EXPECT_NEAR(fit.residuals.effective_samples * repeating * process.SquaredCorrelations() /
                   static_cast<double>(record.size()),
               1.0, 1e-6);
   // The same noise without what repeats.
-  Stages stages(record, Virgin());
   const Solution solution = stages.Solve();
   const auto parameters = stages.problem.parameters.free().size();
   Noise noise =

@@ -19,15 +19,16 @@ constexpr std::size_t kSamples = 5000;
 
 /// Of records whose samples all count.
 Autocorrelation EstimateNoise(const std::vector<std::vector<double>>& records,
-                              std::vector<std::vector<unsigned char>> counts = {}) {
-  std::vector<std::span<const double>> series;
-  std::vector<std::span<const unsigned char>> masks;
-  for (const std::vector<double>& record : records) series.emplace_back(record);
-  if (counts.empty()) {
-    for (const std::vector<double>& record : records) counts.emplace_back(record.size(), 1);
+                              const std::vector<std::vector<unsigned char>>& counts = {}) {
+  std::vector<ScaledRecord> scaled(records.size());
+  std::vector<double> residual;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    residual.insert(residual.end(), records[r].begin(), records[r].end());
+    scaled[r].force = records[r];
+    scaled[r].counts.assign(records[r].size(), 1);
+    if (!counts.empty()) scaled[r].counts = counts[r];
   }
-  for (const std::vector<unsigned char>& mask : counts) masks.emplace_back(mask);
-  return EstimateAutocorrelation(series, masks);
+  return EstimateAutocorrelation(scaled, residual);
 }
 
 /// The process with these coefficients and correlations ρ₀ … ρ_p.

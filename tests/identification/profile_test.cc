@@ -33,8 +33,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);
     const double share = estimates.WhiteShare(kSlipForce);
     EXPECT_EQ(share<0.5, rho> 0);
-    const Ends ends = Profile({stages.problem, best, noise, estimates}, kSlipForce, stages.options,
-                              stages.solver);
+    const Ends ends = Profile(estimates, kSlipForce, stages.options, stages.solver);
     ASSERT_TRUE(ends.lower && ends.upper);
     for (const double end : {*ends.lower, *ends.upper}) {
       FitOptions held;
@@ -59,8 +58,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   for (const double variance : {1e-6, 1e-3}) {
     const Noise noise = KnownNoise(variance, stages.data.counted);
     const Estimates estimates = testing::EstimatesOf(stages, best, noise);
-    const Ends ends = Profile({stages.problem, best, noise, estimates}, kSlipForce, stages.options,
-                              stages.solver);
+    const Ends ends = Profile(estimates, kSlipForce, stages.options, stages.solver);
     EXPECT_EQ(ends.upper.has_value(), variance < 1e-5);
   }
 }

@@ -79,8 +79,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
   shape.value = best.theta[kShape];
   shape.status = ParameterStatus::kFree;
   shape.upper95 = shape.value;
-  return TryRig({stages.problem, best, noise, estimates}, shape, stages.options, stages.solver)
-      .has_value();
+  return TryRig(estimates, shape, stages.options, stages.solver).has_value();
 }
 
 // --- verdicts

@@ -45,17 +45,17 @@ double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
 /// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
 /// reversal itself, the parabola through these and the square of the narrowest window's.
 /// @returns those of windows that have two samples a stroke or more
-std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
-                                       const Thresholds& thresholds) {
+std::vector<double> StiffnessOfWindows(const Estimates& estimates, const Thresholds& thresholds) {
   std::vector<double> ratios;
-  if (problem.data->is_forced()) return ratios;
+  const ScaledRecords& data = *estimates.problem().data;
+  if (data.is_forced()) return ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
     CrossProduct measured;
     CrossProduct model;
     double strokes = 0.0;
     double samples = 0.0;
     std::size_t begin = 0;
-    for (const ScaledRecord& record : problem.data->records) {
+    for (const ScaledRecord& record : data.records) {
       const auto force_of_model = [&](std::size_t i) {
         return record.force[i] +
                estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
@@ -103,12 +103,11 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 
 }  // namespace
 
-ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Thresholds& thresholds,
+ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
                                     const FitResult& result) {
   ParameterEstimates parameters = result.parameters;
   ParameterEstimate& slip_force = parameters[kSlipForce];
-  IncludeRatios(parameters[kStiffness],
-                StiffnessOfWindows(fitted.problem, fitted.estimates, thresholds));
+  IncludeRatios(parameters[kStiffness], StiffnessOfWindows(fitted, thresholds));
   for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
     estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed &&

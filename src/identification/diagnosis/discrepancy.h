@@ -17,7 +17,7 @@ namespace mindahl::identification {
 /// less than the gap in the middle of the stroke, no more than its largest force. The margin is the
 /// scatter of the cycles' half gaps and the force that the model misses. Other intervals are left
 /// as they are; those of a fit that is of use count as including what the model misses.
-ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted, const Thresholds& thresholds,
+ParameterEstimates CoverDiscrepancy(const Estimates& fitted, const Thresholds& thresholds,
                                     const FitResult& result);
 
 }  // namespace mindahl::identification

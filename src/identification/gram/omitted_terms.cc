@@ -96,12 +96,14 @@ DepartureFit FitOf(const Gram& gram, const OmittedTerm& term, const GramAxes& ax
 
 }  // namespace
 
-AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
+AdequacyTest TestAdequacy(const Estimates& fitted, const Eigen::MatrixXd& drawn,
                           const Thresholds& thresholds, Response& response) {
-  const auto& [problem, solution, noise, estimates] = fitted;
+  const Problem& problem = fitted.problem();
+  const Solution& solution = fitted.solution();
+  const Noise& noise = fitted.noise();
   const ScaledRecords& data = *problem.data;
-  const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, estimates.jacobian());
-  const Eigen::VectorXd& residual = estimates.residual();
+  const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, fitted.jacobian());
+  const Eigen::VectorXd& residual = fitted.residual();
   const auto law = static_cast<double>(jacobian.cols());
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
@@ -116,11 +118,11 @@ AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect&
   const GramStep best = gram.StepBy(axes, axes.values.inverse());
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
-      AutocorrelationOf(data, {left.data(), static_cast<std::size_t>(left.size())});
-  if (process.order > 0 || displacement.residuals.size() > 0) {
+      EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(left.size())});
+  if (process.order > 0 || drawn.size() > 0) {
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
-    gram.SetNoise(CorrelatedProduct(data, process, noise, displacement, columns));
+    gram.SetNoise(CorrelatedProduct(data, process, noise, drawn, columns));
     axes = gram.AxesOf(all);
   }
   AdequacyTest test;

@@ -36,9 +36,8 @@ struct AdequacyTest {
   std::vector<DepartureFit> fits;   // of each term that the record can identify
 };
 
-/// @param displacement  what drawn errors of the displacement do to the residuals: that is noise
-/// too
-AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
+/// @param drawn  as of CorrelatedProduct(): noise of the residuals too
+AdequacyTest TestAdequacy(const Estimates& fitted, const Eigen::MatrixXd& drawn,
                           const Thresholds& thresholds, Response& response);
 
 /// Extends intervals to what they are with γ integrated out. The error counts twice: a step

@@ -41,14 +41,12 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
 }
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     const DisplacementEffect& displacement, const Thresholds& thresholds,
-                     Linearization at)
+                     const Eigen::MatrixXd& drawn, const Thresholds& thresholds, Linearization at)
     : problem_(problem),
       solution_(solution),
-      confidence_(noise.confidence),
+      noise_(noise),
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
                                 noise.confidence)),
-      white_variance_(noise.variance),
       variance_(noise.variance * noise.repeating),
       at_(std::move(at)) {
   const std::vector<std::size_t> free(problem.parameters.free().begin(),
@@ -60,13 +58,13 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     inside.push_back(free[j]);
     places.push_back(static_cast<Eigen::Index>(j));
   }
-  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, displacement);
+  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, drawn);
   if (inside.size() < free.size()) {
-    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, displacement);
+    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, drawn);
   }
   // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
   // than the noise's variance; beyond most_absorbed no more is corrected.
-  if (noise.is_known || displacement.residuals.size() > 0) return;
+  if (noise.is_known || drawn.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
   const auto parameters = static_cast<double>(free.size());
   const double absorbed = std::min(full_.absorbed, thresholds.most_absorbed * count);
@@ -115,7 +113,8 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
     // that is the program's own, nothing is known of what lies beyond it.
     const double inwards = side == BoundSide::kLower ? 1 : -1;
-    const double end = parameter.ToValue(theta + inwards * NormalQuantile(confidence_) * error);
+    const double end =
+        parameter.ToValue(theta + inwards * NormalQuantile(noise_.confidence) * error);
     const std::optional<double> bound =
         IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
     const bool is_upwards = end > estimate.value;
@@ -156,7 +155,7 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   const auto place = static_cast<Eigen::Index>(j);
   // A correlation that is estimated from a handful of residuals may leave no variance at all.
   if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
-  return white_variance_ * full_.white_factor(place, place) /
+  return noise_.variance * full_.white_factor(place, place) /
          (variance_ * full_.factor(place, place));
 }
 

@@ -44,15 +44,19 @@ void IncludeRatios(ParameterEstimate& estimate, std::span<const double> ratios);
 /// Takes back the interval and the standard error.
 void WithdrawInterval(ParameterEstimate& estimate);
 
-/// Standard errors, intervals and correlations of one fit, from the likelihood's parabola at its
-/// maximum.
+/// A problem with its solution and its noise, and what follows: standard errors, intervals and
+/// correlations from the likelihood's parabola at its maximum. Every later stage asks it.
 class Estimates {
  public:
-  /// @param problem       with `solution`, must outlive this
-  /// @param displacement  of the drawn errors, in units of the noise's variance
-  /// @param at            the problem by all its free parameters, near the solution
+  /// @param problem  with `solution` and `noise`, must outlive this
+  /// @param drawn    as of CorrelatedProduct()
+  /// @param at       the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            const DisplacementEffect& displacement, const Thresholds& thresholds, Linearization at);
+            const Eigen::MatrixXd& drawn, const Thresholds& thresholds, Linearization at);
+
+  [[nodiscard]] const Problem& problem() const { return problem_; }
+  [[nodiscard]] const Solution& solution() const { return solution_; }
+  [[nodiscard]] const Noise& noise() const { return noise_; }
 
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
@@ -89,22 +93,12 @@ class Estimates {
 
   const Problem& problem_;
   const Solution& solution_;
-  double confidence_ = 0.95;  // of intervals
+  const Noise& noise_;
   double quantile_;
-  double white_variance_;
   double variance_;
   Linearization at_;
   LocalUncertainty full_;                 // of all free parameters
   std::optional<LocalUncertainty> held_;  // with others held at bounds, where any are
-};
-
-/// A problem with its solution, and what follows from it of noise and errors: what every later
-/// stage asks. All outlive it.
-struct FittedProblem {
-  const Problem& problem;
-  const Solution& solution;
-  const Noise& noise;
-  const Estimates& estimates;
 };
 
 /// Returns what a solution says of the parameters that are reported: values, without errors.

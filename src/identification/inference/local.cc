@@ -77,23 +77,9 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   return at;
 }
 
-Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual) {
-  std::vector<std::span<const double>> residuals;
-  std::vector<std::span<const unsigned char>> counts;
-  residuals.reserve(data.records.size());
-  counts.reserve(data.records.size());
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    residuals.push_back(residual.subspan(begin, record.size()));
-    counts.emplace_back(record.counts);
-    begin += record.size();
-  }
-  return EstimateAutocorrelation(residuals, counts);
-}
-
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual) {
   return static_cast<double>(data.counted) /
-         AutocorrelationOf(data, residual).SquaredCorrelations();
+         EstimateAutocorrelation(data.records, residual).SquaredCorrelations();
 }
 
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response) {
@@ -104,14 +90,14 @@ double EffectiveSamples(const Problem& problem, std::span<const double> theta, R
 }
 
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
-                                  const Noise& noise, const DisplacementEffect& displacement,
+                                  const Noise& noise, const Eigen::MatrixXd& drawn,
                                   const Eigen::MatrixXd& jacobian) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   Eigen::MatrixXd of_force = jacobian;
-  if (displacement.residuals.size() > 0) {
-    const Eigen::MatrixXd drawn = TransposedProduct(jacobian, displacement.residuals);
-    product = Product(drawn, drawn.transpose()) /
-              (static_cast<double>(drawn.cols()) * displacement.variance);
+  if (drawn.size() > 0) {
+    const Eigen::MatrixXd moved = TransposedProduct(jacobian, drawn);
+    product = Product(moved, moved.transpose()) /
+              (static_cast<double>(drawn.cols()) * (noise.variance * noise.repeating));
     const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
     of_force = share.asDiagonal() * jacobian;
   }
@@ -126,7 +112,7 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
 
 LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
                                  Eigen::MatrixXd jacobian, const Noise& noise,
-                                 const DisplacementEffect& displacement) {
+                                 const Eigen::MatrixXd& drawn) {
   LocalUncertainty result;
   result.columns = std::move(columns);
   const std::size_t count = result.columns.size();
@@ -142,7 +128,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
         problem.parameters[result.columns[static_cast<std::size_t>(j)]].prior_root_weight;
   }
   const bool any_prior = !priors.isZero(0.0);
-  const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
+  const bool is_white = drawn.size() == 0 && noise.autocorrelation.order == 0;
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
   if (any_prior) {
     Eigen::MatrixXd rows(2 * size, size);
@@ -162,7 +148,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   if (!is_white) {
     const Eigen::MatrixXd orthonormal = Product(jacobian, inverse_norms.asDiagonal() * half);
     Eigen::MatrixXd product =
-        CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, orthonormal);
+        CorrelatedProduct(*problem.data, noise.autocorrelation, noise, drawn, orthonormal);
     result.absorbed = product.trace();
     const Eigen::MatrixXd of_priors = Product(priors, inverse_norms.asDiagonal() * half);
     product += TransposedProduct(of_priors, of_priors);

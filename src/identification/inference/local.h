@@ -40,16 +40,6 @@ struct Linearization {
 Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
                           std::span<const std::size_t> columns);
 
-/// Holds the uncertainty that errors of the displacement add to a fit.
-struct DisplacementEffect {
-  Eigen::MatrixXd residuals;  // drawn, weighted: rows as the Jacobian's; none where exact
-  double variance = 1.0;      // of a residual, in whose units factors are
-};
-
-/// Autocorrelation of the residuals of all records, one after the other.
-/// @param residual  of every sample
-Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual);
-
 /// Returns the effective number of samples of residuals, weighted or not, one record after the
 /// other: those that count, over the variance inflation from autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual);
@@ -60,15 +50,18 @@ double EffectiveSamples(const Problem& problem, std::span<const double> theta, R
 
 /// JᵀRJ of all records; where the displacement has errors JᵀSRSJ + JᵀEEᵀJ/(K s²), as of
 /// LocalUncertainty.
+/// @param drawn  weighted residuals that errors of the displacement make, a column a draw, rows as
+///               the Jacobian's; none where it is exact
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
-                                  const Noise& noise, const DisplacementEffect& displacement,
+                                  const Noise& noise, const Eigen::MatrixXd& drawn,
                                   const Eigen::MatrixXd& jacobian);
 
 /// Singular value decomposition of the Jacobian, columns scaled to unit norm: never fails, and
 /// names the directions that the data leave open where it is rank deficient.
 /// @param columns  positions in θ to differentiate by
+/// @param drawn    as of CorrelatedProduct()
 LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
                                  Eigen::MatrixXd jacobian, const Noise& noise,
-                                 const DisplacementEffect& displacement);
+                                 const Eigen::MatrixXd& drawn);
 
 }  // namespace mindahl::identification

@@ -18,42 +18,32 @@ constexpr std::size_t kSamplesPerOrder = 10;
 constexpr double kForgotten = 1e-9;
 constexpr std::size_t kLongestMemory = 100'000;  // samples that it is given to forget
 
-using Series = std::span<const double>;
-using Mask = std::span<const unsigned char>;
 using Autocovariances = std::array<double, kHighestOrder + 1>;
 
 /// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
 /// that a series of this length has: without gaps that keeps the sequence positive definite.
-Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
-                                        std::span<const Mask> counts, std::size_t order) {
-  std::size_t samples = 0;
-  for (const Series series : residuals) samples += series.size();
+Autocovariances EstimateAutocovariances(std::span<const ScaledRecord> records,
+                                        std::span<const double> residual, std::size_t order) {
   Autocovariances covariances{};
   for (std::size_t lag = 0; lag <= order; ++lag) {
     double sum = 0.0;
     std::size_t pairs = 0;
     std::size_t counting = 0;
-    for (std::size_t r = 0; r < residuals.size(); ++r) {
-      for (std::size_t i = lag; i < residuals[r].size(); ++i) {
+    std::span<const double> rest = residual;
+    for (const ScaledRecord& record : records) {
+      for (std::size_t i = lag; i < record.size(); ++i) {
         ++pairs;
-        if (counts[r][i] == 0 || counts[r][i - lag] == 0) continue;
-        sum += residuals[r][i] * residuals[r][i - lag];
+        if (record.counts[i] == 0 || record.counts[i - lag] == 0) continue;
+        sum += rest[i] * rest[i - lag];
         ++counting;
       }
+      rest = rest.subspan(record.size());
     }
     const double mean = counting > 0 ? sum / static_cast<double>(counting) : 0.0;
-    covariances[lag] =
-        mean * static_cast<double>(pairs) / static_cast<double>(std::max<std::size_t>(samples, 1));
+    covariances[lag] = mean * static_cast<double>(pairs) /
+                       static_cast<double>(std::max<std::size_t>(residual.size(), 1));
   }
   return covariances;
-}
-
-std::size_t CountOf(std::span<const Mask> counts) {
-  std::size_t count = 0;
-  for (const Mask mask : counts) {
-    count += mask.size() - static_cast<std::size_t>(std::ranges::count(mask, 0));
-  }
-  return count;
 }
 
 std::size_t HighestOrderOf(std::size_t count) {
@@ -101,10 +91,11 @@ Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) 
 
 }  // namespace
 
-Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
-                                        std::span<const Mask> counts) {
-  const std::size_t count = CountOf(counts);
-  return ProcessOf(EstimateAutocovariances(residuals, counts, HighestOrderOf(count)), count);
+Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
+                                        std::span<const double> residual) {
+  std::size_t count = 0;
+  for (const ScaledRecord& record : records) count += CountedSamplesOf(record);
+  return ProcessOf(EstimateAutocovariances(records, residual, HighestOrderOf(count)), count);
 }
 
 double Autocorrelation::SquaredCorrelations() const {
@@ -236,17 +227,17 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
   std::size_t begin = 0;
   for (std::size_t r = 0; r < records; ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    const std::array own = {residual.subspan(begin, record.size())};
-    const std::array counts = {Mask(record.counts)};
+    const std::span<const double> own = residual.subspan(begin, record.size());
     begin += record.size();
     double squares = 0.0;
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.counts[i] != 0) squares += own[0][i] * own[0][i];
+      if (record.counts[i] != 0) squares += own[i] * own[i];
     }
     const auto samples = static_cast<double>(CountedSamplesOf(record));
     const double parameters = ParametersOfRecord(problem, r);
     const double variance = squares / std::max(samples - parameters, 1.0);
-    const double independent = samples / EstimateAutocorrelation(own, counts).SquaredCorrelations();
+    const double independent =
+        samples / EstimateAutocorrelation({&record, 1}, own).SquaredCorrelations();
     const double own_degrees = independent - parameters;
     if (own_degrees < kFewest) continue;
     ++count;

@@ -38,10 +38,10 @@ struct Autocorrelation {
       const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 };
 
-/// @param residuals  one series a record
-/// @param counts     of each sample, 0 where it is left out; of the same sizes
-Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>> residuals,
-                                        std::span<const std::span<const unsigned char>> counts);
+/// @param residual  of every sample of the records, one after the other; those that do not count
+///                  are left out
+Autocorrelation EstimateAutocorrelation(std::span<const ScaledRecord> records,
+                                        std::span<const double> residual);
 
 /// The one account of the noise of a fit, in units of the data: whoever states an error, compares
 /// two fits or counts samples asks it.

@@ -18,14 +18,14 @@ constexpr double kParabolic = 0.5;
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
-  HeldParameter(const FittedProblem& fitted, std::size_t parameter, const SolverOptions& options,
+  HeldParameter(const Estimates& fitted, std::size_t parameter, const SolverOptions& options,
                 Solver& solver)
-      : problem_(fitted.problem),
+      : problem_(fitted.problem()),
         parameter_(parameter),
-        best_(fitted.solution),
-        variance_(fitted.noise.variance),
-        evidence_(fitted.noise.samples, static_cast<double>(fitted.noise.samples) *
-                                            fitted.estimates.WhiteShare(parameter)),
+        best_(fitted.solution()),
+        variance_(fitted.noise().variance),
+        evidence_(fitted.noise().samples,
+                  static_cast<double>(fitted.noise().samples) * fitted.WhiteShare(parameter)),
         options_(options),
         solver_(solver) {
     problem_.parameters.Fix(parameter, best_.theta[parameter]);
@@ -93,21 +93,21 @@ std::optional<double> CriticalStep(double step, double limit, RootAt root_at) {
 /// where it is less up to there; nothing where that is a limit of the search, or F is less for a
 /// factor of a thousand.
 /// @param towards  −1 or 1
-std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fitted,
+std::optional<double> LikelihoodEnd(HeldParameter& held, const Estimates& fitted,
                                     std::size_t parameter, double towards) {
   constexpr double kFarthest = 6.9;  // of a logarithm
-  const auto& [problem, best, noise, estimates] = fitted;
+  const Problem& problem = fitted.problem();
+  const Solution& best = fitted.solution();
   const Parameter& of = problem.parameters[parameter];
   const double from = best.theta[parameter];
   const double limit =
       towards < 0 ? std::max(of.lower, from - kFarthest) : std::min(of.upper, from + kFarthest);
-  const double first =
-      std::min({estimates.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
-  std::vector<double> start = estimates.Beside(parameter, towards * first);
+  const double first = std::min({fitted.HalfWidth(parameter), kParabolic, std::abs(limit - from)});
+  std::vector<double> start = fitted.Beside(parameter, towards * first);
   std::vector<double> inside = best.theta;
   std::vector<double> last;
   const std::optional<double> step = CriticalStep(first, std::abs(limit - from), [&](double at) {
-    const double root = std::sqrt(held.At(from + towards * at, start) / estimates.critical());
+    const double root = std::sqrt(held.At(from + towards * at, start) / fitted.critical());
     last = held.solution().theta;
     // A search that lost the valley is not gone on from.
     if (root < 1) inside = last;
@@ -125,11 +125,11 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fi
 }
 
 /// True if a slip force far above the largest force, which is about 1, is not excluded.
-bool IsOpenAbove(HeldParameter& held, const FittedProblem& fitted, const Thresholds& thresholds) {
+bool IsOpenAbove(HeldParameter& held, const Estimates& fitted, const Thresholds& thresholds) {
   const double far = std::log(thresholds.far_slip_force);
-  const Parameter& of = fitted.problem.parameters[kSlipForce];
-  if (far > of.upper || far < fitted.solution.theta[kSlipForce]) return false;
-  return held.At(far, fitted.solution.theta) < thresholds.open_slip_force;
+  const Parameter& of = fitted.problem().parameters[kSlipForce];
+  if (far > of.upper || far < fitted.solution().theta[kSlipForce]) return false;
+  return held.At(far, fitted.solution().theta) < thresholds.open_slip_force;
 }
 
 /// Returns the force [N] that the contact is seen to carry, the more of two: the fitted one less
@@ -154,40 +154,41 @@ double CarriedForce(const Problem& problem, const FitResult& result) {
 }
 
 /// True if the parabola's interval of a logarithm, or of α, is too wide for a parabola.
-bool IsBadlyKnown(const FittedProblem& fitted, std::size_t parameter,
-                  const Thresholds& thresholds) {
-  return !(fitted.estimates.HalfWidth(parameter) <= thresholds.parabola_error);
+bool IsBadlyKnown(const Estimates& fitted, std::size_t parameter, const Thresholds& thresholds) {
+  return !(fitted.HalfWidth(parameter) <= thresholds.parabola_error);
 }
 
 /// True if the parabola may be wrong along a parameter: where it or the law is at a bound, where it
 /// is badly known, and where the likelihood at the upper end of the parabola's interval is another.
-bool NeedsProfile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
+bool NeedsProfile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
                   Solver& solver) {
-  const auto& [problem, best, noise, estimates] = fitted;
+  const Problem& problem = fitted.problem();
+  const Solution& best = fitted.solution();
+  const double variance = fitted.noise().variance;
   if (problem.parameters[parameter].fixed || problem.parameters[parameter].absent) return false;
   const bool is_inside =
       std::ranges::all_of(std::array{parameter, kSlipForce, kStiffness, kShape},
                           [&](std::size_t p) { return best.side[p] == BoundSide::kInside; });
-  const double half = estimates.HalfWidth(parameter);
+  const double half = fitted.HalfWidth(parameter);
   if (!is_inside || IsBadlyKnown(fitted, parameter, options.thresholds)) return true;
   SolverOptions search = SolverOptionsOf(options);
   // The parabola predicts the cost at the end.
   search.predicts_last = true;
   constexpr double kLastGain = 0.02;  // of F: a thousandth of the critical one
-  const double critical = estimates.critical();
-  search.last_step = kLastGain * noise.variance / (best.sum_of_squares + critical * noise.variance);
+  const double critical = fitted.critical();
+  search.last_step = kLastGain * variance / (best.sum_of_squares + critical * variance);
   HeldParameter held(fitted, parameter, search, solver);
   // A skewness shows at either end.
-  const std::vector<double> start = estimates.Beside(parameter, half);
+  const std::vector<double> start = fitted.Beside(parameter, half);
   const double ratio = held.At(start[parameter], start) / critical;
   return !(std::abs(ratio - 1) <= options.thresholds.parabola_departure);
 }
 
 /// True if a loop that hardly dissipates leaves open that it is far from slip.
-bool MayBeFarFromSlip(const FittedProblem& fitted, const FitResult& result,
-                      const FitOptions& options, Solver& solver) {
+bool MayBeFarFromSlip(const Estimates& fitted, const FitResult& result, const FitOptions& options,
+                      Solver& solver) {
   constexpr double kHardly = 0.1;  // energy ratio: far from slip it is a tenth of that
-  if (fitted.problem.parameters[kSlipForce].fixed ||
+  if (fitted.problem().parameters[kSlipForce].fixed ||
       result.WidestRecord().facts.energy_ratio > kHardly) {
     return false;
   }
@@ -196,10 +197,10 @@ bool MayBeFarFromSlip(const FittedProblem& fitted, const FitResult& result,
 }
 
 /// Returns those of σ, α, Tc and a fitted rig of which the parabola may fail.
-std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult& result,
+std::vector<std::size_t> ProfiledOf(const Estimates& fitted, const FitResult& result,
                                     const FitOptions& options, Solver& solver) {
   const bool slips = result.PeakForce() >= options.thresholds.mobilised * result.law.slip_force;
-  const bool knows_slip = fitted.problem.parameters[kSlipForce].fixed;
+  const bool knows_slip = fitted.problem().parameters[kSlipForce].fixed;
   if ((!slips && !knows_slip) || NeedsProfile(fitted, kSlipForce, options, solver) ||
       NeedsProfile(fitted, kRig, options, solver) ||
       MayBeFarFromSlip(fitted, result, options, solver)) {
@@ -207,21 +208,21 @@ std::vector<std::size_t> ProfiledOf(const FittedProblem& fitted, const FitResult
   }
   // A fit that leaves only rounding errors ends at a reversal, where the derivatives jump and the
   // parabola is wrong.
-  const bool only_rounding = LeavesOnlyRounding(fitted.problem, fitted.solution.sum_of_squares);
+  const bool only_rounding = LeavesOnlyRounding(fitted.problem(), fitted.solution().sum_of_squares);
   if (!IsBadlyKnown(fitted, kStiffness, options.thresholds) && !only_rounding) return {};
   return {kStiffness};
 }
 
 }  // namespace
 
-Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
+Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
              Solver& solver) {
   // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
-  search.is_rough = fitted.problem.parameters.free().size() > kMany;
+  search.is_rough = fitted.problem().parameters.free().size() > kMany;
   HeldParameter held(fitted, parameter, search, solver);
-  const Parameter& of = fitted.problem.parameters[parameter];
+  const Parameter& of = fitted.problem().parameters[parameter];
   const auto value_of = [&](std::optional<double> theta) {
     return theta ? std::optional(of.ToValue(*theta)) : std::nullopt;
   };
@@ -232,13 +233,13 @@ Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOption
   return {.lower = value_of(lower), .upper = value_of(LikelihoodEnd(held, fitted, parameter, 1.0))};
 }
 
-ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
+ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver) {
   ParameterEstimates parameters = result.parameters;
-  const double quantile = fitted.estimates.quantile();
+  const double quantile = fitted.quantile();
   for (const std::size_t p : ProfiledOf(fitted, result, options, solver)) {
-    if (fitted.problem.parameters[p].fixed || fitted.problem.parameters[p].absent) continue;
-    const auto& reported = fitted.problem.parameters.reported();
+    if (fitted.problem().parameters[p].fixed || fitted.problem().parameters[p].absent) continue;
+    const auto& reported = fitted.problem().parameters.reported();
     const auto k = static_cast<std::size_t>(std::ranges::find(reported, p) - reported.begin());
     ParameterEstimate& estimate = parameters[k];
     SetInterval(estimate, Profile(fitted, p, options, solver));

@@ -19,14 +19,14 @@ namespace mindahl::identification {
 /// held, the others fitted again, is the critical one, to a hundredth. A parameter's own bound is
 /// an end; one that only the search has, or α's, leaves it open, and a slip force of twenty times
 /// the largest force that is not clearly rejected.
-Ends Profile(const FittedProblem& fitted, std::size_t parameter, const FitOptions& options,
+Ends Profile(const Estimates& fitted, std::size_t parameter, const FitOptions& options,
              Solver& solver);
 
 /// Returns the estimates with intervals by the likelihood of those of σ, α, Tc and a fitted rig of
 /// which the parabola may be wrong: of a loop that hardly slips, at a bound, where they are badly
 /// known, and where the likelihood at the parabola's ends is another one. A standard error that was
 /// too small follows. Where Tc is open above, so is α.
-ParameterEstimates WithProfiles(const FittedProblem& fitted, const FitResult& result,
+ParameterEstimates WithProfiles(const Estimates& fitted, const FitResult& result,
                                 const FitOptions& options, Solver& solver);
 
 /// Returns Tc, a limit of which is no less than the force that the contact is seen to carry, unless

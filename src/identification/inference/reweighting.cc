@@ -44,14 +44,13 @@ Eigen::MatrixXd DisplacementErrors::ForceErrors(const Problem& problem,
   return forces.colwise() - force;
 }
 
-DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
-                            const Solution& solution, const Noise& noise) {
+Eigen::MatrixXd EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                         const Solution& solution) {
   if (!errors.any()) return {};
-  DisplacementEffect effect{errors.ForceErrors(problem, solution.theta),
-                            noise.variance * noise.repeating};
+  Eigen::MatrixXd effect = errors.ForceErrors(problem, solution.theta);
   Eigen::Index row = 0;
   for (const ScaledRecord& record : problem.data->records) {
-    for (const double weight : record.root_weight) effect.residuals.row(row++) *= weight;
+    for (const double weight : record.root_weight) effect.row(row++) *= weight;
   }
   return effect;
 }

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
@@ -38,9 +37,10 @@ class DisplacementErrors {
   const ScaledRecords& data_;
 };
 
-/// Returns the effect of these errors on a solution's weighted residuals; empty if exact.
-DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
-                            const Solution& solution, const Noise& noise);
+/// Returns the effect of these errors on a solution's weighted residuals, a column a draw; empty if
+/// exact.
+Eigen::MatrixXd EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                         const Solution& solution);
 
 /// Standard deviation of normal values of mean 0 by the median of their magnitudes, which outliers
 /// do not move.

@@ -35,9 +35,11 @@ ParameterEstimates IncludeRival(const Rival& rival, ParameterEstimates parameter
   return parameters;
 }
 
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
+std::optional<RigAlternative> TryRig(const Estimates& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver) {
-  const auto& [problem, best, noise, estimates] = fitted;
+  const Problem& problem = fitted.problem();
+  const Solution& best = fitted.solution();
+  const Noise& noise = fitted.noise();
   // The law of a load that varies has none, nor has that of an imposed force; a prior says what α
   // is.
   if (problem.data->load_varies || problem.data->is_forced() || problem.parameters.has_rig() ||
@@ -62,7 +64,7 @@ std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const Paramete
   const Solution& solution = sprung.solution;
   // Both have as many parameters: ΔAICc is 2 ln Λ.
   const auto samples = static_cast<double>(noise.samples);
-  const double loss = Evidence(noise.samples, samples * estimates.WhiteShare(kShape))
+  const double loss = Evidence(noise.samples, samples * fitted.WhiteShare(kShape))
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
   return RigAlternative{.rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,

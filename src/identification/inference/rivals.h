@@ -33,7 +33,7 @@ struct RigAlternative {
 /// interval of α for a rigid rig, a compliant one may restore it.
 /// @param shape  the estimate of α
 /// @returns empty where 1/3 does not, a rig is there already, or none helps
-std::optional<RigAlternative> TryRig(const FittedProblem& fitted, const ParameterEstimate& shape,
+std::optional<RigAlternative> TryRig(const Estimates& fitted, const ParameterEstimate& shape,
                                      const FitOptions& options, Solver& solver);
 
 /// Includes the contact in the rig. One far stiffer than the rig is Jenkins' element again: the
