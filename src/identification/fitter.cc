@@ -85,7 +85,7 @@ void FillFitted(const Attempt& attempt, const SolvedFit& solved, FitResult& resu
     squares += own_squares;
   }
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
-  const bool is_weighted = solved.displacement_errors.any() && attempt.options.loss == Loss::kNone;
+  const bool is_weighted = attempt.drawn != nullptr && attempt.options.loss == Loss::kNone;
   result.likelihood_rms = is_weighted ? data.response_unit() * WeightedRms(data, residuals)
                                       : std::exp(logarithms / static_cast<double>(data.counted));
 }
@@ -222,8 +222,13 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   RequireRecords(given, data);
   RequireRigStifferThanLoop(given, prepared);
 
-  const Attempt attempt{
-      given, depth, prepared, drawn, data, solver, without_priors ? &*without_priors : nullptr};
+  const Attempt attempt{given,
+                        depth,
+                        prepared,
+                        drawn.get(),
+                        data,
+                        solver,
+                        without_priors ? &*without_priors : nullptr};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved);
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;

@@ -57,8 +57,8 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
 
 /// Adequacy, and intervals that cover what its causes would change.
 /// @param is_limited  did the search end at a limit of its own?
-void ConsiderDepartures(const Estimates& fitted, const Eigen::MatrixXd& drawn, bool is_limited,
-                        const FitOptions& options, Solver& solver, FitResult& result) {
+void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptions& options,
+                        Solver& solver, FitResult& result) {
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Thresholds& thresholds = options.thresholds;
@@ -67,7 +67,7 @@ void ConsiderDepartures(const Estimates& fitted, const Eigen::MatrixXd& drawn, b
     result.adequacy = GradeUse(thresholds, result);
     return;
   }
-  AdequacyTest test = TestAdequacy(fitted, drawn, thresholds, solver.response);
+  AdequacyTest test = TestAdequacy(fitted, thresholds, solver.response);
   const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
@@ -145,8 +145,9 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   Linearization at =
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free());
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  const Eigen::MatrixXd drawn = EffectOf(solved.displacement_errors, problem, solution);
-  const Estimates fitted(problem, solution, noise, drawn, thresholds, std::move(at));
+  const Estimates fitted(problem, solution, noise,
+                         WeightedForceErrors(attempt.drawn, problem, solution), thresholds,
+                         std::move(at));
   FillErrors(problem, fitted, result);
   result.parameters = WithProfiles(fitted, result, options, solver);
   if (is_tested) ConsiderRig(attempt, fitted, result);
@@ -155,7 +156,7 @@ FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
   const std::optional<Finding> limit = FindSearchLimit(problem, solution, thresholds);
   Append(result.findings, limit);
   if (is_judged) {
-    ConsiderDepartures(fitted, drawn, limit.has_value(), options, solver, result);
+    ConsiderDepartures(fitted, limit.has_value(), options, solver, result);
   }
   result.parameters[kSlipForce] = KeepAboveCarriedForce(problem, result);
   Append(result.findings, FindUnseenLoop(result, thresholds));

@@ -139,19 +139,20 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state)};
   Solution solution = SolutionAt(expected, problem.parameters);
-  const DisplacementErrors errors(loop::DrawReadings(prepared), data);
+  const std::shared_ptr<const loop::DrawnReadings> drawn = loop::DrawReadings(prepared);
   Solver solver;
   Noise noise;
-  if (errors.any()) {
+  if (drawn) {
     const SolverOptions stay{.max_iterations = 1};
     const std::vector<double> theta = solution.theta;
-    FitWithWeights(problem, data, options, errors, solver, stay, solution, noise);
+    FitWithWeights(problem, data, options, drawn.get(), solver, stay, solution, noise);
     solution.theta = theta;
   } else {
     noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
   }
   const Estimates estimates(
-      problem, solution, noise, EffectOf(errors, problem, solution), options.thresholds,
+      problem, solution, noise, WeightedForceErrors(drawn.get(), problem, solution),
+      options.thresholds,
       LinearizeAt(problem, solution.theta, solver.response, problem.parameters.free()));
   ExpectedFit result;
   result.protocol = protocol;

@@ -85,14 +85,9 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
   return best;
 }
 
-struct BestState {
-  Candidate candidate;
-  std::optional<Rival> other = {};  // of the other state, where it is nearly as likely
-};
-
 /// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
 /// several records also some as virgin and some as steady, where all as one does not fit.
-BestState FitBestState(const Attempt& attempt) {
+SolvedFit FitBestState(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   ThinnedRecords thin(attempt.data);
   const auto make = [&](const RecordStates& state) {
@@ -113,7 +108,7 @@ BestState FitBestState(const Attempt& attempt) {
     Candidate candidate = make(*given);
     find_starts(candidate);
     descend(candidate);
-    return {std::move(candidate)};
+    return {.best = std::move(candidate)};
   }
   Candidate virgin = make(InitialState::kVirgin);
   Candidate steady = make(InitialState::kSteady);
@@ -127,10 +122,10 @@ BestState FitBestState(const Attempt& attempt) {
   const bool is_looked_at = is_one && options.start.empty();
   if (is_looked_at && steady_cost > clearly_worse * virgin_cost) {
     descend(virgin);
-    if (virgin.solution.converged) return {std::move(virgin)};
+    if (virgin.solution.converged) return {.best = std::move(virgin)};
   } else if (is_looked_at && virgin_cost > clearly_worse * steady_cost) {
     descend(steady);
-    if (steady.solution.converged) return {std::move(steady)};
+    if (steady.solution.converged) return {.best = std::move(steady)};
   }
   descend(virgin);
   descend(steady);
@@ -157,8 +152,8 @@ BestState FitBestState(const Attempt& attempt) {
       mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion);
     }
   }
-  if (mixed) return {std::move(*mixed)};
-  return {std::move(is_virgin ? virgin : steady), of_other};
+  if (mixed) return {.best = std::move(*mixed)};
+  return {.best = std::move(is_virgin ? virgin : steady), .other_state = of_other};
 }
 
 /// True if the noise of the records is not one, where it is not known.
@@ -230,18 +225,16 @@ SolvedFit SolveFit(const Attempt& attempt) {
   const FitOptions& options = attempt.options;
   Solver& solver = attempt.solver;
   ScaledRecords& data = attempt.data;
-  BestState first = FitBestState(attempt);
-  SolvedFit solved(std::move(first.candidate), attempt);
-  solved.other_state = first.other;
+  SolvedFit solved = FitBestState(attempt);
   Candidate& best = solved.best;
   RequireToldAsymmetry(best.problem);
-  const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
+  const bool is_plain = options.loss == Loss::kNone && attempt.drawn == nullptr;
   const bool by_record = RecordsDifferInNoise(attempt, best);
   const bool is_weighted = !is_plain || by_record;
   if (std::isfinite(best.solution.sum_of_squares)) {
     const auto fit_with_weights = [&](ScaledRecords& weighted) {
       solved.is_settled =
-          FitWithWeights(best.problem, weighted, options, solved.displacement_errors, solver,
+          FitWithWeights(best.problem, weighted, options, attempt.drawn, solver,
                          SolverOptionsOf(options), best.solution, solved.noise, by_record);
     };
     if (is_weighted) {
@@ -249,10 +242,10 @@ SolvedFit SolveFit(const Attempt& attempt) {
       // Outliers, or the noisiest of the records, may have hidden the initial state: once
       // more from all starts, as weighted.
       if (options.loss != Loss::kNone || by_record) {
-        BestState again = FitBestState(attempt);
-        if (std::isfinite(again.candidate.solution.sum_of_squares)) {
-          best = std::move(again.candidate);
-          solved.other_state = again.other;
+        SolvedFit again = FitBestState(attempt);
+        if (std::isfinite(again.solution().sum_of_squares)) {
+          best = std::move(again.best);
+          solved.other_state = again.other_state;
           fit_with_weights(data);
         }
       }

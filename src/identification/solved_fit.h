@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,7 +25,7 @@ struct Attempt {
   const FitOptions& options;
   Depth depth;
   const loop::PreparedRecords& prepared;
-  const std::shared_ptr<const loop::DrawnReadings>& drawn;  // of these; null where exact
+  const loop::DrawnReadings* drawn;  // of these; null where exact
   ScaledRecords& data;
   Solver& solver;
   const FitResult* without_priors = nullptr;  ///< null where there is none
@@ -34,11 +33,7 @@ struct Attempt {
 
 /// Holds the least squares of some records: what every later stage starts from.
 struct SolvedFit {
-  SolvedFit(Candidate found, const Attempt& attempt)
-      : best(std::move(found)), displacement_errors(attempt.drawn, attempt.data) {}
-
   Candidate best;  ///< best of the initial states that were tried
-  DisplacementErrors displacement_errors;
   Noise noise = {};
   bool is_settled = true;  ///< the weights are those of the residuals that they leave
   /// Holds the contact of the other initial state, where it is nearly as likely.

@@ -88,14 +88,14 @@ TEST(Reweighting, RobustScaleIsTheMedianMagnitudeOfNormalValues) {
 /// Root mean square of the errors of the drawn displacements over the half range: a Jenkins element
 /// that never slips is a spring, whose force errs in proportion.
 double ErrorOfASpring(Stages& stages) {
-  const DisplacementErrors errors(loop::DrawReadings(stages.prepared), stages.data);
   std::vector<double> theta;
   const Parameters& parameters = stages.problem.parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
   theta[kStiffness] = 0.0;
   theta[kSlipForce] = std::log(100.0);
   theta[kShape] = 0.0;
-  const Eigen::MatrixXd force = errors.ForceErrors(stages.problem, theta);
+  const Eigen::MatrixXd force =
+      ForceErrors(*loop::DrawReadings(stages.prepared), stages.problem, theta);
   return std::sqrt(force.squaredNorm() / static_cast<double>(force.size()));
 }
 
@@ -123,7 +123,7 @@ FitOptions Jenkins(std::optional<double> noise = std::nullopt) {
   return options;
 }
 
-TEST(DisplacementErrors, OfReadingsThatRepeatAreOneError) {
+TEST(ForceErrors, OfReadingsThatRepeatAreOneError) {
   constexpr double kNoise = 0.02;
   Generator generator(5);
   const History sine = Cycling(Wave::kSine, 1.0, 3.0, 80);
@@ -148,7 +148,7 @@ TEST(DisplacementErrors, OfReadingsThatRepeatAreOneError) {
   EXPECT_NEAR(ErrorOfASpring(stages) / expected, 1.0, kDrawn);
 }
 
-TEST(DisplacementErrors, OfAnEncoderAreThoseOfItsRoundingAlone) {
+TEST(ForceErrors, OfAnEncoderAreThoseOfItsRoundingAlone) {
   constexpr double kStep = 0.02;
   History displacement = Cycling(Wave::kSine, 1.0, 3.0, 200);
   const History truth_of = displacement;

@@ -118,9 +118,9 @@ struct WeightedFit {
 inline WeightedFit FitWeighted(Stages& stages) {
   WeightedFit result;
   result.solution = stages.Solve();
-  const identification::DisplacementErrors errors(loop::DrawReadings(stages.prepared), stages.data);
+  const auto drawn = loop::DrawReadings(stages.prepared);
   EXPECT_TRUE(identification::FitWithWeights(
-      stages.problem, stages.data, stages.options, errors, stages.solver,
+      stages.problem, stages.data, stages.options, drawn.get(), stages.solver,
       identification::SolverOptionsOf(stages.options), result.solution, result.noise));
   return result;
 }

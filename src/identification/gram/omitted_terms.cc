@@ -96,8 +96,8 @@ DepartureFit FitOf(const Gram& gram, const OmittedTerm& term, const GramAxes& ax
 
 }  // namespace
 
-AdequacyTest TestAdequacy(const Estimates& fitted, const Eigen::MatrixXd& drawn,
-                          const Thresholds& thresholds, Response& response) {
+AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
+                          Response& response) {
   const Problem& problem = fitted.problem();
   const Solution& solution = fitted.solution();
   const Noise& noise = fitted.noise();
@@ -119,10 +119,10 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Eigen::MatrixXd& drawn,
   const Eigen::VectorXd left = residual + jacobian * best.law + departures.columns * best.omitted;
   const Autocorrelation process =
       EstimateAutocorrelation(data.records, {left.data(), static_cast<std::size_t>(left.size())});
-  if (process.order > 0 || drawn.size() > 0) {
+  if (process.order > 0 || fitted.drawn().size() > 0) {
     Eigen::MatrixXd columns(jacobian.rows(), jacobian.cols() + departures.columns.cols());
     columns << jacobian, departures.columns;
-    gram.SetNoise(CorrelatedProduct(data, process, noise, drawn, columns));
+    gram.SetNoise(CorrelatedProduct(data, process, noise, fitted.drawn(), columns));
     axes = gram.AxesOf(all);
   }
   AdequacyTest test;

@@ -36,9 +36,9 @@ struct AdequacyTest {
   std::vector<DepartureFit> fits;   // of each term that the record can identify
 };
 
-/// @param drawn  as of CorrelatedProduct(): noise of the residuals too
-AdequacyTest TestAdequacy(const Estimates& fitted, const Eigen::MatrixXd& drawn,
-                          const Thresholds& thresholds, Response& response);
+/// Tests a fit. Residuals that errors of the displacement make are noise, too.
+AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
+                          Response& response);
 
 /// Extends intervals to what they are with γ integrated out. The error counts twice: a step
 /// to first order goes a part of the way to a law of another form.

@@ -41,10 +41,11 @@ std::vector<ParameterEstimate> ValuesOf(const Problem& problem, const Solution& 
 }
 
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-                     const Eigen::MatrixXd& drawn, const Thresholds& thresholds, Linearization at)
+                     Eigen::MatrixXd drawn, const Thresholds& thresholds, Linearization at)
     : problem_(problem),
       solution_(solution),
       noise_(noise),
+      drawn_(std::move(drawn)),
       quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
                                 noise.confidence)),
       variance_(noise.variance * noise.repeating),
@@ -58,13 +59,13 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     inside.push_back(free[j]);
     places.push_back(static_cast<Eigen::Index>(j));
   }
-  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, drawn);
+  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, drawn_);
   if (inside.size() < free.size()) {
-    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, drawn);
+    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, drawn_);
   }
   // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
   // than the noise's variance; beyond most_absorbed no more is corrected.
-  if (noise.is_known || drawn.size() > 0) return;
+  if (noise.is_known || drawn_.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
   const auto parameters = static_cast<double>(free.size());
   const double absorbed = std::min(full_.absorbed, thresholds.most_absorbed * count);

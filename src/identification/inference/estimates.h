@@ -52,11 +52,12 @@ class Estimates {
   /// @param drawn    as of CorrelatedProduct()
   /// @param at       the problem by all its free parameters, near the solution
   Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
-            const Eigen::MatrixXd& drawn, const Thresholds& thresholds, Linearization at);
+            Eigen::MatrixXd drawn, const Thresholds& thresholds, Linearization at);
 
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] const Solution& solution() const { return solution_; }
   [[nodiscard]] const Noise& noise() const { return noise_; }
+  [[nodiscard]] const Eigen::MatrixXd& drawn() const { return drawn_; }
 
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
@@ -94,6 +95,7 @@ class Estimates {
   const Problem& problem_;
   const Solution& solution_;
   const Noise& noise_;
+  Eigen::MatrixXd drawn_;
   double quantile_;
   double variance_;
   Linearization at_;

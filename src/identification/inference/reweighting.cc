@@ -17,20 +17,20 @@
 
 namespace mindahl::identification {
 
-Eigen::MatrixXd DisplacementErrors::ForceErrors(const Problem& problem,
-                                                std::span<const double> theta) const {
+Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& problem,
+                            std::span<const double> theta) {
   const std::size_t samples = problem.size();
   Response response;
   response.Bind(problem);
   Eigen::VectorXd force(static_cast<Eigen::Index>(samples));
   Predict(problem, theta, response, {force.data(), samples});
-  Eigen::MatrixXd forces(force.size(), static_cast<Eigen::Index>(drawn_->size()));
-  ScaledRecords data = data_;
-  Problem drawn = problem;
-  drawn.data = &data;
-  for (std::size_t k = 0; k < drawn_->size(); ++k) {
+  Eigen::MatrixXd forces(force.size(), static_cast<Eigen::Index>(drawn.size()));
+  ScaledRecords data = *problem.data;
+  Problem with_drawn = problem;
+  with_drawn.data = &data;
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
     for (std::size_t r = 0; r < data.records.size(); ++r) {
-      const loop::DrawnReading& reading = (*drawn_)[k][r];
+      const loop::DrawnReading& reading = drawn[k][r];
       if (reading.displacement.empty()) continue;
       ScaledRecord& record = data.records[r];
       record.reversals = reading.reversals;
@@ -38,21 +38,22 @@ Eigen::MatrixXd DisplacementErrors::ForceErrors(const Problem& problem,
         return (read - record.units.displacement_reference) / record.units.length;
       });
     }
-    response.Bind(drawn);
-    Predict(drawn, theta, response, {forces.col(static_cast<Eigen::Index>(k)).data(), samples});
+    response.Bind(with_drawn);
+    Predict(with_drawn, theta, response,
+            {forces.col(static_cast<Eigen::Index>(k)).data(), samples});
   }
   return forces.colwise() - force;
 }
 
-Eigen::MatrixXd EffectOf(const DisplacementErrors& errors, const Problem& problem,
-                         const Solution& solution) {
-  if (!errors.any()) return {};
-  Eigen::MatrixXd effect = errors.ForceErrors(problem, solution.theta);
+Eigen::MatrixXd WeightedForceErrors(const loop::DrawnReadings* drawn, const Problem& problem,
+                                    const Solution& solution) {
+  if (drawn == nullptr) return {};
+  Eigen::MatrixXd errors = ForceErrors(*drawn, problem, solution.theta);
   Eigen::Index row = 0;
   for (const ScaledRecord& record : problem.data->records) {
-    for (const double weight : record.root_weight) effect.row(row++) *= weight;
+    for (const double weight : record.root_weight) errors.row(row++) *= weight;
   }
-  return effect;
+  return errors;
 }
 
 namespace {
@@ -76,12 +77,8 @@ double RmsDifference(std::span<const double> a, std::span<const double> b) {
 class Weighting {
  public:
   Weighting(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-            const DisplacementErrors& displacement_errors, bool by_record)
-      : problem_(problem),
-        data_(data),
-        options_(options),
-        errors_(displacement_errors),
-        by_record_(by_record) {
+            const loop::DrawnReadings* drawn, bool by_record)
+      : problem_(problem), data_(data), options_(options), drawn_(drawn), by_record_(by_record) {
     for (const ScaledRecord& record : data.records) {
       counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
       last_weight_.insert(last_weight_.end(), record.root_weight.begin(), record.root_weight.end());
@@ -114,7 +111,7 @@ class Weighting {
     }
     const double unit = std::sqrt(of_force * of_force + least);
     std::vector<double> standardised;
-    std::vector<double> share(errors_.any() ? residual.size() : 0);
+    std::vector<double> share(drawn_ != nullptr ? residual.size() : 0);
     std::size_t k = 0;
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const double own = noise.of_records.empty() ? of_force : noise.of_records[r];
@@ -186,8 +183,8 @@ class Weighting {
     variance_of_draws_.resize(force.size());
     const bool has_moved =
         drawn_at_.empty() || !(RmsDifference(force, drawn_at_) < kHarmless * noise_);
-    if (!errors_.any() || !has_moved) return variance_of_draws_;
-    const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
+    if (drawn_ == nullptr || !has_moved) return variance_of_draws_;
+    const Eigen::MatrixXd drawn = ForceErrors(*drawn_, problem_, theta);
     Eigen::Map<Eigen::VectorXd>(variance_of_draws_.data(), drawn.rows()) =
         drawn.rowwise().squaredNorm() / static_cast<double>(drawn.cols());
     drawn_at_ = force;
@@ -281,7 +278,7 @@ class Weighting {
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
     // weight.
     const auto count = static_cast<double>(data_.counted);
-    if (loss == Loss::kNone && (options_.response_noise() || errors_.any())) {
+    if (loss == Loss::kNone && (options_.response_noise() || drawn_ != nullptr)) {
       noise.variance = unit * unit;
       return;
     }
@@ -298,7 +295,7 @@ class Weighting {
   const Problem& problem_;
   ScaledRecords& data_;
   const FitOptions& options_;
-  const DisplacementErrors& errors_;
+  const loop::DrawnReadings* drawn_;
   bool by_record_;
   std::vector<unsigned char> counts_;
   std::vector<double> without_loss_;  // root weights
@@ -344,11 +341,11 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 }
 
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const DisplacementErrors& displacement_errors, Solver& solver,
+                    const loop::DrawnReadings* drawn, Solver& solver,
                     const SolverOptions& solver_options, Solution& solution, Noise& noise,
                     bool by_record) {
   Response& response = solver.response;
-  Weighting weighting(problem, data, options, displacement_errors, by_record);
+  Weighting weighting(problem, data, options, drawn, by_record);
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
   std::vector<double> last_force(problem.size());

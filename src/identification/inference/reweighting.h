@@ -2,8 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <memory>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "identification/inference/noise.h"
@@ -14,33 +13,16 @@
 
 namespace mindahl::identification {
 
-/// Simulates the effect of errors of the displacement on a model's force: by readings that were
-/// drawn again (loop/preparation.h).
-class DisplacementErrors {
- public:
-  /// @param drawn  of the records; null where their displacements are exact
-  /// @param data   the records, scaled; must outlive this
-  DisplacementErrors(std::shared_ptr<const loop::DrawnReadings> drawn, const ScaledRecords& data)
-      : drawn_(std::move(drawn)), data_(data) {}
+/// Simulates the effect of errors of the displacement on a model's force, by readings that were
+/// drawn again: T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data, one
+/// row a sample, one column a drawn set of its records. Their mean is not taken off: the outermost
+/// of several noisy samples lies a little too far out, and that too is an error.
+Eigen::MatrixXd ForceErrors(const loop::DrawnReadings& drawn, const Problem& problem,
+                            std::span<const double> theta);
 
-  /// True if the displacement of a record is inexact.
-  [[nodiscard]] bool any() const { return drawn_ != nullptr; }
-
-  /// T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data: one row a sample,
-  /// one column a drawn set of records. The same draws every time. Their mean is not taken off: the
-  /// outermost of several noisy samples lies a little too far out, and that too is an error.
-  [[nodiscard]] Eigen::MatrixXd ForceErrors(const Problem& problem,
-                                            std::span<const double> theta) const;
-
- private:
-  std::shared_ptr<const loop::DrawnReadings> drawn_;
-  const ScaledRecords& data_;
-};
-
-/// Returns the effect of these errors on a solution's weighted residuals, a column a draw; empty if
-/// exact.
-Eigen::MatrixXd EffectOf(const DisplacementErrors& errors, const Problem& problem,
-                         const Solution& solution);
+/// Returns these errors of a solution, weighted as its residuals; empty where none are drawn.
+Eigen::MatrixXd WeightedForceErrors(const loop::DrawnReadings* drawn, const Problem& problem,
+                                    const Solution& solution);
 
 /// Standard deviation of normal values of mean 0 by the median of their magnitudes, which outliers
 /// do not move.
@@ -63,12 +45,13 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 /// @param data      its weights are written
 /// - records that differ in their noise (noise.h) each have its own σ_F, and weigh by it:
 ///   w = σ²/σ_r², σ² the mean of all samples' variances
+/// @param drawn     readings of the records; null where their displacements are exact
 /// @param solution  refitted from where it is
 /// @param noise      what the weights stand for
 /// @param by_record  do the records differ in their noise?
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-                    const DisplacementErrors& displacement_errors, Solver& solver,
+                    const loop::DrawnReadings* drawn, Solver& solver,
                     const SolverOptions& solver_options, Solution& solution, Noise& noise,
                     bool by_record = false);
 
