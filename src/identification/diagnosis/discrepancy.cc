@@ -1,9 +1,11 @@
 #include "identification/diagnosis/discrepancy.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/probability.h"
 #include "identification/diagnosis/residuals.h"
@@ -11,25 +13,13 @@
 namespace mindahl::identification {
 namespace {
 
-/// Sums Σ(x − x̄)(y − ȳ) of groups of points: of the same x, slopes are in proportion to it.
-class CrossProduct {
- public:
-  void Add(double x, double y) {
-    ++count_;
-    const double off = x - mean_x_;
-    mean_x_ += off / count_;
-    mean_y_ += (y - mean_y_) / count_;
-    product_ += off * (y - mean_y_);
-  }
-  void AddWithin(const CrossProduct& other) { product_ += other.product_; }
-  [[nodiscard]] double product() const { return product_; }
-
- private:
-  double count_ = 0.0;
-  double mean_x_ = 0.0;
-  double mean_y_ = 0.0;
-  double product_ = 0.0;
-};
+/// Returns Σ(x − x̄)(y − ȳ): of the same x, slopes are in proportion to it.
+double CrossProduct(const std::vector<double>& x, const std::vector<double>& y) {
+  if (x.empty()) return 0.0;
+  const Eigen::Map<const Eigen::ArrayXd> of_x(x.data(), std::ssize(x));
+  const Eigen::Map<const Eigen::ArrayXd> of_y(y.data(), std::ssize(y));
+  return ((of_x - of_x.mean()) * (of_y - of_y.mean())).sum();
+}
 
 /// Half the width of the interval in which a further cycle of the same loop has its half gap:
 /// Student's for so few cycles.
@@ -50,8 +40,8 @@ std::vector<double> StiffnessOfWindows(const Estimates& estimates, const Thresho
   const ScaledRecords& data = *estimates.problem().data;
   if (data.is_forced()) return ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
-    CrossProduct measured;
-    CrossProduct model;
+    double measured = 0.0;
+    double model = 0.0;
     double strokes = 0.0;
     double samples = 0.0;
     std::size_t begin = 0;
@@ -61,8 +51,9 @@ std::vector<double> StiffnessOfWindows(const Estimates& estimates, const Thresho
                estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
       };
       for (const Stroke& stroke : MainStrokes(record, thresholds)) {
-        CrossProduct measured_here;
-        CrossProduct model_here;
+        std::vector<double> places;
+        std::vector<double> measured_forces;
+        std::vector<double> model_forces;
         std::optional<double> first;
         double last = 0.0;
         for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
@@ -76,19 +67,20 @@ std::vector<double> StiffnessOfWindows(const Estimates& estimates, const Thresho
           if (!(record.root_weight[i] > 0)) continue;
           const double force = force_of_model(i);
           if (std::abs(force - *first) > window * std::abs(last - *first)) break;
-          measured_here.Add(record.displacement[i], record.force[i]);
-          model_here.Add(record.displacement[i], force);
-          ++samples;
+          places.push_back(record.displacement[i]);
+          measured_forces.push_back(record.force[i]);
+          model_forces.push_back(force);
         }
-        measured.AddWithin(measured_here);
-        model.AddWithin(model_here);
+        measured += CrossProduct(places, measured_forces);
+        model += CrossProduct(places, model_forces);
+        samples += static_cast<double>(places.size());
         ++strokes;
       }
       begin += record.size();
     }
     constexpr double kFewestOfAStroke = 2;  // samples a stroke, for a chord
-    if (samples < kFewestOfAStroke * strokes || model.product() == 0) continue;
-    const double ratio = measured.product() / model.product();  // of slopes at the same points
+    if (samples < kFewestOfAStroke * strokes || model == 0) continue;
+    const double ratio = measured / model;  // of slopes at the same points
     if (!(ratio > 0) || !std::isfinite(ratio)) continue;
     ratios.push_back(ratio);
   }
