@@ -68,7 +68,7 @@ void ConsiderDepartures(const Estimates& fitted, bool is_limited, const FitOptio
     return;
   }
   AdequacyTest test = TestAdequacy(fitted, thresholds, solver.response);
-  const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
+  const std::vector<OmittedTerm> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(*problem.data, test, causes, is_limited, result, thresholds);
   result.adequacy = GradeUse(thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;

@@ -56,8 +56,9 @@ std::string_view ObstacleToColumn(const loop::Covariate& covariate, const Record
     const bool is_before = std::ranges::find(before, other.name) != before.end();
     if (is_before && is_channel(other.values)) return "same_channel";
   }
-  const std::vector<double>& contact = law.records.front().fitted_force;
-  return FollowsContact(covariate.values, contact, thresholds) ? "confounded" : "";
+  // The factor of a column that follows the force would take a part of Tc.
+  const double correlation = ColumnCorrelation(covariate.values, law.records.front().fitted_force);
+  return std::abs(correlation) > thresholds.follows_contact ? "confounded" : "";
 }
 
 bool HasCovariate(const RecordView& record, const std::string& name) {

@@ -84,7 +84,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double varia
 
 // --- verdicts
 
-AdequacyTest TestWith(std::vector<DepartureFit> fits, double p_value = 1.0) {
+AdequacyTest TestWith(std::vector<OmittedTerm> fits, double p_value = 1.0) {
   AdequacyTest test;
   test.p_value = p_value;
   test.fits = std::move(fits);
@@ -128,15 +128,15 @@ bool IsDoubted(const Thresholds& thresholds, double chance) {
              .verdict == AdequacyVerdict::kDoubtful;
 }
 
-DepartureFit FitWith(double p_value, double delta_aicc) {
-  DepartureFit fit;
+OmittedTerm FitWith(double p_value, double delta_aicc) {
+  OmittedTerm fit;
   fit.departure = &Departures().front();
   fit.p_value = p_value;
   fit.delta_aicc = delta_aicc;
   return fit;
 }
 
-std::size_t CausesAmong(const Thresholds& thresholds, std::vector<DepartureFit> fits) {
+std::size_t CausesAmong(const Thresholds& thresholds, std::vector<OmittedTerm> fits) {
   return CausesOf(TestWith(std::move(fits)), thresholds).size();
 }
 
@@ -233,9 +233,9 @@ const std::vector<Row>& Cases() {
       {&Thresholds::rival,
        [](const Thresholds& t) {
          const auto causes = [&](double share) {
-           DepartureFit best = FitWith(1e-9, -90);
+           OmittedTerm best = FitWith(1e-9, -90);
            best.explains = 0.6;
-           DepartureFit other = FitWith(1e-9, -30);
+           OmittedTerm other = FitWith(1e-9, -30);
            other.explains = share * best.explains;
            return CausesAmong(t, {other, best});
          };

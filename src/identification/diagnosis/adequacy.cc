@@ -109,23 +109,18 @@ double MissedForce(const FitResult& result, const Thresholds& thresholds) {
   return std::max(explained, std::sqrt(std::max(0.0, not_white)));
 }
 
-bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force,
-                    const Thresholds& thresholds) {
-  return std::abs(ColumnCorrelation(column, fitted_force)) > thresholds.follows_contact;
-}
-
-std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
-  std::vector<DepartureFit> causes = test.fits;
-  std::erase_if(causes, [&](const DepartureFit& fit) {
+std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
+  std::vector<OmittedTerm> causes = test.fits;
+  std::erase_if(causes, [&](const OmittedTerm& fit) {
     return !(fit.p_value < thresholds.rare_chance && fit.delta_aicc < 0);
   });
-  std::ranges::stable_sort(causes, {}, &DepartureFit::delta_aicc);
+  std::ranges::stable_sort(causes, {}, &OmittedTerm::delta_aicc);
   const double best = causes.empty() ? 0.0 : causes.front().explains;
   std::erase_if(causes,
-                [&](const DepartureFit& fit) { return fit.explains < thresholds.rival * best; });
+                [&](const OmittedTerm& fit) { return fit.explains < thresholds.rival * best; });
   // Causes that a fit can model come first: the user can try only those.
   std::ranges::stable_partition(
-      causes, [](const DepartureFit& fit) { return !fit.departure->group.empty(); });
+      causes, [](const OmittedTerm& fit) { return !fit.departure->group.empty(); });
   return causes;
 }
 
@@ -146,14 +141,14 @@ bool AreUnlikeNoise(const FitResult& result, const Thresholds& thresholds) {
 }
 
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, bool is_limited,
+                       std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds) {
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
   adequacy.misfit = test.misfit_over_noise * test.noise * data.response_unit();
   adequacy.p_value = test.p_value;
   adequacy.tried = test.fits.size();
-  for (const DepartureFit& fit : causes) {
+  for (const OmittedTerm& fit : causes) {
     adequacy.causes.push_back(Cause{
         .code = fit.departure->code,
         .delta_aicc = fit.delta_aicc,

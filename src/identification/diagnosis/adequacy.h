@@ -38,11 +38,7 @@ double WhiteVariance(const FitResult& result);
 
 /// Returns the omitted terms that noise alone does not make, the best first, without those that
 /// another beats clearly.
-std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
-
-/// True if a column follows the force of the fitted model: its factor would take a part of Tc.
-bool FollowsContact(std::span<const double> column, std::span<const double> fitted_force,
-                    const Thresholds& thresholds);
+std::vector<OmittedTerm> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
 /// Returns the misfit, its chance, its causes and the verdict: doubtful where noise hardly makes
 /// what all omitted terms explain, the search ended at a limit of its own, the residuals are unlike
@@ -51,7 +47,7 @@ bool FollowsContact(std::span<const double> column, std::span<const double> fitt
 /// samples. Tests of columns take a misfit that no column explains for autocorrelated noise.
 /// @param causes  result of CausesOf()
 Adequacy JudgeAdequacy(const ScaledRecords& data, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, bool is_limited,
+                       std::span<const OmittedTerm> causes, bool is_limited,
                        const FitResult& result, const Thresholds& thresholds);
 
 /// True if residuals are a poor misfit and no noise: they alternate, or remember for longer than

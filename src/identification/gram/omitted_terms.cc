@@ -79,19 +79,17 @@ std::vector<double> ValuesOf(const Eigen::VectorXd& vector) {
 }
 
 /// Tests the columns of one term by themselves, and steps by them where noise seldom makes them.
-DepartureFit FitOf(const Gram& gram, const OmittedTerm& term, const GramAxes& axes,
-                   const NoiseLevel& noise, const Evidence& evidence, double limit) {
-  DepartureFit fit{.departure = term.departure, .covariate = term.covariate};
+void TestTerm(const Gram& gram, const GramAxes& axes, const NoiseLevel& noise,
+              const Evidence& evidence, double limit, OmittedTerm& fit) {
   const auto columns = static_cast<double>(axes.values.size());
   const double f = (axes.coefficients.square() / axes.noise).mean() / noise.variance;
   fit.p_value = f > 0 ? PValueOfF(f, columns, noise.degrees) : 1.0;
-  if (!(fit.p_value < limit)) return fit;
+  if (!(fit.p_value < limit)) return;
   const GramStep step = gram.StepBy(axes, axes.values.inverse());
   const double explained = axes.coefficients.square().sum();
   fit.explains = std::clamp(explained / gram.sum_of_squares(), 0.0, 1.0);
   fit.step = ValuesOf(step.law);
   fit.delta_aicc = 2 * columns - evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
-  return fit;
 }
 
 }  // namespace
@@ -108,7 +106,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   const auto samples = static_cast<double>(data.counted);
   if (samples <= law + 1) return {};
   const auto most = static_cast<std::size_t>((samples - law) / thresholds.samples_a_column);
-  const DepartureColumns departures =
+  DepartureColumns departures =
       ColumnsOfDepartures(problem, solution.theta, thresholds, response, most);
   if (departures.terms.empty()) return {};
   Gram gram(jacobian, departures.columns, residual, thresholds.own_part);
@@ -146,16 +144,17 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
   test.error = ValuesOf((terms.variance * step.covariance.diagonal()).cwiseMax(0.0).cwiseSqrt());
 
   const Evidence evidence(data.counted, effective_samples);
-  for (const OmittedTerm& term : departures.terms) {
+  for (OmittedTerm& term : departures.terms) {
     const GramAxes of_term = gram.AxesOf(term.places);
     if (of_term.values.size() == 0) continue;
-    test.fits.push_back(FitOf(gram, term, of_term, level, evidence, thresholds.rare_chance));
+    TestTerm(gram, of_term, level, evidence, thresholds.rare_chance, term);
+    test.fits.push_back(std::move(term));
   }
   return test;
 }
 
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const DepartureFit> causes, double quantile,
+                         std::span<const OmittedTerm> causes, double quantile,
                          std::span<ParameterEstimate> estimates) {
   constexpr double kFirstOrder = 2.0;
   const auto& reported = problem.parameters.reported();
@@ -171,7 +170,7 @@ void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const
     };
     if (place >= test.step.size()) continue;
     include(test.step[place], kFirstOrder * quantile * std::min(test.error[place], kFarthestStep));
-    for (const DepartureFit& cause : causes) {
+    for (const OmittedTerm& cause : causes) {
       if (place < cause.step.size()) include(cause.step[place], 0.0);
     }
   }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,17 +9,6 @@
 #include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
-
-/// Predicts the fit with one omitted term added, by one linear step; only the p-value of a term
-/// that noise may well have made.
-struct DepartureFit {
-  const Departure* departure = nullptr;       // one of Departures()
-  std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
-  double p_value = 1.0;                       // that noise alone makes it
-  double delta_aicc = 0.0;                    // against the fit without
-  double explains = 0.0;                      // fraction of the sum of squares
-  std::vector<double> step = {};              // of θ, one a free parameter
-};
 
 /// Holds what a fit's model may lack, all terms of Departures() together: r = −Jδ − Cγ + ε with
 /// γ_k ~ N(0, τ²/‖c_k‖²), τ by the marginal likelihood, and ε the noise process of what all columns
@@ -33,7 +20,7 @@ struct AdequacyTest {
   double degrees_of_freedom = 1.0;  // of the noise
   std::vector<double> step;         // E(δ), one a free parameter
   std::vector<double> error;        // standard deviation of δ, γ integrated out
-  std::vector<DepartureFit> fits;   // of each term that the record can identify
+  std::vector<OmittedTerm> fits;    // of each term that the record can identify
 };
 
 /// Tests a fit. Residuals that errors of the displacement make are noise, too.
@@ -44,7 +31,7 @@ AdequacyTest TestAdequacy(const Estimates& fitted, const Thresholds& thresholds,
 /// to first order goes a part of the way to a law of another form.
 /// @param causes  of which a single one may be what is omitted: intervals reach where each leads
 void WidenByOmittedTerms(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                         std::span<const DepartureFit> causes, double quantile,
+                         std::span<const OmittedTerm> causes, double quantile,
                          std::span<ParameterEstimate> estimates);
 
 }  // namespace mindahl::identification

@@ -41,6 +41,11 @@ struct OmittedTerm {
   const Departure* departure = nullptr;
   std::optional<std::size_t> covariate = {};  // its place in ScaledRecords
   std::vector<Eigen::Index> places = {};      // of its columns
+  // The fit with it, by one linear step; only the p-value of one that noise may well have made:
+  double p_value = 1.0;           // that noise alone makes it
+  double delta_aicc = 0.0;        // against the fit without
+  double explains = 0.0;          // fraction of the sum of squares
+  std::vector<double> step = {};  // of θ, one a free parameter
 };
 
 /// Holds the columns of all omitted terms at a solution.
