@@ -27,7 +27,7 @@ part ./scripts/ceres.sh build/ceres
 part env COMPLETE=1 CMAKE_PREFIX_PATH="$PWD/build/ceres" \
   tests/python/wheel.sh /usr/bin/python3 "$PWD/build/ci" "$PWD" sdist
 part cmake --build build/ci --target \
-  measure_accuracy make_history_table make_branch_law_table measure_effective measure_minima
+  measure_accuracy make_history_table measure_effective measure_minima
 part cmake --build build/ci --target coverage
 part cmake --build build/ci --target reliability
 seed=$(date +%Y%m%d)

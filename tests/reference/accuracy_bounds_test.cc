@@ -8,6 +8,7 @@
 #include "../../tools/accuracy/measurements.h"
 #include "../support/histories.h"
 #include "../support/worst.h"
+#include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 #include "support/prelude.h"
 
@@ -37,6 +38,31 @@ TEST(AccuracyBounds, HoldOverTheWholeBox) {
     EXPECT_LE(error.value, measurement.bound) << measurement.function << " at " << error.where;
     // A bound that nothing comes near would prove little.
     EXPECT_GE(error.value, measurement.bound / 20) << measurement.function;
+  }
+}
+
+TEST(AccuracyBounds, OfTheScalarKernelsHoldInTheirOwnUnits) {
+  constexpr double kForce = 4.0;  // [ε]: log1p, expm1 and three products, each within an ulp
+  // exp passes on the error of its argument: |log u| <= 745 in double, half an ulp each.
+  constexpr double kDerivative = 400.0;
+  const auto error = [](double value, long double exact) {
+    return std::abs(exact) < std::numeric_limits<double>::min()
+               ? std::abs(value) / std::numeric_limits<double>::min()
+               : accuracy::RelativeError(value, exact);
+  };
+  for (const double alpha : reference::kBoxShapeExponents) {
+    for (const double y : reference::BoxDisplacements({1.0, 1.0}, alpha)) {
+      const accuracy::Exact exact = accuracy::EvaluateExactly({1.0, alpha, 1.0}, y);
+      const double force =
+          backbone::WithShape(alpha, [&](const auto& shape) { return shape.Force(y); });
+      const auto phi = backbone::Differentiate(y, alpha);
+      EXPECT_LE(error(force, exact.force), kForce) << alpha << ", " << y;
+      EXPECT_LE(std::max({error(phi.force, exact.force), error(phi.slope, exact.slope),
+                          error(phi.elastic, exact.per_log_stiffness),
+                          error(phi.shape_derivative, exact.per_shape)}),
+                kDerivative)
+          << alpha << ", " << y;
+    }
   }
 }
 

@@ -1,5 +1,8 @@
+#include <array>
+#include <fstream>
+#include <sstream>
+
 #include "../support/histories.h"
-#include "../support/reference_table.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/simplified_law.h"
 #include "support/prelude.h"
@@ -15,7 +18,7 @@ struct HistoryCase {
   std::string name;
   BranchLaw law;
   std::vector<double> displacement;
-  std::vector<std::vector<long double>> force;  // by column: masing, dahl, simplified
+  std::array<std::vector<long double>, 3> force;  // by column: masing, dahl, simplified
 };
 
 constexpr std::size_t kMasing = 0;
@@ -24,15 +27,18 @@ constexpr std::size_t kSimplified = 2;
 
 std::vector<HistoryCase> ReadCases() {
   std::vector<HistoryCase> cases;
-  for (const auto& line : ReadTable("histories.csv")) {
-    if (line[0] == "case") {
-      const BranchLaw law{ToDouble(line[2]), ToDouble(line[3]), ToDouble(line[4])};
-      cases.push_back({line[1], law, {}, std::vector<std::vector<long double>>(3)});
-      continue;
+  std::ifstream in(MINDAHL_SOURCE_DIR "/tests/data/histories.csv");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('#')) continue;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    if (std::string word; line.starts_with("case")) {
+      auto& [name, law, displacement, force] = cases.emplace_back();
+      fields >> word >> name >> law.tangential_stiffness >> law.shape_exponent >> law.slip_force;
+    } else {
+      fields >> cases.back().displacement.emplace_back();
+      for (auto& force : cases.back().force) fields >> force.emplace_back();
     }
-    HistoryCase& present = cases.back();
-    present.displacement.push_back(ToDouble(line[0]));
-    for (std::size_t i = 0; i < 3; ++i) present.force[i].push_back(ToLongDouble(line[i + 1]));
   }
   return cases;
 }
