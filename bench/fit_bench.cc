@@ -56,8 +56,7 @@ void OneGradient(benchmark::State& state) {
   for (auto _ : state) {
     const LoadingPath path = MakeLoadingPath(
         record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-    response.Differentiate(model, normalized, path, record.displacement, buffers.t,
-                           buffers.gradient());
+    response.Evaluate(model, normalized, path, record.displacement, buffers.t, buffers.gradient());
     benchmark::DoNotOptimize(buffers.columns.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(record.size()));

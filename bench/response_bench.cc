@@ -85,7 +85,7 @@ void Gradient(benchmark::State& state, const FrictionModel& model, const SeriesS
                           .spring_travel = kLaw.slip_force / rig.stiffness};
   NormalizedResponse response;
   for (auto _ : state) {
-    response.Differentiate(model, law, path, x, buffers.t, buffers.gradient());
+    response.Evaluate(model, law, path, x, buffers.t, buffers.gradient());
     benchmark::DoNotOptimize(buffers.columns.data());
   }
   ReportPerSample(state, x.size());

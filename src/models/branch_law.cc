@@ -13,7 +13,7 @@ void Validate(const BranchLaw& law) {
   RequirePositive("tangential stiffness [N/m]", law.tangential_stiffness);
   RequirePositive("slip force [N]", law.slip_force);
   RequireNonNegative("shape exponent [-]", law.shape_exponent);
-  if (law.shape_exponent > backbone::kLargestShapeExponent<double>) {
+  if (law.shape_exponent > backbone::kLargestShapeExponent) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent, "must be <= 1e100");
   }
   const double inverse_elastic_limit = law.tangential_stiffness / law.slip_force;

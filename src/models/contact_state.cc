@@ -110,7 +110,7 @@ ContactState::Entry ContactState::Enter(double displacement) const {
       ThrowInvalid("displacement [m]", displacement,
                    fmt::format("must be within {:.3g} elastic limits of its branch, {:.3g} m, for "
                                "shape exponents > 1",
-                               backbone::kLargestDisplacement<double>, branch.reach));
+                               backbone::kLargestDisplacement, branch.reach));
     }
     const double farthest = std::min(branch.reach, 2 * kLargestPathDisplacement);
     end = std::min(end, direction * branch.origin + farthest);

@@ -11,9 +11,6 @@
 namespace mindahl::models {
 namespace {
 
-constexpr double kMindlinExponent = 1.0 / 3.0;
-constexpr double kJenkinsExponent = 0.0;
-
 /// Masing: the virgin curve, then the same curve twice as large from every reversal.
 BranchScale MasingScale(double /*signed_force*/, bool virgin) {
   return {.remaining = 1.0, .span = virgin ? 1.0 : 2.0};
@@ -114,12 +111,12 @@ constexpr std::array kModels = {
                   .steady_peak = MasingPeak},
     FrictionModel{.name = "mindlin",
                   .title = "Mindlin's sphere contact",
-                  .shape_exponent = kMindlinExponent,
+                  .shape_exponent = 1.0 / 3.0,
                   .scale = MasingScale,
                   .steady_peak = MasingPeak},
     FrictionModel{.name = "jenkins",
                   .title = "Jenkins element: spring and Coulomb slider",
-                  .shape_exponent = kJenkinsExponent,
+                  .shape_exponent = 0.0,
                   .scale = MasingScale,
                   .steady_peak = MasingPeak},
     FrictionModel{.name = "dahl",

@@ -131,27 +131,20 @@ void MakeLoadedHistory(std::span<const double> displacement, std::span<const dou
 }
 
 void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
-                                        double unloaded, std::span<double> t) {
+                                        double unloaded, std::span<double> t,
+                                        const NormalizedGradient& gradient) {
   RequireLawUnderLoad(law, history, t);
-  const double at_rest = history.before.empty() ? unloaded : 0.0;
-  backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-    Follow(history, LawUnderLoad<double>{std::log(law.rate), 1 - law.shape_exponent},
-           ShareOfWidth{shape, law.shape_exponent}, at_rest, plain_,
-           [&](std::size_t i, double force) { t[i] = force; });
-  });
-}
-
-void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const LoadedHistory& history,
-                                             double unloaded, std::span<double> t,
-                                             const NormalizedGradient& gradient) {
-  if (IsEmpty(gradient)) {
-    Evaluate(law, history, unloaded, t);
-    return;
-  }
-  RequireLawUnderLoad(law, history, t);
-  using Shape = backbone::GeneralShape<double>;
   const bool has_origin = history.before.empty();
   Tangent at_rest(has_origin ? unloaded : 0.0);
+  if (IsEmpty(gradient)) {
+    backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
+      Follow(history, LawUnderLoad<double>{std::log(law.rate), 1 - law.shape_exponent},
+             ShareOfWidth{shape, law.shape_exponent}, at_rest.value(), plain_,
+             [&](std::size_t i, double force) { t[i] = force; });
+    });
+    return;
+  }
+  using Shape = backbone::GeneralShape<double>;
   if (has_origin) at_rest.derivatives()[kUnloaded] = 1.0;
   std::ranges::fill(gradient[kSpring], 0.0);
   const LawUnderLoad<Tangent> with_derivatives = {

@@ -45,15 +45,12 @@ class NormalizedLoadedResponse {
   /// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at
   ///                  where it has been through samples before
   /// @param t         written, of the record's size; |t| <= N/N₀
+  /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0.
+  ///                  Exact, where t has derivatives; taken along with the recursion, at two to
+  ///                  three times its cost
   /// @throws InvalidArgument for a law or sizes that break a rule
   void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
-                std::span<double> t);
-
-  /// Computes the same with derivatives: exact, where t has them. They are taken along with the
-  /// recursion, at two to three times its cost.
-  /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0
-  void Differentiate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
-                     std::span<double> t, const NormalizedGradient& gradient);
+                std::span<double> t, const NormalizedGradient& gradient = {});
 
  private:
   ZonedContact<double> plain_;

@@ -39,7 +39,7 @@ void EvaluateRun(const ScaledBranch& branch, const KernelShape& shape, double /*
 }
 
 /// Computes what the kernel does not: of a branch in series with a spring, or by an asymmetry.
-void DifferentiateRun(const backbone::InSeries<double>& shape, const ScaledBranch& branch,
+void DifferentiateRun(const backbone::InSeries& shape, const ScaledBranch& branch,
                       const BranchGradient& branch_gradient, double limit,
                       std::span<const double> displacement, std::span<double> t,
                       const NormalizedGradient& gradient) {
@@ -58,27 +58,17 @@ void DifferentiateRun(const backbone::InSeries<double>& shape, const ScaledBranc
 
 void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLaw& law,
                                   const LoadingPath& path, std::span<const double> displacement,
-                                  std::span<double> t) {
+                                  std::span<double> t, const NormalizedGradient& gradient) {
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
   RequireSizes(path, displacement, "response", t);
-  WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
-    EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t,
-                 branches_);
-  });
-}
-
-void NormalizedResponse::Differentiate(const FrictionModel& model, const NormalizedLaw& law,
-                                       const LoadingPath& path,
-                                       std::span<const double> displacement, std::span<double> t,
-                                       const NormalizedGradient& gradient) {
   if (IsEmpty(gradient)) {
-    Evaluate(model, law, path, displacement, t);
+    WithShapeBehindSpring(law.shape_exponent, law.spring_travel, [&](const auto& shape) {
+      EvaluatePath(model, branch_law, law.spring_travel, OfMany(shape), path, displacement, t,
+                   branches_);
+    });
     return;
   }
-  const BranchLaw branch_law = LawOf(law);
-  Validate(branch_law);
-  RequireSizes(path, displacement, "response", t);
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const double limit = path.limit();
   const SprungShape shape{law.shape_exponent, law.spring_travel};
@@ -184,12 +174,11 @@ NormalizedDisplacement::Point NormalizedDisplacement::PointOn(const Branch& bran
   return point;
 }
 
-bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const ForcedLaw& law,
-                                           const LoadingPath& path, std::span<const double> force,
-                                           std::span<double> d,
-                                           const DisplacementGradient& gradient) {
+bool NormalizedDisplacement::Evaluate(const FrictionModel& model, const ForcedLaw& law,
+                                      const LoadingPath& path, std::span<const double> force,
+                                      std::span<double> d, const DisplacementGradient& gradient) {
   RequireSameSize("force", force.size(), "displacement", d.size());
-  const bool with_gradient = !std::ranges::all_of(gradient, &std::span<double>::empty);
+  const bool with_gradient = !IsEmpty(gradient);
   const double zero = UnloadedAt(path);
   branches_.clear();
   branches_.reserve(path.branches.size());

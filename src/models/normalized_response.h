@@ -24,7 +24,8 @@ struct NormalizedLaw {
 using NormalizedGradient = std::array<std::span<double>, kParameters>;
 
 /// True if no derivative is wanted.
-inline bool IsEmpty(const NormalizedGradient& gradient) {
+template <std::size_t kColumns>
+bool IsEmpty(const std::array<std::span<double>, kColumns>& gradient) {
   return std::ranges::all_of(gradient, &std::span<double>::empty);
 }
 
@@ -48,16 +49,13 @@ struct OriginSensitivity {
 /// slope varies without bound next to slip.
 class NormalizedResponse {
  public:
-  /// @param path  as from MakeLoadingPath on the same displacements, for the model's memory
-  /// @param t     written, of the same size
+  /// @param path      as from MakeLoadingPath on the same displacements, for the model's memory
+  /// @param t         written, of the same size
+  /// @param gradient  columns of the same size, or empty
   /// @throws InvalidArgument as EvaluateForce
   void Evaluate(const FrictionModel& model, const NormalizedLaw& law, const LoadingPath& path,
-                std::span<const double> displacement, std::span<double> t);
-
-  /// @param gradient  columns of the same size, or empty
-  void Differentiate(const FrictionModel& model, const NormalizedLaw& law, const LoadingPath& path,
-                     std::span<const double> displacement, std::span<double> t,
-                     const NormalizedGradient& gradient);
+                std::span<const double> displacement, std::span<double> t,
+                const NormalizedGradient& gradient = {});
 
   void DifferentiateByOrigins(const FrictionModel& model, const NormalizedLaw& law,
                               const LoadingPath& path, std::span<const double> displacement,
@@ -91,22 +89,17 @@ using DisplacementGradient = std::array<std::span<double>, 3>;
 /// enough. Cost: three powers a sample with the gradient.
 class NormalizedDisplacement {
  public:
-  /// @param path   as from MakeLoadingPath on the same forces, for the model's memory: the branches
-  ///               follow from the forces as they do from displacements
-  /// @param force  [N], its offset included
-  /// @param d      written, of the same size
+  /// @param path      as from MakeLoadingPath on the same forces, for the model's memory: the
+  ///                  branches follow from the forces as they do from displacements
+  /// @param force     [N], its offset included
+  /// @param d         written, of the same size
+  /// @param gradient  columns of the same size, or empty
   /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
   ///   nothing of use from the first of these samples on, where it is not finite
   /// @throws InvalidArgument for sizes that differ
   bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
-                std::span<const double> force, std::span<double> d) {
-    return Differentiate(model, law, path, force, d, {});
-  }
-
-  /// @param gradient  columns of the same size, or empty
-  bool Differentiate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
-                     std::span<const double> force, std::span<double> d,
-                     const DisplacementGradient& gradient);
+                std::span<const double> force, std::span<double> d,
+                const DisplacementGradient& gradient = {});
 
  private:
   /// d with its derivatives by −ln Tc, α and T₀/Tc.

@@ -16,13 +16,9 @@ inline void RequireLawAndAmplitude(const BranchLaw& law, double amplitude) {
   RequireNonNegative("amplitude [m]", amplitude);
 }
 
-[[nodiscard]] inline bool IsWithinReach(double displacement) {
-  return std::abs(displacement) <= kLargestPathDisplacement;
-}
-
 /// @throws InvalidArgument unless the displacement can be part of a path
 inline void RequireWithinReach(std::string_view quantity, double displacement) {
-  if (!IsWithinReach(displacement)) {
+  if (!(std::abs(displacement) <= kLargestPathDisplacement)) {
     ThrowInvalid(quantity, displacement, "must be finite and within +-1e307 m");
   }
 }

@@ -28,7 +28,7 @@ void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
   ThrowInvalid("displacement [m]", farthest,
                fmt::format("must be <= {:.3g} times the elastic limit of the steepest branch, "
                            "{:.3g} m, for shape exponents > 1",
-                           backbone::kLargestDisplacement<double>, 1 / steepest));
+                           backbone::kLargestDisplacement, 1 / steepest));
 }
 
 void Validate(const SeriesSpring& rig) {

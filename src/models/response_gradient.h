@@ -58,9 +58,9 @@ class Differentiation {
 
   /// Returns the derivatives of t at `displacement`, and t itself.
   /// @param shape  that of the branch
-  static Gradient DifferentiateSample(const backbone::InSeries<double>& shape,
-                                      const ScaledBranch& branch, const BranchGradient& gradient,
-                                      double displacement, double& force) {
+  static Gradient DifferentiateSample(const backbone::InSeries& shape, const ScaledBranch& branch,
+                                      const BranchGradient& gradient, double displacement,
+                                      double& force) {
     const double e = displacement - branch.origin;
     const auto series = shape.Differentiate(branch.Normalize(e));
     const auto& phi = series.contact;

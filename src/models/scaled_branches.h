@@ -33,9 +33,9 @@ struct SprungShape {
 
 /// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
 /// @throws InvalidArgument where the branch is too stiff for the spring
-inline backbone::InSeries<double> ShapeOn(const SprungShape& shape, const ScaledBranch& branch) {
+inline backbone::InSeries ShapeOn(const SprungShape& shape, const ScaledBranch& branch) {
   const double compliance = branch.height * branch.rate * shape.spring_travel;
-  if (!(compliance <= backbone::kLargestSeriesCompliance<double>)) {
+  if (!(compliance <= backbone::kLargestSeriesCompliance)) {
     ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
                  "must be <= 1e100");
   }
@@ -259,7 +259,7 @@ inline bool IsRigid(const SeriesSpring& rig) {
 inline double SpringTravel(const BranchLaw& law, const SeriesSpring& rig) {
   Validate(rig);
   // Compared before it is divided by, for no quotient to overflow.
-  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance<double>;
+  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance;
   constexpr double kLongest = 1e300;  // [m]
   if (rig.stiffness < kSoftest * law.tangential_stiffness ||
       rig.stiffness < law.slip_force / kLongest) {

@@ -147,7 +147,7 @@ TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
           NormalizedGradient gradient;
           gradient[kAsymmetry] = derivative;
           NormalizedResponse response;
-          response.Differentiate(Masing(), law, path, walk, t, gradient);
+          response.Evaluate(Masing(), law, path, walk, t, gradient);
           return t;
         };
         for (const double asymmetry : {-0.45, 0.0, 0.2}) {

@@ -116,8 +116,8 @@ TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
         History t(samples);
         std::array<History, 3> columns;
         for (History& column : columns) column.resize(samples);
-        NormalizedLoadedResponse().Differentiate({.rate = kRate, .shape_exponent = alpha}, history,
-                                                 unloaded, t, {columns[0], columns[1], columns[2]});
+        NormalizedLoadedResponse().Evaluate({.rate = kRate, .shape_exponent = alpha}, history,
+                                            unloaded, t, {columns[0], columns[1], columns[2]});
         EXPECT_EQ(t.size(), samples);
         const std::array<History, 3> expected = {
             Differences([&](double h) { return at(h, 0, 0); }, kStep),

@@ -64,7 +64,7 @@ TEST(SeriesShape, IsAccurateForEveryShapeAndCompliance) {
        {0.0,  1e-300,   1e-16, 1e-8,      1e-3,     0.03, 0.1, 1.0 / 3.0, 0.5,  0.7,  0.9,
         0.99, 1 - 1e-8, 1.0,   1 + 1e-15, 1 + 1e-8, 1.2,  2.0, 5.0,       30.0, 100.0}) {
     for (const double kappa : {0.0, 1e-300, 1e-18, 1e-5, 0.1, 0.3, 1.0, 3.0, 100.0, 1e7, 1e12}) {
-      const backbone::InSeries<double> shape(alpha, kappa);
+      const backbone::InSeries shape(alpha, kappa);
       const double beta = 1 - alpha;
       const double slip = beta > 0 ? 1 / beta + kappa : 1e6 * (1 + kappa);
       std::vector<double> totals = {slip, std::nextafter(slip, 0.0), 1e-280, 1e-100, 1e100, 1e199};

@@ -24,24 +24,20 @@ namespace mindahl::models::backbone {
 /// 1 (docs/accuracy.md).
 
 /// Largest α accepted: beyond it (1−α)·y could overflow.
-template <typename Real>
-inline constexpr Real kLargestShapeExponent = Real(1e100);
+inline constexpr double kLargestShapeExponent = 1e100;
 
 /// Largest y: 1.8e200 in double. For α <= 1 the force is Tc there.
-template <typename Real>
-inline constexpr Real kLargestDisplacement = std::numeric_limits<Real>::max() /
-                                             (kLargestShapeExponent<Real> * Real(1e8));
+inline constexpr double kLargestDisplacement =
+    std::numeric_limits<double>::max() / (kLargestShapeExponent * 1e8);
 
 /// Largest κ of a spring in series: Y − κ is still beyond slip at kLargestDisplacement.
-template <typename Real>
-inline constexpr Real kLargestSeriesCompliance = kLargestShapeExponent<Real>;
+inline constexpr double kLargestSeriesCompliance = kLargestShapeExponent;
 
 /// Returns the largest |x| that y = rate·|x| may be formed from.
-template <typename Real>
-[[nodiscard]] Real Reach(Real rate) {
-  constexpr Real kLargest = std::numeric_limits<Real>::max();
-  constexpr Real kUnlimited = kLargestDisplacement<Real> / kLargest;
-  return rate > kUnlimited ? kLargestDisplacement<Real> / rate : kLargest;
+[[nodiscard]] inline double Reach(double rate) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  constexpr double kUnlimited = kLargestDisplacement / kLargest;
+  return rate > kUnlimited ? kLargestDisplacement / rate : kLargest;
 }
 
 /// A displacement as the branch law uses it.
@@ -151,34 +147,32 @@ struct GeneralShape {
 };
 
 /// α = 1/3, Mindlin: u = z·√z with z = 1 − 2y/3. A square root and a division a value.
-template <typename Real>
 struct MindlinShape {
   /// Returns 1 − z√z = (1 − z³)/(1 + z√z) = w(1 + z + z²)/(1 + z√z): no cancellation as y → 0.
-  [[nodiscard]] Real Force(Real y) const {
-    const Real w = std::min(Real(2) / 3 * y, Real(1));
-    const Real z = 1 - w;
+  [[nodiscard]] double Force(double y) const {
+    const double w = std::min(2.0 / 3 * y, 1.0);
+    const double z = 1 - w;
     return w * (1 + z + z * z) / (1 + z * std::sqrt(z));
   }
 
   /// Returns √z.
-  [[nodiscard]] Real Slope(Real y) const {
-    return std::sqrt(std::max(GeneralShape<Real>{Real(1) / 3}.Reduce(y).z, Real(0)));
+  [[nodiscard]] double Slope(double y) const {
+    return std::sqrt(std::max(GeneralShape<double>{1.0 / 3}.Reduce(y).z, 0.0));
   }
 };
 
 /// α = 0, Jenkins: elastic, then perfectly plastic.
-template <typename Real>
 struct JenkinsShape {
-  [[nodiscard]] Real Force(Real y) const { return std::min(y, Real(1)); }
-  [[nodiscard]] Real Slope(Real y) const { return y < 1 ? Real(1) : Real(0); }
+  [[nodiscard]] double Force(double y) const { return std::min(y, 1.0); }
+  [[nodiscard]] double Slope(double y) const { return y < 1 ? 1.0 : 0.0; }
 };
 
 /// Calls `visitor` with the cheapest shape that is exact for α: chosen once, outside the kernels.
-template <typename Real, typename Visitor>
-decltype(auto) WithShape(Real shape_exponent, Visitor&& visitor) {
-  if (shape_exponent == Real(0)) return visitor(JenkinsShape<Real>{});
-  if (shape_exponent == Real(1) / 3) return visitor(MindlinShape<Real>{});
-  return visitor(GeneralShape<Real>{shape_exponent});
+template <typename Visitor>
+decltype(auto) WithShape(double shape_exponent, Visitor&& visitor) {
+  if (shape_exponent == 0.0) return visitor(JenkinsShape{});
+  if (shape_exponent == 1.0 / 3) return visitor(MindlinShape{});
+  return visitor(GeneralShape<double>{shape_exponent});
 }
 
 /// φ with its derivatives, for fitting.
@@ -209,11 +203,10 @@ ForceAndDerivatives<Real> Differentiate(Real y, Real shape_exponent) {
 }
 
 /// Φ (below) with its derivatives, which are the contact's at y over 1 + κφ'.
-template <typename Real>
 struct SeriesDerivatives {
-  ForceAndDerivatives<Real> contact;  // φ(y) = Φ
-  Real share = 1;                     // dy/dY = 1/(1+κφ')
-  Real log_compliance = 0;            // κ·∂Φ/∂κ = −κφφ'/(1+κφ')
+  ForceAndDerivatives<double> contact;  // φ(y) = Φ
+  double share = 1;                     // dy/dY = 1/(1+κφ')
+  double log_compliance = 0;            // κ·∂Φ/∂κ = −κφφ'/(1+κφ')
 };
 
 /// The branch law in series with a spring, as a function of the displacement Y of both, over Tc/σ:
@@ -232,123 +225,124 @@ struct SeriesDerivatives {
 /// For 0 <= κ <= kLargestSeriesCompliance and 0 <= Y <= kLargestDisplacement; Φ has a relative
 /// error below 4 ε. At most 3 iterations, found over 3e7 points; each is two or three
 /// transcendentals. Without a spring, κ = 0, and for α = 0 there is none.
-template <typename Real>
 class InSeries {
  public:
-  InSeries(Real shape_exponent, Real compliance)
+  InSeries(double shape_exponent, double compliance)
       : shape_exponent_(shape_exponent), beta_(1 - shape_exponent), compliance_(compliance) {
     if (compliance <= 1) return;  // φ' <= 1: the spring is the stiffer everywhere
-    const Real balance = Balance();
+    const double balance = Balance();
     balance_force_ = ForceAt(balance);
     balance_displacement_ = DisplacementAt(balance);
     balance_total_ = balance_displacement_ + compliance * balance_force_;
   }
 
   /// Beyond slip the contact's displacement is Y − κ.
-  [[nodiscard]] bool Slips(Real total) const {
+  [[nodiscard]] bool Slips(double total) const {
     return beta_ > 0 && beta_ * total >= 1 + beta_ * compliance_;
   }
 
   /// Returns Φ.
-  [[nodiscard]] Real Force(Real total) const {
-    if (shape_exponent_ == 0) return std::min(total / (1 + compliance_), Real(1));
-    if (compliance_ == 0) return GeneralShape<Real>{shape_exponent_}.Force(total);
-    return Slips(total) ? Real(1) : ForceAt(LogShare(total));
+  [[nodiscard]] double Force(double total) const {
+    if (shape_exponent_ == 0) return std::min(total / (1 + compliance_), 1.0);
+    if (compliance_ == 0) return GeneralShape<double>{shape_exponent_}.Force(total);
+    return Slips(total) ? 1.0 : ForceAt(LogShare(total));
   }
 
   /// Returns dΦ/dY = φ'/(1+κφ').
-  [[nodiscard]] Real Slope(Real total) const {
+  [[nodiscard]] double Slope(double total) const {
     if (Slips(total)) return 0;
-    const Real slope = GeneralShape<Real>{shape_exponent_}.Slope(ContactDisplacement(total));
+    const double slope = GeneralShape<double>{shape_exponent_}.Slope(ContactDisplacement(total));
     return slope / (1 + compliance_ * slope);
   }
 
-  [[nodiscard]] SeriesDerivatives<Real> Differentiate(Real total) const {
+  [[nodiscard]] SeriesDerivatives Differentiate(double total) const {
     if (Slips(total)) return {.contact = {.force = 1}};
     const auto contact = backbone::Differentiate(ContactDisplacement(total), shape_exponent_);
-    const Real yielding = compliance_ * contact.slope;
+    const double yielding = compliance_ * contact.slope;
     return {contact, 1 / (1 + yielding), -contact.force * (yielding / (1 + yielding))};
   }
 
  private:
   struct Decay {
-    Real sum;   // D(c,ℓ)
-    Real rest;  // e^{−cℓ}
+    double sum;   // D(c,ℓ)
+    double rest;  // e^{−cℓ}
   };
 
   /// |cℓ| below which D = ℓ to rounding; its expm1 might underflow.
-  static constexpr Real kUndecayed = std::numeric_limits<Real>::epsilon() / 2;
+  static constexpr double kUndecayed = std::numeric_limits<double>::epsilon() / 2;
 
   /// Neither from a difference that cancels.
-  static Decay DecayOf(Real rate, Real log_share) {
-    const Real x = rate * log_share;
-    if (x > Real(0.5)) {
-      const Real rest = std::exp(-x);
+  static Decay DecayOf(double rate, double log_share) {
+    const double x = rate * log_share;
+    if (x > 0.5) {
+      const double rest = std::exp(-x);
       return {(1 - rest) / rate, rest};
     }
     if (std::abs(x) < kUndecayed) return {log_share, 1 - x};
-    const Real change = -std::expm1(-x);
+    const double change = -std::expm1(-x);
     return {change / rate, 1 - change};
   }
-  [[nodiscard]] Real DisplacementAt(Real log_share) const { return DecayOf(beta_, log_share).sum; }
+  [[nodiscard]] double DisplacementAt(double log_share) const {
+    return DecayOf(beta_, log_share).sum;
+  }
   /// Returns y at Y short of slip.
-  [[nodiscard]] Real ContactDisplacement(Real total) const {
+  [[nodiscard]] double ContactDisplacement(double total) const {
     if (shape_exponent_ == 0) return total / (1 + compliance_);
     return compliance_ == 0 ? total : DisplacementAt(LogShare(total));
   }
-  [[nodiscard]] static Real ForceAt(Real log_share) { return -std::expm1(-log_share); }
+  [[nodiscard]] static double ForceAt(double log_share) { return -std::expm1(-log_share); }
 
   /// Returns ℓ where κφ' = κ·e^{−αℓ} = 1, of κ > 1; kFarthest where u underflows before.
-  [[nodiscard]] Real Balance() const {
-    constexpr Real kFarthest = Real(-2) * std::numeric_limits<Real>::min_exponent;
-    const Real log_compliance = std::log(compliance_);
+  [[nodiscard]] double Balance() const {
+    constexpr double kFarthest = -2.0 * std::numeric_limits<double>::min_exponent;
+    const double log_compliance = std::log(compliance_);
     return log_compliance < kFarthest * shape_exponent_ ? log_compliance / shape_exponent_
                                                         : kFarthest;
   }
 
   /// Returns ℓ from a fraction of what is left to go, which rounding may have used up.
-  static Real FromShare(Real share) {
-    return -std::log1p(-std::min(share, 1 - std::numeric_limits<Real>::epsilon() / 2));
+  static double FromShare(double share) {
+    return -std::log1p(-std::min(share, 1 - std::numeric_limits<double>::epsilon() / 2));
   }
 
-  [[nodiscard]] Real Start(Real total) const {
-    const Real beyond = total - balance_total_;
+  [[nodiscard]] double Start(double total) const {
+    const double beyond = total - balance_total_;
     if (beyond < 0) {
       return FromShare(
           std::min(total / (1 + compliance_), balance_force_ + beyond / (2 * compliance_)));
     }
-    const Real y = std::max(total - compliance_,
-                            balance_displacement_ + beyond / (1 + std::min(compliance_, Real(1))));
+    const double y = std::max(total - compliance_,
+                              balance_displacement_ + beyond / (1 + std::min(compliance_, 1.0)));
     return std::abs(beta_ * y) < kUndecayed ? y : FromShare(beta_ * y) / beta_;
   }
 
   /// −log(1 − x)/x, for small x by atanh: 1e-10 of a step serves all but the last, which is small.
-  static Real LogRatio(Real x) {
-    if (std::abs(x) > Real(0.0625)) return -std::log1p(-x) / x;
-    const Real half = 1 / (2 - x);
-    const Real square = x * half * (x * half);
-    return 2 * half * (1 + square * (Real(1) / 3 + square / 5));
+  static double LogRatio(double x) {
+    if (std::abs(x) > 0.0625) return -std::log1p(-x) / x;
+    const double half = 1 / (2 - x);
+    const double square = x * half * (x * half);
+    return 2 * half * (1 + square * (1.0 / 3 + square / 5));
   }
 
   /// Returns ℓ at Y short of slip.
-  [[nodiscard]] Real LogShare(Real total) const {
-    constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
-    constexpr Real kRounding = 16 * kEpsilon;    // of Y: what the residual is known to
-    constexpr Real kLongestStep = Real(0.9999);  // of what the one decay has left
-    constexpr Real kSettled =
-        Real(1) / (std::uint64_t{1} << (std::numeric_limits<Real>::digits + 1) / 3);  // ∛(ε/4)
+  [[nodiscard]] double LogShare(double total) const {
+    constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+    constexpr double kRounding = 16 * kEpsilon;  // of Y: what the residual is known to
+    constexpr double kLongestStep = 0.9999;      // of what the one decay has left
+    constexpr double kSettled =
+        1.0 / (std::uint64_t{1} << (std::numeric_limits<double>::digits + 1) / 3);  // ∛(ε/4)
     constexpr int kIterations = 8;
     if (total == 0) return 0;
-    Real log_share = Start(total);
+    double log_share = Start(total);
     for (int i = 0; i < kIterations; ++i) {
       const Decay contact = DecayOf(beta_, log_share);
-      const Decay force = DecayOf(Real(1), log_share);
-      const Real residual = (total - contact.sum) - compliance_ * force.sum;
-      const Real slope = contact.rest + compliance_ * force.rest;
-      const Real rate = 1 - shape_exponent_ * (contact.rest / slope);  // β and 1 by their parts
-      const Real newton = residual / slope;
-      const Real share = std::min(rate * newton, kLongestStep);
-      const Real step = newton * LogRatio(share);
+      const Decay force = DecayOf(1.0, log_share);
+      const double residual = (total - contact.sum) - compliance_ * force.sum;
+      const double slope = contact.rest + compliance_ * force.rest;
+      const double rate = 1 - shape_exponent_ * (contact.rest / slope);  // β and 1 by their parts
+      const double newton = residual / slope;
+      const double share = std::min(rate * newton, kLongestStep);
+      const double step = newton * LogRatio(share);
       log_share = std::max(log_share + step, log_share / 2);
       // The next error is below the cube of this step's.
       if (std::abs(step) <= kSettled * log_share) break;
@@ -357,12 +351,12 @@ class InSeries {
     return log_share;
   }
 
-  Real shape_exponent_;
-  Real beta_;
-  Real compliance_;
-  Real balance_force_ = 0;         // φ where κφ' = 1
-  Real balance_displacement_ = 0;  // y there
-  Real balance_total_ = 0;         // Y there
+  double shape_exponent_;
+  double beta_;
+  double compliance_;
+  double balance_force_ = 0;         // φ where κφ' = 1
+  double balance_displacement_ = 0;  // y there
+  double balance_total_ = 0;         // Y there
 };
 
 /// Integrals of the normalised branch law φ(y) (backbone.h), with y = σx/Tc >= 0 and α >= 0. In

@@ -98,11 +98,11 @@ class ContactState {
   [[nodiscard]] std::size_t RememberedExtremes() const { return suspended_.size(); }
 
  private:
-  using Jenkins = backbone::JenkinsShape<double>;
-  using Mindlin = backbone::MindlinShape<double>;
+  using Jenkins = backbone::JenkinsShape;
+  using Mindlin = backbone::MindlinShape;
   using General = backbone::GeneralShape<double>;
   /// φ on a branch; behind a spring each branch has its own.
-  using Shape = std::variant<Jenkins, Mindlin, General, backbone::InSeries<double>>;
+  using Shape = std::variant<Jenkins, Mindlin, General, backbone::InSeries>;
 
   /// A branch as it is run in one direction s, in which sgn(e) = s.
   struct Course {

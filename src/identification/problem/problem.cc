@@ -235,12 +235,12 @@ void Response::DifferentiatePath(const LawPoint& at, std::size_t r, std::span<do
   } else if (record.imposed == loop::Channel::kForce) {
     DifferentiateForced(at, r, t, columns);
   } else if (!record.load_ratio.empty() && HasPathAsymmetry(*problem_)) {
-    loaded_response_.Differentiate(LawUnder(*problem_, at, record), histories_[r],
-                                   at.theta[problem_->parameters.PositionOfOrigin(r)], t,
-                                   GradientOf(columns));
+    loaded_response_.Evaluate(LawUnder(*problem_, at, record), histories_[r],
+                              at.theta[problem_->parameters.PositionOfOrigin(r)], t,
+                              GradientOf(columns));
   } else {
-    response_.Differentiate(*problem_->model, LawUnder(*problem_, at, record), PathOf(r, at.theta),
-                            record.displacement, t, GradientOf(columns));
+    response_.Evaluate(*problem_->model, LawUnder(*problem_, at, record), PathOf(r, at.theta),
+                       record.displacement, t, GradientOf(columns));
   }
 }
 
@@ -248,7 +248,7 @@ void Response::DifferentiatePath(const LawPoint& at, std::size_t r, std::span<do
 void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
   const models::ForcedLaw law{.slip_force = std::exp(-at.log_rate), .shape_exponent = at.shape};
-  const bool is_below_slip = displacement_.Differentiate(
+  const bool is_below_slip = displacement_.Evaluate(
       *problem_->model, law, PathOf(r, at.theta), problem_->data->records[r].excitation(), t,
       {columns[TermId::kSigma], columns[TermId::kAlpha], columns[TermId::kForceOffset]});
   if (!is_below_slip) std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
@@ -269,8 +269,7 @@ void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<d
     at_places[kOfPath[k]] = std::span(storage).subspan((1 + k) * places, places);
   }
   const models::NormalizedGradient gradient = GradientOf(at_places);
-  response_.Differentiate(*problem_->model, law, moved.path(), moved.displacement(), forces,
-                          gradient);
+  response_.Evaluate(*problem_->model, law, moved.path(), moved.displacement(), forces, gradient);
   moved.TakeForces(forces);
   moved.Gather(forces, t);
   for (const TermId id : kOfPath) {
