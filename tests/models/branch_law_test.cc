@@ -1,5 +1,6 @@
 #include "mindahl/models/branch_law.h"
 
+#include "mindahl/models/friction_model.h"
 #include "mindahl/models/simplified_law.h"
 #include "support/prelude.h"
 
@@ -127,6 +128,25 @@ TEST(SimplifiedLaw, RefusesWhatItCannotServe) {
               HasSubstr("exceeds the largest double"));
   EXPECT_EQ(MessageOf([&] { FindSimplifiedLaw("coulomb")->evaluate_force(kLaw, far, {}, force); }),
             "");
+}
+
+// ---
+
+TEST(FrictionModels, AreFoundByTheNamesOfTheCommandLine) {
+  for (const std::string_view name : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
+    const FrictionModel* model = FindFrictionModel(name);
+    ASSERT_NE(model, nullptr) << name;
+    EXPECT_EQ(model->name, name);
+  }
+  EXPECT_EQ(FindFrictionModel("Mindlin"), nullptr);
+  EXPECT_EQ(FindFrictionModel(""), nullptr);
+}
+
+TEST(FrictionModels, PrescribeTheShapeExponentWhereTheNameDoes) {
+  EXPECT_EQ(FindFrictionModel("mindlin")->shape_exponent, 1.0 / 3.0);
+  EXPECT_EQ(FindFrictionModel("jenkins")->shape_exponent, 0.0);
+  EXPECT_FALSE(FindFrictionModel("mindlin-dahl")->shape_exponent.has_value());
+  EXPECT_FALSE(FindFrictionModel("dahl")->shape_exponent.has_value());
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 
 #include <cfenv>
 
-#include "../../tools/reference/box.h"
-#include "../../tools/reference/force_and_gradient.h"
+#include "../../tools/accuracy/measurements.h"
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/contact_state.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/prelude.h"
@@ -29,12 +29,14 @@ std::string RaisedBy(Call call) {
   return names;
 }
 
+/// The box, and beyond it no displacement, hardly any and all of it.
 template <typename Visit>
 void ForEveryPoint(Visit visit) {
-  for (const double alpha : reference::kBoxShapeExponents) {
-    for (const reference::Scale& scale : reference::kBoxScales) {
-      const BranchLaw law{scale.stiffness, alpha, scale.slip_force};
-      for (const double x : reference::BoxDisplacements(scale, alpha)) visit(law, x);
+  accuracy::ForEveryPoint(visit);
+  for (const double alpha : {0.0, 1e-300, 1.0 / 3.0, 1.0, 2.0, 100.0, 1e100}) {
+    for (const double x : {0.0, 1e-300, 1e-18, 1.0, 1.5, 2.0, 1e12, 1e300}) {
+      // For α > 1 the force still grows beyond 1e200 elastic limits: refused (edges_test.cc).
+      if (alpha <= 1 || x <= 1e200) visit({1.0, alpha, 1.0}, x);
     }
   }
 }
@@ -73,7 +75,7 @@ TEST(FloatingPointExceptions, ComeFromNoSteadyLoop) {
   }
 }
 
-TEST(FloatingPointExceptions, ComeFromNoResponseInDoubleOrItsGradient) {
+TEST(FloatingPointExceptions, ComeFromNoResponseItsGradientOrState) {
   for (const FrictionModel& model : FrictionModels()) {
     ForEveryPoint([&](const BranchLaw& law, double x) {
       const History history = {0.0, x / 2, x, x, -x, 0.0, std::nextafter(x, 0.0), x / 3, 2 * x, -x};
@@ -90,7 +92,19 @@ TEST(FloatingPointExceptions, ComeFromNoResponseInDoubleOrItsGradient) {
             RaisedBy([&] { EvaluateForceAndGradient(model, law, path, history, force, gradient); }),
             "")
             << model.name << ", " << Describe(law, x);
+        for (const double value : gradient) {
+          ASSERT_TRUE(std::isfinite(value)) << model.name << ", " << Describe(law, x);
+        }
       }
+      EXPECT_EQ(RaisedBy([&] {
+                  ContactState contact(model, law);
+                  for (const double displacement : history) {
+                    contact.Move(displacement);
+                    ASSERT_GE(contact.TangentStiffness(), 0);
+                  }
+                }),
+                "")
+          << model.name << ", " << Describe(law, x);
     });
   }
 }

@@ -10,6 +10,7 @@ namespace mindahl::models::variable_load_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The elastic limit at the reference load is 1, as testing::RandomHistory expects.
 constexpr LoadDependentLaw UnitLaw(double shape_exponent) {
@@ -306,18 +307,12 @@ std::string RefusalOf(const LoadDependentLaw& law, const LoadedHistory& path) {
 }
 
 TEST(VariableLoad, RefusesASampleByItsNumber) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // As LoadedContactState::Move() refuses it.
   const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
   EXPECT_EQ(RefusalOf(law, {{0.0, 1.0}, {1.0, -2.0}}),
             "sample 1: normal load [N] = -2 is invalid: must be finite and >= 0");
   EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {kNan, 1.0}}), HasSubstr("sample 0: normal load [N]"));
-  EXPECT_THAT(RefusalOf(law, {{0.0, 1.0}, {1.0, kInfinity}}), HasSubstr("sample 1"));
   EXPECT_THAT(RefusalOf(law, {{0.0, kNan}, {1.0, 1.0}}), HasSubstr("sample 1: displacement [m]"));
-  LoadDependentLaw soft = law;
-  soft.reference_stiffness = 1e-306;
-  EXPECT_THAT(RefusalOf(soft, {{0.0, 1.0}, {1.0, 1e6}}),
-              HasSubstr("sample 1: normal load [N] = 1000000 is invalid: must keep the slip"));
 }
 
 TEST(VariableLoad, RefusesALawByItsParameter) {
@@ -336,6 +331,95 @@ TEST(VariableLoad, RefusesALawByItsParameter) {
   History two(2);
   EXPECT_THROW(EvaluateForceUnderLoad(UnitLaw(0.5), {{0.0, 1.0}}, {{1.0}}, two), InvalidArgument);
   EXPECT_THROW(EvaluateForceUnderLoad(UnitLaw(0.5), {{0.0}}, {{1.0}}, two), InvalidArgument);
+}
+
+// --- Step by step
+// ---------------------------------------------------------------------------------
+
+TEST(LoadedContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
+  // Bit for bit.
+  Generator generator(1);
+  for (const double alpha : kShapeExponents) {
+    for (int i = 0; i < 1000; ++i) {
+      const LoadedHistory path = RandomLoadedHistory(generator, /*lift_off=*/true);
+      const auto& [displacement, load] = path;
+      const History expected = Respond(UnitLaw(alpha), path);
+      LoadedContactState contact(UnitLaw(alpha), {.normal_load = load.front()});
+      for (std::size_t k = 0; k < displacement.size(); ++k) {
+        ASSERT_EQ(contact.Move(displacement[k], load[k]), expected[k]) << alpha << ' ' << i;
+        ASSERT_EQ(contact.Force(), expected[k]);
+        ASSERT_EQ(contact.Displacement(), displacement[k]);
+        ASSERT_EQ(contact.NormalLoad(), load[k]);
+      }
+    }
+  }
+}
+
+TEST(LoadedContactState, ACopyGoesItsOwnWay) {
+  const LoadDependentLaw law = UnitLaw(1.0 / 3.0);
+  LoadedContactState contact(law, {.normal_load = 2.0, .unloaded_displacement = 0.25});
+  const double first = contact.Move(0.75, 3.0);
+  LoadedContactState trial = contact;
+  const double trial_force = trial.Move(-1.0, 1.0);
+  EXPECT_EQ(contact.Force(), first);
+  trial = contact;
+  EXPECT_EQ(trial.Move(-1.0, 1.0), trial_force);
+}
+
+TEST(LoadedContactState, RemembersAsManyZonesAsTheLoopIsDeepNotAsItIsLong) {
+  constexpr std::size_t kSteps = 1'000'000;
+  constexpr std::size_t kPerCycle = 200;
+  LoadedContactState contact(UnitLaw(1.0 / 3.0), {.normal_load = 2.0});
+  std::vector<double> second_cycle(kPerCycle);
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const double phase = 2 * 3.141592653589793 * static_cast<double>(i % kPerCycle) / kPerCycle;
+    const double force = contact.Move(1.2 * std::sin(phase), 2.0);
+    most = std::max(most, contact.RememberedZones());
+    if (i / kPerCycle == 1) second_cycle[i % kPerCycle] = force;
+    if (i / kPerCycle > 1) {
+      ASSERT_EQ(force, second_cycle[i % kPerCycle]) << i;
+    }
+  }
+  EXPECT_LE(most, 3U);
+}
+
+TEST(LoadedContactState, AddsOneZoneForALoadThatRisesAtRest) {
+  LoadedContactState contact(UnitLaw(1.0 / 3.0));
+  contact.Move(0.5, 1.0);
+  const std::size_t zones = contact.RememberedZones();
+  for (int i = 1; i < 1000; ++i) contact.Move(0.5, 1.0 + 0.01 * i);
+  EXPECT_LE(contact.RememberedZones(), zones + 1);
+}
+
+TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
+  LoadDependentLaw soft = UnitLaw(1.0 / 3.0);
+  soft.reference_stiffness = 1e-306;
+  LoadedContactState contact(soft, {.normal_load = 1.0});
+  contact.Move(0.5, 1.0);
+  const double force = contact.Force();
+  const auto refusal = [&](double displacement, double load) {
+    const std::string by_move = MessageOf([&] { contact.Move(displacement, load); });
+    EXPECT_EQ(contact.Force(), force);
+    EXPECT_EQ(contact.Displacement(), 0.5);
+    EXPECT_EQ(contact.NormalLoad(), 1.0);
+    return by_move;
+  };
+  EXPECT_EQ(refusal(kNan, 1.0),
+            "displacement [m] = nan is invalid: must be finite and within +-1e307 m");
+  EXPECT_THAT(refusal(-1.1e307, 1.0), HasSubstr("displacement [m] = -1.1e+307 is invalid"));
+  EXPECT_EQ(refusal(1.0, -2.0), "normal load [N] = -2 is invalid: must be finite and >= 0");
+  EXPECT_THAT(refusal(1.0, kNan), HasSubstr("normal load [N] = nan"));
+  EXPECT_THAT(refusal(1.0, HUGE_VAL), HasSubstr("normal load [N] = inf"));
+  EXPECT_THAT(refusal(1.0, 1e6), HasSubstr("normal load [N] = 1000000 is invalid: must keep the"));
+}
+
+TEST(LoadedContactState, RefusesInvalidContact) {
+  LoadDependentLaw law = UnitLaw(0.5);
+  EXPECT_THROW(LoadedContactState(law, {.normal_load = -1.0}), InvalidArgument);
+  EXPECT_THROW(LoadedContactState(law, {.unloaded_displacement = kNan}), InvalidArgument);
+  law.shape_exponent = 1.0;
+  EXPECT_THROW(LoadedContactState{law}, InvalidArgument);
 }
 
 }  // namespace
