@@ -31,7 +31,7 @@ for target in "${targets[@]}"; do
   learnt=build/fuzz/corpus/$target
   mkdir -p "$learnt"
   log=build/fuzz/$target.log
-  length=$(sed -n "s/.*Target{\"$target\", [^,]*, \([0-9]*\)}.*/\1/p" tests/fuzz/targets.cc)
+  length=$(sed -n "s/.*Target{\"$target\", [^,]*, \([0-9]*\)}.*/\1/p" tests/fuzz/target.h)
   status=0
   MINDAHL_FUZZ_TARGET=$target build/fuzz/tests/fuzz/fuzz_targets "$learnt" "tests/fuzz/corpus/$target" \
     -max_total_time="$seconds" -timeout=60 -rss_limit_mb=3000 -max_len="$length" -print_final_stats=1 \

@@ -106,20 +106,10 @@ std::vector<std::unique_ptr<MemoryFile>> FilesOf(const std::string& text) {
   constexpr char kSeparator = '\x1d';
   constexpr std::size_t kMost = 4;
   std::vector<std::unique_ptr<MemoryFile>> files;
-  std::size_t begin = 0;
-  while (files.size() < kMost && begin <= text.size()) {
-    const std::size_t end = std::min(text.find(kSeparator, begin), text.size());
-    files.push_back(std::make_unique<MemoryFile>(text.substr(begin, end - begin)));
-    begin = end + 1;
+  for (const std::string_view part : PartsOf(text, kSeparator)) {
+    if (files.size() < kMost) files.push_back(std::make_unique<MemoryFile>(part));
   }
   return files;
-}
-
-std::vector<std::string> LinesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 struct TrackedTest {
@@ -138,7 +128,8 @@ struct TrackedTest {
 
 /// Returns a row of the table without the energy of all cycles up to it: the sum has also what
 /// somebody changed.
-std::string WithoutTotal(std::string row) {
+std::string WithoutTotal(std::string_view whole) {
+  std::string row(whole);
   const std::size_t end = row.rfind(',', row.rfind(',') - 1);
   const std::size_t begin = row.rfind(',', end - 1);
   if (end != std::string::npos && begin < end) row.erase(begin, end - begin);
@@ -222,9 +213,10 @@ void ResumeTables(Input input) {
     Require(output.Content() == table, "a table that is refused is left alone");
   } else {
     // A value that somebody changed above the last batch is kept as it is.
-    const std::vector<std::string> lines = LinesOf(output.Content());
-    const std::vector<std::string> before = LinesOf(table);
-    const std::vector<std::string> undisturbed = LinesOf(test.table);
+    const std::string content = output.Content();
+    const std::vector<std::string_view> lines = PartsOf(content, '\n');
+    const std::vector<std::string_view> before = PartsOf(table, '\n');
+    const std::vector<std::string_view> undisturbed = PartsOf(test.table, '\n');
     Require(lines.size() == undisturbed.size(), "a table that is gone on with becomes as long");
     for (std::size_t i = 0; i < lines.size(); ++i) {
       Require(WithoutTotal(lines[i]) == WithoutTotal(undisturbed[i]) ||

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -26,12 +27,9 @@ class MemoryFile {
   [[nodiscard]] std::string name() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
   [[nodiscard]] std::string Content() const {
-    struct stat status {};
-    Require(::fstat(descriptor_, &status) == 0, "a file in memory has a size");
-    std::string content(static_cast<std::size_t>(status.st_size), '\0');
-    const ssize_t read = ::pread(descriptor_, content.data(), content.size(), 0);
-    Require(read == static_cast<ssize_t>(content.size()), "a file in memory can be read");
-    return content;
+    std::ifstream file(name(), std::ios::binary);
+    Require(file.is_open(), "a file in memory can be read");
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
  private:

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -18,11 +20,6 @@ struct Target {
   void (*run)(Input);
   std::size_t longest;  ///< bytes, so that the work for an input is bounded
 };
-
-/// Returns all of them.
-std::span<const Target> Targets();
-/// Returns nullptr where there is none of that name.
-const Target* FindTarget(std::string_view name);
 
 /// Reads a record whole and as a stream, which must agree.
 void ReadRecords(Input input);
@@ -45,12 +42,30 @@ void ResumeTables(Input input);
 /// Runs `fit --join` or `track --join` on pieces of a record.
 void JoinRecords(Input input);
 
+inline constexpr std::array kTargets = {Target{"csv", &ReadRecords, 4096},
+                                        Target{"units", &LookUpUnits, 64},
+                                        Target{"reversals", &FindTurns, 1024},
+                                        Target{"models", &EvaluateModels, 1024},
+                                        Target{"contact_state", &MoveContacts, 1024},
+                                        Target{"fit", &FitRecords, 4096},
+                                        Target{"track", &TrackRecords, 4096},
+                                        Target{"resume", &ResumeTables, 256},
+                                        Target{"join", &JoinRecords, 4096},
+                                        Target{"encodings", &ReadEncodedRecords, 4096}};
+
 /// Ends the program where a property does not hold.
 inline void Require(bool holds, std::string_view property) {
   if (holds) return;
   std::fprintf(stderr, "fuzz: violated: %.*s\n", static_cast<int>(property.size()),
                property.data());
   std::abort();
+}
+
+/// Returns the target of a name; ends the program where there is none.
+inline const Target& FindTarget(std::string_view name) {
+  const auto* const found = std::ranges::find(kTargets, name, &Target::name);
+  Require(found != kTargets.end(), "a target has the name that is given");
+  return *found;
 }
 
 }  // namespace mindahl::fuzz

@@ -31,14 +31,10 @@ std::optional<io::Samples> ReadStreamed(const std::string& path,
     io::Samples all;
     io::Samples piece;
     while (stream.Next(piece)) {
-      const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
-        to.insert(to.end(), from.begin(), from.end());
-      };
       Require(piece.displacement.size() == piece.lines.size(), "a sample has a line");
-      add(all.displacement, piece.displacement);
-      add(all.force, piece.force);
-      add(all.time, piece.time);
-      add(all.normal_load, piece.normal_load);
+      for (const auto column : loop::kRecordColumns) {
+        (all.*column).insert((all.*column).end(), (piece.*column).begin(), (piece.*column).end());
+      }
     }
     return all;
   } catch (const InputError&) {
@@ -51,18 +47,17 @@ void RequireSameWholeAndStreamed(const std::optional<io::RecordFile>& whole,
                                  const std::optional<io::Samples>& streamed) {
   if (whole) {
     Require(whole->lines.size() == whole->record.size(), "a sample of a record has a line");
-    for (const double value : whole->record.displacement) {
-      Require(std::isfinite(value), "a displacement that is read is finite");
-    }
-    for (const double value : whole->record.force) {
-      Require(std::isfinite(value), "a force that is read is finite");
+    for (const auto column : {&loop::Record::displacement, &loop::Record::force}) {
+      for (const double value : whole->record.*column) {
+        Require(std::isfinite(value), "a displacement or force that is read is finite");
+      }
     }
   }
   if (!whole || !streamed || streamed->displacement.empty()) return;
-  Require(whole->record.displacement == streamed->displacement &&
-              whole->record.force == streamed->force && whole->record.time == streamed->time &&
-              whole->record.normal_load == streamed->normal_load,
-          "a record is the same read whole and as a stream");
+  for (const auto column : loop::kRecordColumns) {
+    Require(whole->record.*column == (*streamed).*column,
+            "a record is the same read whole and as a stream");
+  }
 }
 
 /// Returns an ASCII text in UTF-16, with the mark that states the order of its bytes.
