@@ -16,7 +16,6 @@ is indented after it, in the same block or in the next one of the section, is it
 Comments above a block say what is special, and hold for that block alone:
 
     <!-- docs test: slow -->             only checked with --slow
-    <!-- docs test: whole -->            the page leaves nothing out of standard output
     <!-- docs test: skip REASON -->      neither run nor checked
     <!-- docs test: ignore REGEX -->     matches are dropped on both sides, and lines left empty
 
@@ -40,7 +39,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 INDENT = "    "
-DIRECTIVE = re.compile(r"<!-- docs test: (slow|whole|skip|ignore)(?: (.*?))? -->")
+DIRECTIVE = re.compile(r"<!-- docs test: (slow|skip|ignore)(?: (.*?))? -->")
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])", re.IGNORECASE)
 LONGEST_WRAP = 8  # lines of a page that may be one line of output
 FINE = (0, 3)     # exit status: done; ran, but not established
@@ -148,11 +147,10 @@ def agree(shown, printed):
 
 
 class Output:
-    """What a command printed: messages, then from line `results` on its standard output."""
+    """What a command printed, messages first."""
 
     def __init__(self, done, ignored):
         self.raw = [line.rstrip() for line in (done.stderr + done.stdout).splitlines()]
-        self.results = len(self.raw) - len(done.stdout.splitlines())
         self.lines = [normalised(line, ignored) for line in self.raw]
 
 
@@ -196,84 +194,35 @@ def check(block, lines, output):
             problems.append(f"line {block.begin + i + 1} is not printed, or not here:\n"
                             f"      shown    {shown[i]}\n"
                             f"      nearest  {nearest(shown[i], output.lines)}")
-    if block.has("whole"):
-        for index, line in enumerate(output.lines):
-            if line and index >= output.results and index not in matches:
-                problems.append(f"the page says that it leaves nothing out, but not\n      {line}")
     return problems
-
-
-def aligned(shown, printed):
-    """The printed line for each shown one, in order, so that the texts agree best; -1 for none."""
-    words = [set(skeleton(line).split()) for line in printed]
-
-    def likeness(line, k):
-        if not line or not printed[k]:
-            return 0.0
-        if skeleton(line) == skeleton(printed[k]):
-            # Of lines that differ in numbers only, the one with the nearer numbers.
-            return 1 + difflib.SequenceMatcher(None, line, printed[k]).ratio()
-        mine = set(skeleton(line).split())
-        common = len(mine & words[k]) / max(len(mine | words[k]), 1)
-        return common if common > 0.5 else 0.0
-
-    rows, columns = len(shown), len(printed)
-    best = [[0.0] * (columns + 1) for _ in range(rows + 1)]
-    like = [[likeness(line, k) for k in range(columns)] for line in shown]
-    for i in range(rows - 1, -1, -1):
-        for k in range(columns - 1, -1, -1):
-            best[i][k] = max(best[i + 1][k], best[i][k + 1], like[i][k] + best[i + 1][k + 1])
-    result, k = [], 0
-    for i in range(rows):
-        while k < columns and best[i][k] == best[i][k + 1] and best[i][k] != best[i + 1][k]:
-            k += 1
-        if k < columns and like[i][k] > 0 and best[i][k] == like[i][k] + best[i + 1][k + 1]:
-            result.append(k)
-            k += 1
-        else:
-            result.append(-1)
-    return result
 
 
 def updated(block, lines, output):
     """The shown output as it is printed now, and what could not be found again."""
-    if block.has("whole"):
-        fresh = "\n".join(output.raw[output.results:]).strip("\n").splitlines()
-        return [(INDENT + line).rstrip() for line in fresh], []
     ignored = block.ignored()
     shown = [normalised(line, ignored) for line in lines[block.begin:block.end]]
     matches = find(shown, output.lines)
-    # Unwrap what the page wraps: a line, with those that follow it and begin nothing of their own.
-    paragraphs = []  # (first, past the last)
-    i = 0
-    while i < len(shown):
-        count = 1
-        if matches[i] == -1:
-            text = skeleton(shown[i])
-            while (i + count < len(shown) and shown[i + count] and matches[i + count] == -1
-                   and any(line.startswith(text + " ") for line in map(skeleton, output.lines))):
-                longer = f"{text} {skeleton(shown[i + count])}"
-                if not any(line.startswith(longer) for line in map(skeleton, output.lines)):
-                    break
-                text = longer
-                count += 1
-        paragraphs.append((i, i + count))
-        i += count
-    texts = [" ".join(shown[first:past]) for first, past in paragraphs]
     result, lost = [], []
-    for (first, past), index in zip(paragraphs, aligned(texts, output.lines)):
-        old = lines[block.begin + first:block.begin + past]
-        if not shown[first] or all(match is not None and match >= 0
-                                   for match in matches[first:past]):
-            result += old
-        elif index == -1:
-            result += old
-            lost.append((block.begin + first, shown[first]))
-        elif past - first > 1:
-            result += textwrap.wrap(output.raw[index].strip(), WIDTH, initial_indent=INDENT,
-                                    subsequent_indent=INDENT, break_on_hyphens=False)
+    place = 0      # of the first printed line that is yet to be shown
+    put = ""       # the line put in place of the one before: a page may have wrapped what it was
+    for i, match in enumerate(matches):
+        if match != -1:
+            place, put = place if match is None else match + 1, ""
+            result.append(lines[block.begin + i])
+            continue
+        if put and skeleton(shown[i]) in skeleton(put):
+            continue
+        end = next((k for k in matches[i:] if k not in (None, -1)), len(output.lines))
+        put = next(iter(difflib.get_close_matches(shown[i], output.lines[place:end], 1, 0.5)), "")
+        if put:
+            place = output.lines.index(put, place) + 1
+            fresh = (INDENT + output.raw[place - 1]).rstrip()
+            result += [fresh] if len(fresh) <= WIDTH else textwrap.wrap(
+                fresh.strip(), WIDTH, initial_indent=INDENT, subsequent_indent=INDENT,
+                break_on_hyphens=False)
         else:
-            result.append((INDENT + output.raw[index]).rstrip())
+            result.append(lines[block.begin + i])
+            lost.append((block.begin + i, shown[i]))
     return result, lost
 
 

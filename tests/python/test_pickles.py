@@ -46,14 +46,19 @@ def test_a_saved_result_has_its_page_and_a_pickled_one_its_text(tmp_path):
 
 
 def test_a_result_of_json_is_shown_and_says_what_it_has_not(tmp_path):
-    (tmp_path / "fit.json").write_text(mindahl.fit(SPHERE).to_json(), encoding="utf-8")
+    result = mindahl.fit(SPHERE)
+    (tmp_path / "fit.json").write_text(result.to_json(), encoding="utf-8")
     loaded = mindahl.FitResult.load(tmp_path / "fit.json")
-    assert "sigma = " in loaded._repr_html_()
+    assert loaded.to_dict() == result.to_dict() and loaded.to_json() == result.to_json()
+    assert loaded.sigma == result.sigma and repr(loaded) == repr(result)
+    assert loaded.adequacy.verdict == result.adequacy.verdict
+    assert "sigma = " in loaded._repr_html_() and "sigma = " in str(loaded)
+    assert loaded.records == ()
     with pytest.raises(ValueError, match="has no records"):
         loaded.plot()
     with pytest.raises(ValueError, match="has no likelihood"):
         loaded.log_likelihood()
-    for content in (b"PK nothing", b"\xff", b"[]", b"{"):
+    for content in (b"PK nothing", b"\xff", b"[]", b"{", b'{"schema": "mindahl.contact/1"}'):
         (tmp_path / "other").write_bytes(content)
         with pytest.raises(ValueError, match="is no result of a fit"):
             mindahl.FitResult.load(tmp_path / "other")

@@ -216,23 +216,6 @@ def test_datasets_of_xarray_are_fitted_with_the_units_of_their_attributes(sphere
         assert of_arrays.parameters[name].value == expected.parameters[name].value
 
 
-def test_a_result_is_loaded_from_its_json(tmp_path, sphere):
-    result = mindahl.fit(*sphere[1:], time=sphere[0])
-    path = tmp_path / "fit.json"
-    path.write_text(result.to_json())
-    loaded = mindahl.FitResult.load(path)
-    assert loaded.to_dict() == result.to_dict()
-    assert loaded.to_json() == result.to_json()
-    assert loaded.sigma == result.sigma
-    assert loaded.adequacy.verdict == result.adequacy.verdict
-    assert repr(loaded) == repr(result)
-    assert "sigma = " in str(loaded)
-    assert loaded.records == ()
-    path.write_text('{"schema": "mindahl.contact/1"}')
-    with pytest.raises(ValueError, match="is no result of a fit"):
-        mindahl.FitResult.load(path)
-
-
 def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
     time, displacement, force = sphere
     expected = mindahl.fit(displacement, force, time=time, initial_state="virgin")
