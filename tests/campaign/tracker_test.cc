@@ -34,25 +34,21 @@ TEST(Tracker, HasTheSameRowsWhateverTheThreadsAndThePieces) {
   const std::vector<std::string> rows = Rows({});
   ASSERT_EQ(rows.size(), kCycles);
   for (const std::size_t threads : {2U, 3U, 8U}) {
-    TrackOptions options;
-    options.threads = threads;
-    EXPECT_EQ(Rows(options, 77 * threads), rows) << threads;
+    EXPECT_EQ(Rows({.threads = threads}, 77 * threads), rows) << threads;
   }
 }
 
 TEST(Tracker, BeginsAtALaterBatchWithItsRows) {
   const std::vector<std::string> rows = Rows({});
   for (const std::size_t skipped : {kBatch, 2 * kBatch}) {
-    TrackOptions options;
-    options.skipped = skipped;
-    EXPECT_EQ(Rows(options), std::vector<std::string>(
-                                 rows.begin() + static_cast<std::ptrdiff_t>(skipped), rows.end()));
+    EXPECT_EQ(
+        Rows({.skipped = skipped}),
+        std::vector<std::string>(rows.begin() + static_cast<std::ptrdiff_t>(skipped), rows.end()));
   }
 }
 
 TEST(Tracker, FitsOneOfSoManyCyclesOrCyclesTogether) {
-  TrackOptions options;
-  options.every = 10;
+  TrackOptions options{.every = 10};
   const std::vector<std::string> rows = Rows(options);
   ASSERT_EQ(rows.size(), kCycles / 10);
   EXPECT_TRUE(rows[0].starts_with("1,"));

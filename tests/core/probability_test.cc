@@ -10,7 +10,7 @@
 namespace mindahl::probability_test {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kRounding = 1e-13;
 
 TEST(Probability, FOfTwoDegreesIsAPower) {
   // P(F(2, n) > f) = (1 + 2f/n)^(−n/2).
@@ -19,10 +19,14 @@ TEST(Probability, FOfTwoDegreesIsAPower) {
 }
 
 TEST(Probability, FOfOneDegreeIsTheSquareOfT) {
-  // P(|t| > x) of one degree: 1 − 2·atan(x)/π.
-  const double chance = 1 - 2 * std::atan(2.0) / std::numbers::pi;
-  EXPECT_NEAR(PValueOfT(2, 1), chance, kRounding);
-  EXPECT_NEAR(PValueOfF(4, 1, 1), chance, kRounding);
+  // P(|t| > x) = 1 − 2/π·atan x at one degree, 1 − x/√(2 + x²) at two.
+  for (const double x : {0.3, 1.0, 2.0, 7.0}) {
+    const double chance = 1 - 2 * std::atan(x) / std::numbers::pi;
+    EXPECT_NEAR(PValueOfT(x, 1), chance, kRounding);
+    EXPECT_NEAR(PValueOfF(x * x, 1, 1), chance, kRounding);
+    EXPECT_NEAR(PValueOfF(x * x, 1, 2), 1 - x / std::sqrt(2 + x * x), kRounding);
+  }
+  EXPECT_EQ(PValueOfF(0, 1, 7), 1);
 }
 
 TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {
@@ -30,10 +34,15 @@ TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {
 }
 
 TEST(Probability, QuantilesAreTwoSided) {
-  // With one degree of freedom t is tan(π·c/2).
-  EXPECT_NEAR(StudentQuantile(1, 0.5), 1, kRounding);
-  EXPECT_NEAR(StudentQuantile(1, 0.9), std::tan(0.45 * std::numbers::pi), 1e-10);
-  EXPECT_NEAR(std::erf(NormalQuantile(0.95) / std::numbers::sqrt2), 0.95, kRounding);
+  // With one degree of freedom t is tan(π·c/2), with two c·√(2/(1 − c²)).
+  for (const double chance : {0.5, 0.9, 0.95, 0.9}) {  // one asked for again after another
+    EXPECT_NEAR(StudentQuantile(1, chance), std::tan(chance / 2 * std::numbers::pi), 1e-11);
+    EXPECT_NEAR(StudentQuantile(2, chance), chance * std::sqrt(2 / (1 - chance * chance)), 1e-11);
+  }
+  EXPECT_NEAR(std::erf(kNormalQuantile95 / std::numbers::sqrt2), 0.95, kRounding);
+  for (const double chance : {0.01, 0.5, 0.95, 0.999999}) {
+    EXPECT_NEAR(std::erf(NormalQuantile(chance) / std::numbers::sqrt2), chance, kRounding);
+  }
 }
 
 }  // namespace

@@ -7,9 +7,6 @@
 namespace mindahl::identification::adequacy_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip
 constexpr double kNoise = 0.002 * kLaw.slip_force;
@@ -82,20 +79,19 @@ TEST(Adequacy, OfTwoTestsInOneFileIsDoubted) {
 /// Dahl's own law from the unloaded contact, fitted by Masing's: what that misses is smooth, and
 /// with a handful of strokes it passes for autocorrelated noise.
 TEST(Adequacy, IsNotClaimedOfResidualsBeyondTheNoiseThatTheRecordHasWithoutAModel) {
-  FitOptions options;
-  options.model = &Model("mindlin-dahl");
   int beyond = 0;
   for (const double alpha : {0.5, 1.5, 2.0, 2.5}) {
     for (const double cycles : {1.5, 2.0, 2.25, 6.25}) {
       const BranchLaw law{4e7, alpha, 40.0};
       const History displacement = Cycling(Wave::kSine, 3 * kReach, cycles, kCycle);
-      Record record = MakeRecord(displacement, Respond(Model("dahl"), law, displacement));
       Generator generator(3);
-      for (double& force : record.force) force += 0.0025 * law.slip_force * Normal(generator);
-      const FitResult fit = Fitted(record, options);
+      const Record record =
+          WithForceNoise(MakeRecord(displacement, Respond(Model("dahl"), law, displacement)),
+                         0.0025 * law.slip_force, generator);
+      const FitResult fit = Fitted(record, OfModel("mindlin-dahl"));
       if (fit.rms < 1.6 * 0.0025 * law.slip_force) continue;
       EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << alpha << " " << cycles;
-      EXPECT_LE(fit.adequacy.p_value, options.thresholds.rare_chance) << alpha << " " << cycles;
+      EXPECT_LE(fit.adequacy.p_value, Thresholds{}.rare_chance) << alpha << " " << cycles;
       ++beyond;
     }
   }
@@ -162,10 +158,7 @@ Record Alone(const SeriesSpring& rig = {}) {
     record.time.push_back(kStep * i);
     record.displacement.push_back(MotionAt(record.time.back()));
   }
-  record.force.resize(record.size());
-  const FrictionModel& model = Model("mindlin-dahl");
-  EvaluateForce(model, kLaw, testing::PathOf(model, record.displacement), record.displacement,
-                record.force, rig);
+  record.force = Respond(Model("mindlin-dahl"), kLaw, record.displacement, {}, rig);
   return testing::From(record, kFirst);
 }
 
@@ -210,8 +203,7 @@ std::vector<Known> KnownDepartures() {
   const auto derivative = [](int order) {
     return [order](double time) { return MotionAt(time, order); };
   };
-  FitOptions mindlin;  // or the shape takes what the rig does
-  mindlin.model = &Model("mindlin");
+  const FitOptions mindlin{.model = &Model("mindlin")};  // or the shape takes what the rig does
   return {
       {"channel_lag", LateBy(2)},
       known("viscous_force", 0.03 * stiffness / kOmega, derivative(1)),
@@ -240,9 +232,7 @@ TEST(Adequacy, CausesAreNamedAndIntervalsCoverWhatTheyChange) {
       const Cause* cause = Find(fit, known.code);
       ASSERT_NE(cause, nullptr);
       if (known.noise < 1) continue;  // less than what first order leaves
-      for (const auto& [name, truth] :
-           {std::pair{"sigma", kLaw.tangential_stiffness}, std::pair{"alpha", kLaw.shape_exponent},
-            std::pair{"slip_force", kLaw.slip_force}}) {
+      for (const auto& [name, truth] : ParametersOf(kLaw)) {
         const ParameterEstimate& estimate = *fit.Find(name);
         if (estimate.status == ParameterStatus::kFixed) continue;
         EXPECT_TRUE(Covers(estimate, truth)) << name;
@@ -278,9 +268,8 @@ TEST(Adequacy, CauseThatIsFittedIsNoneAnyLonger) {
     const bool viscous = known.code == "viscous_force";
     if (!viscous && known.code != "force_drift" && known.code != "plateau_slope") continue;
     Generator generator(7);
-    FitOptions options;
-    options.terms.emplace_back(viscous ? "viscous" : known.code);
-    const FitResult fit = Fitted(WithForceNoise(known.record, kNoise, generator), options);
+    const FitResult fit = Fitted(WithForceNoise(known.record, kNoise, generator),
+                                 {.terms = {std::string(viscous ? "viscous" : known.code)}});
     EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << known.code;
     EXPECT_LT(fit.adequacy.misfit_over_noise, 0.2) << known.code;
   }

@@ -7,9 +7,6 @@
 namespace mindahl::identification::causes_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-5;  // [m], twenty times gross slip, as a damper or a seal has it
 constexpr double kNoise = 0.002 * kLaw.slip_force;

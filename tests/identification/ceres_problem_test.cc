@@ -14,9 +14,6 @@
 namespace mindahl::identification::ceres_problem_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 /// A loop with time, half of it in partial slip; dense enough for no turn between the samples.
 Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, double noise = 0.01) {
   const FrictionModel& friction = Model(model);
@@ -30,10 +27,9 @@ Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, dou
 }
 
 FitOptions OptionsOf(const std::string& model, const std::string& term) {
-  FitOptions options;
-  options.model = &Model(model);
-  options.initial_state = InitialState::kVirgin;
-  options.preparation.force_sense = 1;
+  FitOptions options{.model = &Model(model),
+                     .initial_state = InitialState::kVirgin,
+                     .preparation = {.force_sense = 1}};
   if (!term.empty()) options.terms = {term};
   // The exponent of a force of the speed, or of a slip force of the speed, needs its factor.
   if (term == "speed_exponent") options.terms.emplace_back("viscous");

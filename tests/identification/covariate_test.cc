@@ -6,9 +6,6 @@
 namespace mindahl::identification::covariate_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 /// Wanders by ±1 in no step with the motion.
 std::vector<double> Wandering(std::size_t samples, double middle, double pace) {
   std::vector<double> values;
@@ -36,14 +33,11 @@ Record LoopBesideTwo() {
 }
 
 TEST(Covariate, OfTwoColumnsIsRecovered) {
-  FitOptions options;
-  options.covariates = {"p", "oil temperature"};
-  const FitResult fit = FitOne(LoopBesideTwo(), options);
+  const FitResult fit = FitOne(LoopBesideTwo(), {.covariates = {"p", "oil temperature"}});
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
   const ParameterEstimate* pressure = fit.Find("covariate_p");
   const ParameterEstimate* temperature = fit.Find("covariate_oil_temperature");
-  ASSERT_NE(pressure, nullptr);
-  ASSERT_NE(temperature, nullptr);
+  ASSERT_TRUE(pressure && temperature);
   EXPECT_NEAR(pressure->value, kPerBar, kNoiseFree * kLaw.slip_force);
   EXPECT_NEAR(temperature->value, kPerKelvin, kNoiseFree * kLaw.slip_force);
   EXPECT_EQ(pressure->unit, "N/bar");
@@ -53,8 +47,7 @@ TEST(Covariate, OfTwoColumnsIsRecovered) {
 
 TEST(Covariate, LeavesTheOffsetAsItIsInTheMiddleOfTheColumnsRange) {
   const Record record = LoopBesideTwo();
-  FitOptions options;
-  options.covariates = {"p", "oil temperature"};
+  FitOptions options{.covariates = {"p", "oil temperature"}};
   const auto middle = [&](std::size_t column) {
     const auto [least, greatest] = std::ranges::minmax(record.covariates[column].values);
     return (least + greatest) / 2;
@@ -73,17 +66,14 @@ TEST(Covariate, OfAJointFitIsOneOfAllRecords) {
   const Record first = LoopBesideTwo();
   Record second = first;
   for (double& force : second.force) force += 3.0;
-  FitOptions options;
-  options.covariates = {"p", "oil temperature"};
   const std::vector<Record> records = {first, second};
-  const FitResult fit = Fit(records, options);
+  const FitResult fit = Fit(records, {.covariates = {"p", "oil temperature"}});
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
   EXPECT_NEAR(fit.Find("covariate_p")->value, kPerBar, kNoiseFree * kLaw.slip_force);
 }
 
 TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
-  FitOptions options;
-  options.covariates = {"p"};
+  const FitOptions options{.covariates = {"p"}};
   EXPECT_THAT(RefusalOf({LoopBesideTwo(), Loop()}, options),
               HasSubstr("record 2 has no covariate 'p'"));
   Record constant = LoopBesideTwo();
@@ -99,12 +89,11 @@ TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
   record.covariates.push_back(
       {.name = "volts", .unit = "V", .values = record.covariates[0].values});
   for (double& value : record.covariates.back().values) value = 0.5 - 0.02 * value;
-  FitOptions options;
-  options.covariates = {"p", "volts"};
-  EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'p' and 'volts' are one channel"));
+  EXPECT_THAT(RefusalOf({record}, {.covariates = {"p", "volts"}}),
+              HasSubstr("'p' and 'volts' are one channel"));
   record.covariates.back().values = record.force;
-  options.covariates = {"volts"};
-  EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'volts' is the channel of the force"));
+  EXPECT_THAT(RefusalOf({record}, {.covariates = {"volts"}}),
+              HasSubstr("'volts' is the channel of the force"));
 }
 
 TEST(Covariate, HasANameThatNeedsNoQuoting) {

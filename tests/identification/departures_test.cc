@@ -11,9 +11,6 @@
 namespace mindahl::identification::departures_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 /// Above 1/2, so that the slope is continuous where slip begins.
 constexpr double kShapeExponent = 0.6;
 constexpr double kSlipForce = 40.0;
@@ -67,12 +64,8 @@ struct Contact {
   [[nodiscard]] std::vector<double> Force(const History& displacement, double at_rest,
                                           const SeriesSpring& rig = {},
                                           double asymmetry = 0.0) const {
-    std::vector<double> force(displacement.size());
-    const LoadingPath path =
-        testing::PathOf(*model, displacement,
-                        {.state = state, .unloaded_displacement = at_rest, .asymmetry = asymmetry});
-    EvaluateForce(*model, law, path, displacement, force, rig);
-    return force;
+    return Respond(*model, law, displacement,
+                   {.state = state, .unloaded_displacement = at_rest, .asymmetry = asymmetry}, rig);
   }
   [[nodiscard]] std::vector<double> Force(const History& displacement) const {
     return Force(displacement, unloaded);
@@ -468,10 +461,8 @@ TEST_P(ColumnOfDeparture, IsDerivativeOfForceByTermSize) {
       record.force.push_back(setting.sense * force);
     }
   }
-  FitOptions options;
-  options.model = contact.model;
-  options.preparation.force_sense = setting.sense;
-  Stages stages(records, options, setting.state);
+  Stages stages(records, {.model = contact.model, .preparation = {.force_sense = setting.sense}},
+                setting.state);
   ASSERT_NEAR(stages.data.length / kLength, 1, 1e-9);
   const std::vector<double> theta = TrueTheta(stages, contact);
   const DepartureColumns columns =
@@ -611,9 +602,8 @@ TEST(Departures, InsertedTurningPointsTakeNoTime) {
 }
 
 TEST(Departures, SkipsTermsThatAreFitted) {
-  FitOptions options;
-  options.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"};
-  Stages stages(Complete(), options);
+  Stages stages(Complete(),
+                {.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"}});
   const DepartureColumns columns = ColumnsOf(stages);
   for (const std::string_view code :
        {"viscous_force", "force_drift", "plateau_slope", "rig_in_series"}) {

@@ -38,9 +38,6 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
 // ---
 // Tests the findings of records, from facts made by hand, and in the result of a whole fit.
 
-using namespace loop;
-using namespace models;
-
 std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
   std::vector<std::string_view> codes;
   for (const Finding& finding : findings) codes.push_back(finding.code);

@@ -10,16 +10,12 @@
 namespace mindahl::identification::discrepancy_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 6e-6;  // [m], four times gross slip
 constexpr double kNoise = 0.002 * 40.0;
 
 Record Loop(double reach = kReach) {
-  const History displacement = Cycling(Wave::kSine, reach, 5.0, 300);
-  return testing::LoopOf(kLaw, displacement);
+  return testing::LoopOf(kLaw, Cycling(Wave::kSine, reach, 5.0, 300));
 }
 
 /// Times 1 + b·x/X.
@@ -124,18 +120,16 @@ TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
 }
 
 TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
-  FitOptions options;
-  options.bounds["slip_force"] = {1.0, 500.0};
-  const FitResult fit = FitNoisy(OfPosition(0.1), 1, options);
-  EXPECT_EQ(fit.Find("slip_force")->status, ParameterStatus::kFree);
-  const double value = fit.Find("slip_force")->value;
-  options.bounds["slip_force"] = {0.999 * value, 1.001 * value};
-  const ParameterEstimate within = *FitNoisy(OfPosition(0.1), 1, options).Find("slip_force");
-  EXPECT_GE(within.lower95.value(), 0.999 * value);
-  EXPECT_LE(within.upper95.value(), 1.001 * value);
-  options.bounds.clear();
-  options.fixed["slip_force"] = 40.0;
-  EXPECT_FALSE(FitNoisy(OfPosition(0.1), 1, options).Find("slip_force")->includes_discrepancy);
+  const auto slip_force = [](const FitOptions& options) {
+    return *FitNoisy(OfPosition(0.1), 1, options).Find("slip_force");
+  };
+  const ParameterEstimate wide = slip_force({.bounds = {{"slip_force", {1.0, 500.0}}}});
+  EXPECT_EQ(wide.status, ParameterStatus::kFree);
+  const Interval narrow{0.999 * wide.value, 1.001 * wide.value};
+  const ParameterEstimate within = slip_force({.bounds = {{"slip_force", narrow}}});
+  EXPECT_GE(within.lower95.value(), narrow.lower);
+  EXPECT_LE(within.upper95.value(), narrow.upper);
+  EXPECT_FALSE(slip_force({.fixed = {{"slip_force", 40.0}}}).includes_discrepancy);
 }
 
 }  // namespace

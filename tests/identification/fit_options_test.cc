@@ -7,75 +7,46 @@
 namespace mindahl::identification::fit_options_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
-  struct Case {
-    std::function<void(FitOptions&)> spoil;
-    const char* message;
-  };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Case> cases = {
-      {[](FitOptions& o) { o.model = nullptr; }, "there is no model to be fitted"},
-      {[](FitOptions& o) { o.preparation.force_sense = 2; },
-       "force sign [-] = 2 is invalid: must be +1 or -1"},
-      {[](FitOptions& o) { o.force_noise = 0; },
-       "force_noise [N] = 0 is invalid: must be finite and > 0"},
-      {[](FitOptions& o) { o.preparation.reversal_gate = -1; },
+  const std::pair<FitOptions, const char*> cases[] = {
+      {{.model = nullptr}, "there is no model to be fitted"},
+      {{.preparation = {.force_sense = 2}}, "force sign [-] = 2 is invalid: must be +1 or -1"},
+      {{.force_noise = 0}, "force_noise [N] = 0 is invalid: must be finite and > 0"},
+      {{.preparation = {.reversal_gate = -1}},
        "reversal gate [m] = -1 is invalid: must be finite and >= 0"},
-      {[](FitOptions& o) { o.max_iterations = 0; },
-       "maximum iterations [-] = 0 is invalid: must be >= 1"},
-      {[](FitOptions& o) { o.fixed["stiffness"] = 1; },
+
+      {{.preparation = {.displacement_noise = -1e-9}},
+       "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0"},
+      {{.max_iterations = 0}, "maximum iterations [-] = 0 is invalid: must be >= 1"},
+      {{.fixed = {{"stiffness", 1}}},
        "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
        "drag_exponent, plateau_curvature, ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
-      {[](FitOptions& o) { o.fixed["sigma"] = 0; },
-       "sigma [N/m] = 0 is invalid: must be finite and > 0"},
-      {[](FitOptions& o) { o.fixed["alpha"] = -0.1; },
-       "alpha [-] = -0.1 is invalid: must be finite and >= 0"},
-      {[](FitOptions& o) { o.start["slip_force"] = -3; },
-       "slip_force [N] = -3 is invalid: must be finite and > 0"},
-      {[](FitOptions& o) { o.fixed["force_offset"] = kNan; },
-       "force_offset [N] = nan is invalid: must be finite"},
-      {[](FitOptions& o) {
-         o.bounds["alpha"] = {1, 0.5};
-       },
+      {{.fixed = {{"sigma", 0}}}, "sigma [N/m] = 0 is invalid: must be finite and > 0"},
+      {{.fixed = {{"alpha", -0.1}}}, "alpha [-] = -0.1 is invalid: must be finite and >= 0"},
+      {{.start = {{"slip_force", -3}}}, "slip_force [N] = -3 is invalid: must be finite and > 0"},
+      {{.fixed = {{"force_offset", kNan}}}, "force_offset [N] = nan is invalid: must be finite"},
+      {{.bounds = {{"alpha", {1, 0.5}}}},
        "bounds 1:0.5 of alpha are invalid: the first must be smaller"},
-      {[](FitOptions& o) {
-         o.bounds["sigma"] = {-1, 5};
-       },
-       "sigma [N/m] = -1 is invalid: must be finite and > 0"},
-      {[](FitOptions& o) {
-         o.model = &Model("mindlin");
-         o.fixed["alpha"] = 0.5;
-       },
+      {{.bounds = {{"sigma", {-1, 5}}}}, "sigma [N/m] = -1 is invalid: must be finite and > 0"},
+      {{.model = &Model("mindlin"), .fixed = {{"alpha", 0.5}}},
        "alpha cannot be fixed at 0.5: the model 'mindlin' prescribes alpha = 0.3333333333333333; "
        "use mindlin-dahl"},
-      {[](FitOptions& o) {
-         o.initial_state = InitialState::kSteady;
-         o.fixed["displacement_offset"] = 0;
-       },
+      {{.initial_state = InitialState::kSteady, .fixed = {{"displacement_offset", 0}}},
        "displacement_offset cannot be fixed: that of a steady contact is the centre of its loop; "
        "fix it for a virgin contact"},
-      {[](FitOptions& o) {
-         o.bounds["alpha"] = {0.1, 0.5};
-         o.start["alpha"] = 0.75;
-       },
+      {{.start = {{"alpha", 0.75}}, .bounds = {{"alpha", {0.1, 0.5}}}},
        "start of alpha [-] = 0.75 is invalid: must lie within its bounds 0.1 … 0.5"},
   };
-  for (const Case& c : cases) {
-    FitOptions options;
-    c.spoil(options);
-    EXPECT_EQ(RefusalOf({Loop()}, options), c.message);
-  }
-  FitOptions of_a_record;
-  of_a_record.start["force_offset_2"] = 1;
+  for (const auto& [options, message] : cases) EXPECT_EQ(RefusalOf({Loop()}, options), message);
+  EXPECT_THAT(RefusalOf({Loop()}, {.preparation = {.held_out = {std::vector{true, false}}}}),
+              HasSubstr("held-out mask"));
   EXPECT_THAT(
-      RefusalOf({Loop()}, of_a_record),
+      RefusalOf({Loop()}, {.start = {{"force_offset_2", 1}}}),
       StartsWith("parameter 'force_offset_2' is unknown: did you mean 'force_offset'? must be "
                  "one of sigma, "));
 }
@@ -90,9 +61,8 @@ TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
             "2 samples are too few for 3 free parameters: record more or fix some");
   EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0}, {0, 1, -1})}, {}),
             "3 samples are too few for 5 free parameters: record more or fix some");
-  FitOptions skipping;
-  skipping.preparation.cycles = {3, 9};
-  EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0, 1, 0, 0.5}, {0, 1, -1, 1, -1, 0})}, skipping),
+  EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0, 1, 0, 0.5}, {0, 1, -1, 1, -1, 0})},
+                      {.preparation = {.cycles = CountRange{3, 9}}}),
             "2 samples are too few for 5 free parameters; of 6 that were read 4 are left out, 0 "
             "of them glitches: record more or fix some");
   EXPECT_THAT(RefusalOf({MakeRecord({0, 1, 0}, {0, 1})}, {}), HasSubstr("force"));
@@ -119,9 +89,8 @@ TEST(FitOptions, NumbersWhoseSquaresOverflowOrVanishAreRefused) {
 }
 
 TEST(FitOptions, FixedParametersKeepTheirValueAndFreeTheRest) {
-  FitOptions options;
-  options.fixed = {{"alpha", kLaw.shape_exponent}, {"force_offset", 0.0}};
-  const FitResult fit = FitOne(Loop(), options);
+  const FitResult fit =
+      FitOne(Loop(), {.fixed = {{"alpha", kLaw.shape_exponent}, {"force_offset", 0.0}}});
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
   const ParameterEstimate& alpha = *fit.Find("alpha");
   EXPECT_EQ(alpha.value, kLaw.shape_exponent);
@@ -136,14 +105,12 @@ TEST(FitOptions, FixedParametersKeepTheirValueAndFreeTheRest) {
 }
 
 TEST(FitOptions, FixingEveryParameterEvaluatesTheModelThere) {
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.fixed = {{"sigma", kLaw.tangential_stiffness},
-                   {"alpha", kLaw.shape_exponent},
-                   {"slip_force", kLaw.slip_force},
-                   {"force_offset", 7.0},
-                   {"displacement_offset", 0.0}};
-  const FitResult fit = FitOne(Loop(), options);
+  const FitResult fit = FitOne(Loop(), {.initial_state = InitialState::kVirgin,
+                                        .fixed = {{"sigma", kLaw.tangential_stiffness},
+                                                  {"alpha", kLaw.shape_exponent},
+                                                  {"slip_force", kLaw.slip_force},
+                                                  {"force_offset", 7.0},
+                                                  {"displacement_offset", 0.0}}});
   EXPECT_TRUE(fit.converged);
   // The record has no offset: every residual is the 7 N.
   EXPECT_NEAR(fit.residuals.rms, 7.0, 1e-9);
@@ -151,30 +118,25 @@ TEST(FitOptions, FixingEveryParameterEvaluatesTheModelThere) {
 }
 
 TEST(FitOptions, FixedUnloadedDisplacementMeansAVirginContact) {
-  FitOptions options;
-  options.fixed = {{"displacement_offset", 0.0}};
-  const FitResult fit = FitOne(Loop(), options);
+  const FitResult fit = FitOne(Loop(), {.fixed = {{"displacement_offset", 0.0}}});
   EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
   EXPECT_EQ(fit.Find("displacement_offset")->value, 0.0);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
 }
 
 TEST(FitOptions, BoundThatExcludesTheTruthHoldsAndIsReported) {
-  FitOptions options;
-  options.bounds["alpha"] = {0.5, 2.0};
   const double rounding = 1e-8;  // the bound is a scaled number
-  const ParameterEstimate lower = *FitOne(Loop(), options).Find("alpha");
+  const auto alpha_within = [](Interval bounds) {
+    return *FitOne(Loop(), {.bounds = {{"alpha", bounds}}}).Find("alpha");
+  };
+  const ParameterEstimate lower = alpha_within({0.5, 2.0});
   EXPECT_EQ(lower.status, ParameterStatus::kAtLowerBound);
   EXPECT_NEAR(lower.value, 0.5, rounding);
   EXPECT_FALSE(lower.standard_error);
-
-  options.bounds["alpha"] = {0.0, 0.3};
-  const ParameterEstimate upper = *FitOne(Loop(), options).Find("alpha");
+  const ParameterEstimate upper = alpha_within({0.0, 0.3});
   EXPECT_EQ(upper.status, ParameterStatus::kAtUpperBound);
   EXPECT_NEAR(upper.value, 0.3, rounding);
-
-  options.bounds["alpha"] = {0.0, 0.5};
-  EXPECT_EQ(FitOne(Loop(), options).Find("alpha")->status, ParameterStatus::kFree);
+  EXPECT_EQ(alpha_within({0.0, 0.5}).status, ParameterStatus::kFree);
 }
 
 TEST(FitOptions, NarrowBoundsAboutTheTruthKeepTheFit) {
@@ -191,9 +153,7 @@ TEST(FitOptions, NarrowBoundsAboutTheTruthKeepTheFit) {
 TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
   // The fit turns an opposite force round: its lower bound is the file's upper one.
   const Record opposite = testing::Scaled(Loop(), 1, -1);
-  FitOptions options;
-  options.bounds["force_offset"] = {3.0, 9.0};
-  const FitResult fit = FitOne(opposite, options);
+  const FitResult fit = FitOne(opposite, {.bounds = {{"force_offset", {3.0, 9.0}}}});
   EXPECT_EQ(fit.force_sense, -1);
   const ParameterEstimate& offset = *fit.Find("force_offset");
   EXPECT_EQ(offset.status, ParameterStatus::kAtLowerBound);
@@ -201,18 +161,14 @@ TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
 }
 
 TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
-  FitOptions options;
-  options.max_iterations = 1;
-  const FitResult fit = FitOne(Loop(), options);
+  const FitResult fit = FitOne(Loop(), {.max_iterations = 1});
   EXPECT_FALSE(fit.converged);
   EXPECT_THAT(fit.solver.message, HasSubstr("iterations"));
   EXPECT_FALSE(fit.parameters.empty());
 }
 
 TEST(FitOptions, WrongForceSignFailsWithoutCrash) {
-  FitOptions options;
-  options.preparation.force_sense = -1;
-  const FitResult fit = FitOne(Loop(), options);
+  const FitResult fit = FitOne(Loop(), {.preparation = {.force_sense = -1}});
   EXPECT_FALSE(fit.converged);
   EXPECT_TRUE(fit.parameters.empty());
   EXPECT_THAT(fit.solver.message, HasSubstr("no loop"));

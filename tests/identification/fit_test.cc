@@ -8,9 +8,6 @@
 namespace mindahl::identification::fit_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 TEST(Fit, DistinguishesVirginFromSteadyRecordWithAndWithoutNoise) {
   Generator generator(1);
   for (const double noise : {0.0, 0.02}) {
@@ -27,9 +24,8 @@ TEST(Fit, DistinguishesVirginFromSteadyRecordWithAndWithoutNoise) {
 TEST(Fit, DeterminesInitialStateEvenIfLawIsWrong) {
   // With α held off the truth both states leave autocorrelated residuals, i.e. few effective
   // samples, but the virgin one is ten times the nearer.
-  FitOptions options;
-  options.fixed["alpha"] = kLaw.shape_exponent + 0.05;
-  EXPECT_EQ(FitOne(Loop(), options).initial_state, InitialState::kVirgin);
+  EXPECT_EQ(FitOne(Loop(), {.fixed = {{"alpha", kLaw.shape_exponent + 0.05}}}).initial_state,
+            InitialState::kVirgin);
 }
 
 TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
@@ -40,8 +36,8 @@ TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
   constexpr int kLoops = 100;
   const History displacement = Cycling(Wave::kSine, 0.6 * kReach, 3.0, 120);
   const Record steady = From(LoopOf(kLaw, displacement), 30);
-  FitOptions options;
-  options.fixed["force_offset"] = 0.0;  // else the place where it was unloaded does the same
+  // The offset is known: else the place where it was unloaded does the same.
+  const FitOptions options{.fixed = {{"force_offset", 0.0}}};
   int virgin = 0;
   for (int seed = 1; seed <= kLoops; ++seed) {
     Generator generator(static_cast<std::uint64_t>(seed));
@@ -57,11 +53,9 @@ TEST(Fit, AutocorrelatedNoiseDoesNotMakeASteadyLoopVirgin) {
 }
 
 TEST(Fit, StateThatIsGivenIsKept) {
-  FitOptions options;
-  options.initial_state = InitialState::kSteady;
-  EXPECT_EQ(FitOne(Loop(), options).initial_state, InitialState::kSteady);
-  options.initial_state = InitialState::kVirgin;
-  EXPECT_EQ(FitOne(From(Loop(3.0), 95), options).initial_state, InitialState::kVirgin);
+  EXPECT_EQ(FitOne(Loop(), {.initial_state = InitialState::kSteady}).initial_state,
+            InitialState::kSteady);
+  EXPECT_EQ(FitOne(From(Loop(3.0), 95), Virgin()).initial_state, InitialState::kVirgin);
 }
 
 TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
@@ -83,8 +77,7 @@ TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.force[i] += kDriftPerSecond * (record.time[i] - record.time[0]);
   }
-  FitOptions options;
-  options.terms.emplace_back("force_drift");
+  const FitOptions options{.terms = {"force_drift"}};
   const FitResult timed = FitOne(record, options);
   EXPECT_TRUE(Recovers(timed, kLaw, kNoiseFree));
   EXPECT_NEAR(timed.Find("force_drift")->value, kDriftPerSecond, 1e-7);
@@ -123,16 +116,13 @@ TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   EXPECT_EQ(fit.records[0].gate.gate, 0.0);
   EXPECT_EQ(fit.records[0].measures.cycles, 2u);
 
-  FitOptions options;
-  options.preparation.reversal_gate = 3 * kReach;  // nothing is a reversal any more
-  EXPECT_TRUE(FitOne(Loop(), options).records[0].reversals.empty());
+  const FitResult gated = FitOne(Loop(), {.preparation = {.reversal_gate = 3 * kReach}});
+  EXPECT_TRUE(gated.records[0].reversals.empty()) << "nothing is a reversal any more";
 }
 
 TEST(Fit, WidestRecordIsTheOneOfLargestAmplitude) {
-  const Record wide = Loop();
   const History narrow = Cycling(Wave::kSine, kReach / 2, 2.0, 120);
-  const std::vector<Record> records = {LoopOf(kLaw, narrow), wide};
-  const FitResult fit = Fit(records, {});
+  const FitResult fit = Fit(std::vector{LoopOf(kLaw, narrow), Loop()}, {});
   EXPECT_DOUBLE_EQ(fit.WidestRecord().measures.amplitude, kReach);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
 }
@@ -143,9 +133,7 @@ TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
   std::vector<double> force;
   for (std::size_t i = 0; i < sine.size(); ++i)
     force.push_back(i % 40 <= 10 || i % 40 > 30 ? 1 : -1);
-  FitOptions options;
-  options.model = &Model("jenkins");
-  const FitResult fit = FitOne(MakeRecord(sine, force), options);
+  const FitResult fit = FitOne(MakeRecord(sine, force), {.model = &Model("jenkins")});
   const Finding* finding = fit.FindFinding("undetermined_parameter");
   ASSERT_NE(finding, nullptr);
   EXPECT_THAT(finding->parameters, ::testing::ElementsAre("sigma"));

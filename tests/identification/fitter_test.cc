@@ -8,9 +8,6 @@
 namespace mindahl::identification::fitter_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 /// Every number and word that a result states, one after the other; what is not stated is "none".
 std::vector<std::string> Statements(const FitResult& fit) {
   std::vector<std::string> all = {fit.solver.message};
@@ -92,8 +89,7 @@ TEST(Fitter, GivesForAnyRecordWhatAFreshOneGives) {
 
 TEST(Fitter, LeavesNothingOfAFitBeforeOneThatFails) {
   // Forced to the wrong sense, no start is found.
-  FitOptions options;
-  options.preparation.force_sense = 1;
+  const FitOptions options{.preparation = {.force_sense = 1}};
   Fitter used(options);
   Fitter fresh(options);
   const Record good = Loop();
@@ -148,11 +144,7 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
   }
 }
 
-FitOptions OfSteadyCycles() {
-  FitOptions options;
-  options.initial_state = InitialState::kSteady;
-  return options;
-}
+FitOptions OfSteadyCycles() { return {.initial_state = InitialState::kSteady}; }
 
 /// One steady cycle, from a turning point to the next but one.
 Record NoisyCycle(std::uint64_t seed, double scale = 1.0) {

@@ -8,11 +8,6 @@
 namespace mindahl::identification::imposed_force_fit_test {
 namespace {
 
-using loop::Channel;
-using loop::Record;
-using models::BranchLaw;
-using models::InitialState;
-
 constexpr double kSlipForce = 60.0;  // [N]
 constexpr int kSamplesPerCycle = 120;
 
@@ -26,10 +21,8 @@ Record ForcedLoop(const BranchLaw& law, double share = 0.95,
 }
 
 FitOptions OfDisplacement(std::string_view model = "mindlin-dahl") {
-  FitOptions options;
-  options.model = models::FindFrictionModel(model);
-  options.preparation.excitation = Channel::kForce;
-  return options;
+  return {.model = models::FindFrictionModel(model),
+          .preparation = {.excitation = Channel::kForce}};
 }
 
 double AmplitudeOf(const Record& record) {
@@ -178,9 +171,7 @@ TEST(ImposedForceFit, RefusesOptionsOfForceFits) {
               HasSubstr("imposed and taken as exact"));
   EXPECT_THAT(refusal([](FitOptions& options) { options.covariates = {"pressure"}; }),
               HasSubstr("a covariate has no place"));
-  FitOptions of_force;
-  of_force.terms = {"displacement_drift"};
-  EXPECT_THAT(MessageOf([&] { FitOne(loop, of_force); }),
+  EXPECT_THAT(MessageOf([&] { FitOne(loop, {.terms = {"displacement_drift"}}); }),
               HasSubstr("displacement_drift has no place in a fit of the force"));
 }
 

@@ -12,11 +12,6 @@
 namespace mindahl::identification::joint_friction_test {
 namespace {
 
-using loop::Record;
-using loop::RecordView;
-using models::BranchLaw;
-using models::InitialState;
-
 constexpr double kTwoPi = 6.283185307179586;
 constexpr int kSamples = 200;  // a cycle
 // Samples are rounded to 1e-16; α, A and the offsets are told apart with a condition below 1e4.
@@ -56,10 +51,7 @@ Record RecordOf(const Drive& drive) {
 }
 
 FitOptions Options(std::vector<std::string> terms = {"asymmetry"}) {
-  FitOptions options;
-  options.model = models::FindFrictionModel("dahl");
-  options.terms = std::move(terms);
-  return options;
+  return {.model = models::FindFrictionModel("dahl"), .terms = std::move(terms)};
 }
 
 TEST(JointFriction, IsRecoveredUnderATorqueThatChangesItsSign) {

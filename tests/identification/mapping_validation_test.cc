@@ -6,10 +6,7 @@ namespace mindahl::identification::mapping_validation_test {
 namespace {
 
 TEST(MappingValidation, LoopsOfEitherLawReturnTheContactAtEveryAmplitude) {
-  ValidationOptions options;
-  options.cases = 28;
-  options.seed = 77;
-  options.noise_levels = {0.0, 0.01};
+  const ValidationOptions options{.cases = 28, .seed = 77, .noise_levels = {0.0, 0.01}};
   const ValidationReport report = ValidateMapping(options);
   EXPECT_EQ(report.fits, 2 * options.cases * options.noise_levels.size()) << "by either law";
   EXPECT_EQ(report.failures, 0u) << ::testing::PrintToString(report.failed_cases);
@@ -39,12 +36,8 @@ TEST(MappingValidation, LoopsOfEitherLawReturnTheContactAtEveryAmplitude) {
 }
 
 TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {
-  ValidationOptions options;
-  options.cases = 2;
-  options.noise_levels = {0.01};
-  const auto worst = [&](std::uint64_t seed) {
-    options.seed = seed;
-    return ValidateMapping(options).rows[0].errors[0];
+  const auto worst = [](std::uint64_t seed) {
+    return ValidateMapping({.cases = 2, .seed = seed, .noise_levels = {0.01}}).rows[0].errors[0];
   };
   EXPECT_EQ(worst(1), worst(1));
   EXPECT_NE(worst(1), worst(2));

@@ -8,11 +8,6 @@
 namespace mindahl::identification::model_comparison_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
-using testing::PathOf;
-
 constexpr BranchLaw kMindlin{5e7, 1.0 / 3.0, 60.0};  // slips at 1.8e-6 m
 constexpr double kReach = 2.2e-6;
 constexpr double kQuiet = 0.005;  // noise over the slip force
@@ -30,12 +25,10 @@ struct Loops {
 
 Record Measure(const Loops& loops, std::uint64_t seed) {
   const History displacement = Cycling(Wave::kSine, loops.reach, loops.cycles, 60);
-  const FrictionModel& model = Model(loops.model);
-  std::vector<double> force(displacement.size());
-  EvaluateForce(model, loops.law, PathOf(model, displacement), displacement, force, loops.rig);
   Generator generator(seed);
-  return WithForceNoise(MakeRecord(displacement, force), loops.noise * loops.law.slip_force,
-                        generator);
+  return WithForceNoise(
+      MakeRecord(displacement, Respond(Model(loops.model), loops.law, displacement, {}, loops.rig)),
+      loops.noise * loops.law.slip_force, generator);
 }
 
 std::vector<ModelScore> Compare(const std::vector<Record>& records, FitOptions options = {}) {
@@ -102,9 +95,8 @@ TEST(CompareModels, CriterionFollowsItsFormula) {
   const Record record = Measure({}, 1);
   const std::vector<ModelScore> scores = Compare({record});
   const ModelScore& reference = ScoreOf(scores, "mindlin", false);
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.model = std::ranges::min_element(scores, {}, &ModelScore::rms)->model;
+  FitOptions options{.model = std::ranges::min_element(scores, {}, &ModelScore::rms)->model,
+                     .initial_state = InitialState::kVirgin};
   if (std::ranges::min_element(scores, {}, &ModelScore::rms)->rig) {
     options.terms = {"rig_stiffness"};
   }
@@ -153,11 +145,8 @@ TEST(CompareModels, WithOneClosedCycleNothingIsHeldOut) {
 
 TEST(CompareModels, KnownPropertiesLimitTheCandidates) {
   const Record record = Measure({.cycles = 1.5}, 12);
-  FitOptions options;
-  options.fixed["rig_stiffness"] = 1e9;
-  EXPECT_EQ(Compare({record}, options).size(), 4u);
-  options.fixed = {{"alpha", 0.5}};
-  const std::vector<ModelScore> scores = Compare({record}, options);
+  EXPECT_EQ(Compare({record}, {.fixed = {{"rig_stiffness", 1e9}}}).size(), 4u);
+  const std::vector<ModelScore> scores = Compare({record}, {.fixed = {{"alpha", 0.5}}});
   ASSERT_EQ(scores.size(), 4u);
   for (const ModelScore& score : scores) EXPECT_FALSE(score.model->shape_exponent);
 }

@@ -7,9 +7,6 @@
 namespace mindahl::identification::model_terms_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kRig = 6e7;  // [N/m]
 
@@ -18,23 +15,18 @@ constexpr double kRig = 6e7;  // [N/m]
 constexpr double kWithRig = 1e-6;
 
 TEST(ModelTerms, KnownRigStiffnessLeavesTheContactsOwnParameters) {
-  FitOptions options;
-  options.fixed["rig_stiffness"] = kRig;
-  const FitResult fit = FitOne(SprungLoop(kMindlin, kRig), options);
+  const FitResult fit = FitOne(SprungLoop(kMindlin, kRig), {.fixed = {{"rig_stiffness", kRig}}});
   EXPECT_TRUE(Recovers(fit, kMindlin, kWithRig));
   EXPECT_DOUBLE_EQ(fit.rig.stiffness, kRig);
   EXPECT_EQ(fit.Find("rig_stiffness")->status, ParameterStatus::kFixed);
 }
 
 TEST(ModelTerms, RigStiffnessIsRecoveredWithAGivenShapeAndWithAFreeOne) {
-  FitOptions options;
-  options.terms.emplace_back("rig_stiffness");
-  for (const bool held : {true, false}) {
-    if (held) options.fixed["alpha"] = 1.0 / 3;
-    if (!held) options.fixed.clear();
-    const FitResult fit = FitOne(SprungLoop(kMindlin, kRig), options);
-    EXPECT_TRUE(Recovers(fit, kMindlin, kWithRig)) << held;
-    EXPECT_NEAR(fit.rig.stiffness, kRig, kWithRig * kRig) << held;
+  for (const char* model : {"mindlin", "mindlin-dahl"}) {
+    const FitResult fit =
+        FitOne(SprungLoop(kMindlin, kRig), {.model = &Model(model), .terms = {"rig_stiffness"}});
+    EXPECT_TRUE(Recovers(fit, kMindlin, kWithRig)) << model;
+    EXPECT_NEAR(fit.rig.stiffness, kRig, kWithRig * kRig) << model;
     EXPECT_EQ(fit.Find("rig_stiffness")->value, fit.rig.stiffness);
   }
 }
@@ -42,9 +34,8 @@ TEST(ModelTerms, RigStiffnessIsRecoveredWithAGivenShapeAndWithAFreeOne) {
 TEST(ModelTerms, JenkinsElementInARigIsAJenkinsElementOfBothInSeries) {
   constexpr BranchLaw kJenkins{4e7, 0.0, 40.0};
   constexpr BranchLaw kTogether{1 / (1 / 4e7 + 1 / kRig), 0.0, 40.0};
-  FitOptions options;
-  options.model = &Model("jenkins");
-  EXPECT_TRUE(Recovers(FitOne(SprungLoop(kJenkins, kRig), options), kTogether, kNoiseFree));
+  EXPECT_TRUE(Recovers(FitOne(SprungLoop(kJenkins, kRig), {.model = &Model("jenkins")}), kTogether,
+                       kNoiseFree));
 }
 
 TEST(ModelTerms, ViscousForceIsRecovered) {
@@ -59,8 +50,7 @@ TEST(ModelTerms, ViscousForceIsRecovered) {
     record.force[i] += viscosity * fastest * std::cos(2 * kPi * (record.time[i] - 30) / kPeriod);
   }
   constexpr double kDifferences = 2e-3;
-  FitOptions options;
-  options.terms.emplace_back("viscous");
+  const FitOptions options{.terms = {"viscous"}};
   const FitResult fit = FitOne(record, options);
   EXPECT_TRUE(Recovers(fit, kLaw, kDifferences));
   EXPECT_NEAR(fit.Find("viscous")->value / viscosity, 1, 2e-2);
@@ -68,36 +58,13 @@ TEST(ModelTerms, ViscousForceIsRecovered) {
   EXPECT_FALSE(Recovers(FitOne(record), kLaw, 0.02)) << "it matters";
 
   // Known, it is taken off; of two records of unequal length it is one and the same.
-  options = {};
-  options.fixed["viscous"] = viscosity;
-  EXPECT_TRUE(Recovers(FitOne(record, options), kLaw, kDifferences));
-  options.fixed.clear();
-  options.terms.emplace_back("viscous");
-  Record half = record;
-  for (std::vector<double>* column : {&half.displacement, &half.force, &half.time}) {
-    column->resize(record.size() / 2);
-  }
-  const FitResult joint = Fit(std::vector<Record>{record, half}, options);
+  EXPECT_TRUE(Recovers(FitOne(record, {.fixed = {{"viscous", viscosity}}}), kLaw, kDifferences));
+  const FitResult joint = Fit(std::vector{record, From(record, record.size() / 2)}, options);
   EXPECT_TRUE(Recovers(joint, kLaw, kDifferences));
   EXPECT_NEAR(joint.Find("viscous")->value / viscosity, 1, 2e-2);
 
   record.time.clear();
   EXPECT_EQ(RefusalOf({record}, options), "viscous needs the time of every sample in every record");
-}
-
-TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
-  FitOptions options;
-  options.preparation.displacement_noise = -1e-9;
-  EXPECT_EQ(RefusalOf({Loop()}, options),
-            "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0");
-  options = {};
-  options.preparation.load_window = {90.0, 110.0};
-  EXPECT_EQ(RefusalOf({Loop()}, options),
-            "--select load=LO:HI needs a normal load in every record: name its column with "
-            "--normal-load-column");
-  options = {};
-  options.preparation.held_out = {{true, false}};
-  EXPECT_THAT(RefusalOf({Loop()}, options), HasSubstr("held-out mask"));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <Eigen/Dense>
 #include <deque>
 
-#include "core/probability.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/stages.h"
@@ -11,9 +10,6 @@
 // The noise of a loop as an autoregressive process, and the standard errors that follow from it.
 namespace mindahl::identification::noise_model_test {
 namespace {
-
-using namespace loop;
-using namespace models;
 
 constexpr std::size_t kSamples = 5000;
 
@@ -140,8 +136,7 @@ Tally TallyOf(const std::vector<double>& coefficients, int loops) {
   const Record clean = testing::LoopOf(kLaw, displacement);
   const double first = coefficients.empty() ? 0.0 : coefficients[0];
   const double unit = std::sqrt(1 - first * first);  // of the process
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
+  const FitOptions options{.initial_state = InitialState::kVirgin};
   Generator generator(20250301);
   Tally tally;
   for (int loop = 0; loop < loops; ++loop) {
@@ -230,24 +225,6 @@ TEST(Noise, DegreesOfFreedomAreEffectiveSamplesLessParameters) {
   noise.repeating = 1000.0;
   EXPECT_EQ(noise.effective_samples(), 1.0);
   EXPECT_EQ(noise.degrees_of_freedom(5), 1.0);
-}
-
-TEST(Distributions, AreThoseOfClosedForms) {
-  // F(1, ν) is Student's t squared. P(|t| > x) = 1 − 2/π·arctan x at ν = 1, 1 − x/√(2 + x²) at 2.
-  for (const double f : {0.1, 1.0, 3.84, 50.0}) {
-    EXPECT_NEAR(PValueOfF(f, 1, 1.0), 1 - 2 / std::acos(-1.0) * std::atan(std::sqrt(f)), kRounding);
-    EXPECT_NEAR(PValueOfF(f, 1, 2.0), 1 - std::sqrt(f / (2 + f)), kRounding);
-  }
-  EXPECT_EQ(PValueOfF(0.0, 1, 7.0), 1.0);
-  EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11);
-  EXPECT_NEAR(StudentQuantile(2.0, 0.95), 0.95 * std::sqrt(2 / (1 - 0.95 * 0.95)), 1e-11);
-  EXPECT_NEAR(StudentQuantile(1.0, 0.95), std::tan(0.475 * std::acos(-1.0)), 1e-11)
-      << "asked for again after another";
-  // Half a normal law within q: P(|z| < q).
-  EXPECT_NEAR(std::erf(kNormalQuantile95 / std::sqrt(2.0)), 0.95, kRounding);
-  for (const double confidence : {0.01, 0.5, 0.999999}) {
-    EXPECT_NEAR(std::erf(NormalQuantile(confidence) / std::sqrt(2.0)), confidence, kRounding);
-  }
 }
 
 }  // namespace

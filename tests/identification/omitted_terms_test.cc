@@ -14,9 +14,6 @@
 namespace mindahl::identification::omitted_terms_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip
 

@@ -7,26 +7,14 @@
 namespace mindahl::identification::plan_test {
 namespace {
 
-using loop::Record;
-using models::BranchLaw;
-using models::InitialState;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kSlip = 1.5e-6;  // δc = Tc/(σ(1 − α))
 constexpr double kForceNoise = 0.4;
 
-Expectation Quiet() {
-  Expectation expected;
-  expected.law = kLaw;
-  expected.force_noise = kForceNoise;
-  return expected;
-}
+Expectation Quiet() { return {.law = kLaw, .force_noise = kForceNoise}; }
 
 Protocol ProtocolOf(double lambda, InitialState state = InitialState::kVirgin) {
-  Protocol protocol;
-  protocol.amplitude = lambda * kSlip;
-  protocol.initial_state = state;
-  return protocol;
+  return {.amplitude = lambda * kSlip, .initial_state = state};
 }
 
 double ErrorOf(const ExpectedFit& fit, std::string_view name) {
@@ -41,23 +29,19 @@ using Deviations = std::array<double, 3>;  // of σ, α, Tc
 Deviations Scatter(const Expectation& expected, const Protocol& protocol, int loops) {
   const History displacement = Cycling(Wave::kSine, protocol.amplitude, protocol.cycles,
                                        static_cast<int>(protocol.samples_per_cycle));
-  const models::FrictionModel& model = Model("mindlin-dahl");
-  std::vector<double> force(displacement.size());
-  models::EvaluateForce(model, expected.law,
-                        PathOf(model, displacement, {.state = protocol.initial_state}),
-                        displacement, force, expected.rig);
-  FitOptions options;
-  options.initial_state = protocol.initial_state;
-  options.preparation.displacement_noise = expected.displacement_noise;
-  options.force_noise = expected.force_noise;
+  const Record clean =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), expected.law, displacement,
+                                       {.state = protocol.initial_state}, expected.rig));
+  FitOptions options{.initial_state = protocol.initial_state,
+                     .preparation = {.displacement_noise = expected.displacement_noise},
+                     .force_noise = expected.force_noise};
   if (std::isfinite(expected.rig.stiffness))
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   Generator generator(7);
   Deviations sums{};
   Deviations squares{};
   for (int k = 0; k < loops; ++k) {
-    Record record =
-        WithForceNoise(MakeRecord(displacement, force), expected.force_noise, generator);
+    Record record = WithForceNoise(clean, expected.force_noise, generator);
     for (double& x : record.displacement) x += expected.displacement_noise * Normal(generator);
     const FitResult fit = Fit({&record, 1}, options, Depth::kEstimate);
     const std::array values = {fit.law.tangential_stiffness, fit.law.shape_exponent,
@@ -122,10 +106,8 @@ TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
   Expectation expected = Quiet();
   expected.rig.stiffness = 8e7;
   const Protocol protocol = ProtocolOf(5.0);
-  FitOptions with_rig;
-  with_rig.terms = {"rig_stiffness"};
   const ExpectedFit known = ExpectFit(expected, protocol);
-  const ExpectedFit fitted = ExpectFit(expected, protocol, with_rig);
+  const ExpectedFit fitted = ExpectFit(expected, protocol, {.terms = {"rig_stiffness"}});
   EXPECT_EQ(known.Find("rig_stiffness")->status, ParameterStatus::kFixed);
   EXPECT_GT(ErrorOf(fitted, "rig_stiffness"), 0);
   EXPECT_GT(ErrorOf(fitted, "sigma"), 3 * ErrorOf(known, "sigma"));
@@ -160,12 +142,9 @@ TEST(Plan, RefusesWhatMeansNothing) {
   expected.force_noise = 0.0;
   EXPECT_THROW(ExpectFit(expected, ProtocolOf(1.0)), InvalidArgument);
   EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(0.0)), InvalidArgument);
-  FitOptions dahl;
-  dahl.model = models::FindFrictionModel("dahl");
-  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), dahl), InvalidArgument);
-  FitOptions late;
-  late.terms = {"lag"};
-  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), late), InvalidArgument);
+  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), {.model = models::FindFrictionModel("dahl")}),
+               InvalidArgument);
+  EXPECT_THROW(ExpectFit(Quiet(), ProtocolOf(1.0), {.terms = {"lag"}}), InvalidArgument);
   const ExpectedFit fit = ExpectFit(Quiet(), ProtocolOf(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
@@ -177,8 +156,7 @@ TEST(Plan, RefusesEveryTermButThoseThatItCanPlanFor) {
     const std::string name(term.name);
     const bool is_planned = name == "rig_stiffness" || name == "plateau_slope" ||
                             name == "viscous" || name == "force_drift";
-    FitOptions options;
-    options.terms = {name};
+    const FitOptions options{.terms = {name}};
     Expectation expected = Quiet();
     expected.rig.stiffness = 8e7;
     if (is_planned) {

@@ -6,9 +6,6 @@
 namespace mindahl::identification::prior_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr double kNoise =
     0.002;  // of Tc: steps of a standard error are small, and cost is a parabola
 
@@ -21,12 +18,9 @@ Record TimedLoop(double reach = 1.5, double noise = kNoise) {
 }
 
 FitOptions Options() {
-  FitOptions options;
-  options.initial_state = InitialState::kVirgin;
-  options.preparation.force_sense = 1;
-  options.preparation.displacement_noise = 0.0;
-  options.force_noise = kNoise * kLaw.slip_force;
-  return options;
+  return {.initial_state = InitialState::kVirgin,
+          .preparation = {.force_sense = 1, .displacement_noise = 0.0},
+          .force_noise = kNoise * kLaw.slip_force};
 }
 
 /// Value and variance of what a normal law and a reading of a parameter say together.

@@ -7,9 +7,6 @@
 namespace mindahl::identification::profile_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]
 
@@ -36,9 +33,8 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const Ends ends = Profile(estimates, kSlipForce, stages.options, stages.solver);
     ASSERT_TRUE(ends.lower && ends.upper);
     for (const double end : {*ends.lower, *ends.upper}) {
-      FitOptions held;
-      held.fixed["slip_force"] = end;
-      const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
+      const double cost = Stages(record, {.fixed = {{"slip_force", end}}}).Solve().sum_of_squares -
+                          best.sum_of_squares;
       const double critical = estimates.quantile() * estimates.quantile();
       EXPECT_NEAR(cost / variance * share, critical, 0.03 * critical);  // a hundredth of its root
     }
@@ -50,9 +46,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
 
 TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   // Far from slip α rises with Tc; a bound on α holds Tc back, and not the data.
-  FitOptions options;
-  options.bounds["alpha"] = {0.0, 0.7};
-  Stages stages(NoisyLoop(0.5, 0.0005, 3), options);
+  Stages stages(NoisyLoop(0.5, 0.0005, 3), {.bounds = {{"alpha", {0.0, 0.7}}}});
   const Solution best = stages.Solve();
   ASSERT_EQ(best.side[kShape], BoundSide::kInside);
   for (const double variance : {1e-6, 1e-3}) {

@@ -58,8 +58,6 @@ TEST(ResidualStatistics, ConstantForceExplainsNothing) {
 // ---
 // Tests that residuals which repeat in every stroke are distinguished from noise.
 
-using namespace loop;
-
 ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
   const std::vector<std::size_t> reversals = FindReversals(displacement, 0.0);
   ScaledRecord record;

@@ -8,9 +8,6 @@
 namespace mindahl::identification::reweighting_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 Record WithOutliers(double share) {
   Generator generator(5);
   Record record = Loop();
@@ -24,9 +21,7 @@ Record WithOutliers(double share) {
 TEST(Reweighting, OfHubersLossHasHubersVariance) {
   // Huber (1981) §7.6 for JᵀWJ in place of JᵀJ: s²·[Σψ²/(n − p)]·w̄/[Σψ'/n]², ψ of the residuals
   // over their scale s, 1.4826 times the median of their magnitudes.
-  FitOptions options;
-  options.loss = Loss::kHuber;
-  Stages robust(WithOutliers(0.2), options);
+  Stages robust(WithOutliers(0.2), {.loss = Loss::kHuber});
   // Weights have settled to 1e-4 of the noise: the scale and its functions to as much.
   const auto [settled, at] = FitWeighted(robust);
   for (double& w : robust.data.records[0].root_weight) w = 1.0;
@@ -63,9 +58,7 @@ TEST(Reweighting, ForceNoiseWithDisplacementNoiseCountsDegreesOfFreedom) {
       testing::Cycling(testing::Wave::kSine, testing::kReach, 1.0, 40);
   Record record = testing::LoopOf(kLaw, displacement);
   for (double& force : record.force) force += 0.6 * testing::Normal(generator);
-  FitOptions options;
-  options.preparation.displacement_noise = 1e-6 * testing::kReach;
-  Stages stages(record, options);
+  Stages stages(record, {.preparation = {.displacement_noise = 1e-6 * testing::kReach}});
   const auto [noise, solution] = FitWeighted(stages);
   const double degrees =
       static_cast<double>(record.size() - stages.problem.parameters.free().size());
@@ -117,10 +110,7 @@ double ErrorOfReadings(const Stages& stages, Read read) {
 constexpr double kDrawn = 0.05;
 
 FitOptions Jenkins(std::optional<double> noise = std::nullopt) {
-  FitOptions options;
-  options.model = &Model("jenkins");
-  options.preparation.displacement_noise = noise;
-  return options;
+  return {.model = &Model("jenkins"), .preparation = {.displacement_noise = noise}};
 }
 
 TEST(ForceErrors, OfReadingsThatRepeatAreOneError) {

@@ -5,9 +5,6 @@
 namespace mindahl::identification::robust_loss_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kNoise = 0.005 * 40.0;  // [N]
 constexpr double kOutliers = 0.1;        // of the samples
@@ -39,10 +36,7 @@ Spoilt WithOutliers(Record record, bool one_sided, std::uint64_t seed) {
 }
 
 FitResult FitWith(const Record& record, Loss loss) {
-  FitOptions options;
-  options.loss = loss;
-  options.initial_state = InitialState::kVirgin;
-  return FitOne(record, options);
+  return FitOne(record, {.initial_state = InitialState::kVirgin, .loss = loss});
 }
 
 constexpr std::array kTruth = {kLaw.tangential_stiffness, kLaw.shape_exponent, kLaw.slip_force};

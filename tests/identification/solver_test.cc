@@ -10,9 +10,6 @@
 namespace mindahl::identification::solver_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 /// The largest component of Jᵀr by unit columns, over |r|: 0 at a minimum.
 double GradientAt(Stages& stages, const Solution& solution) {
   const Eigen::VectorXd residual = stages.ResidualsAt(solution.theta);
@@ -38,9 +35,7 @@ TEST(Solver, LeavesNoGradientInAnyParameter) {
                                                 {"force_drift"},
                                                 {"plateau_slope", "force_drift"},
                                                 {"rig_stiffness"}}) {
-    FitOptions options;
-    options.terms = terms;
-    Stages stages(record, options);
+    Stages stages(record, {.terms = terms});
     const Solution solution = stages.Solve();
     EXPECT_TRUE(solution.converged);
     EXPECT_LT(GradientAt(stages, solution), kStationary) << (terms.empty() ? "" : terms[0]);
@@ -56,9 +51,7 @@ TEST(Solver, ReachesTheSameMinimumInNaturalCoordinates) {
   // Bounds that the user gives on σ make the solver search σ and Tc themselves; wide ones change
   // nothing else.
   const Solution eliminated = Stages(NoisyLoop(4)).Solve();
-  FitOptions options;
-  options.bounds["sigma"] = {1e6, 1e9};
-  const Solution natural = Stages(NoisyLoop(4), options).Solve();
+  const Solution natural = Stages(NoisyLoop(4), {.bounds = {{"sigma", {1e6, 1e9}}}}).Solve();
   EXPECT_NEAR(natural.sum_of_squares / eliminated.sum_of_squares, 1.0, 1e-9);
   for (std::size_t p = 0; p < natural.theta.size(); ++p) {
     EXPECT_NEAR(natural.theta[p], eliminated.theta[p], 1e-4);
@@ -93,21 +86,17 @@ TEST(Solver, HeldStiffnessRigOrSlipForceLeaveTheOthersAtTheirMinimum) {
 
 TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
   const Record record = testing::Shifted(NoisyLoop(4), 0.0, 5.0);
-  FitOptions options;
-  options.bounds["force_offset"] = {-20.0, 3.0};
-  Stages stages(record, options);
+  Stages stages(record, {.bounds = {{"force_offset", {-20.0, 3.0}}}});
   const Solution solution = stages.Solve();
   const std::size_t p = stages.problem.parameters.PositionOf(TermId::kForceOffset);
   EXPECT_EQ(solution.side[p], BoundSide::kUpper);
   EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]), 3.0, 1e-12);
   EXPECT_LT(GradientAt(stages, solution), kStationary) << "of the others";
-  FitOptions held;
-  held.fixed["force_offset"] = 3.0;
-  EXPECT_NEAR(Stages(record, held).Solve().sum_of_squares / solution.sum_of_squares, 1.0, 1e-9);
+  EXPECT_NEAR(Stages(record, {.fixed = {{"force_offset", 3.0}}}).Solve().sum_of_squares /
+                  solution.sum_of_squares,
+              1.0, 1e-9);
   // A bound of the slip force as well, which is eliminated too.
-  FitOptions limited;
-  limited.bounds["slip_force"] = {1.0, 55.0};
-  Stages below(record, limited);
+  Stages below(record, {.bounds = {{"slip_force", {1.0, 55.0}}}});
   const Solution at_bound = below.Solve();
   EXPECT_NEAR(below.problem.parameters[kSlipForce].ToValue(at_bound.theta[kSlipForce]), 55.0, 1e-7);
   EXPECT_EQ(at_bound.side[kSlipForce], BoundSide::kUpper);

@@ -9,8 +9,6 @@
 namespace mindahl::identification::starts_test {
 namespace {
 
-using loop::Record;
-
 struct LateRecord {
   double lambda;
   double cycles;
@@ -31,14 +29,11 @@ TEST(Starts, OfARecordToldToBeVirginLeadToTheLeastMinimum) {
     Generator generator(7);
     Record record = WithForceNoise(testing::LoopOf(kMindlin, displacement), 0.05, generator);
     record = Shifted(From(std::move(record), late.lost), reach, 0.0);
-    FitOptions options;
-    options.model = models::FindFrictionModel(late.model);
-    options.initial_state = models::InitialState::kVirgin;
+    FitOptions options{.model = &Model(late.model), .initial_state = models::InitialState::kVirgin};
     const double rms = FitOne(record, options).residuals.rms;
-    options.start = {{"sigma", kMindlin.tangential_stiffness},
-                     {"alpha", kMindlin.shape_exponent},
-                     {"slip_force", kMindlin.slip_force},
-                     {"displacement_offset", reach}};
+    const auto truth = ParametersOf(kMindlin);
+    options.start = {truth.begin(), truth.end()};
+    options.start["displacement_offset"] = reach;
     EXPECT_LE(rms, (1 + 1e-6) * FitOne(record, options).residuals.rms)
         << late.lambda << " " << late.model;
   }
@@ -58,18 +53,16 @@ TEST(Starts, OfStrokesAHundredTimesAsWideAsTheKneeLeadToTheContact) {
 }
 
 TEST(Starts, ThatAreGivenDoNotDecideOnTheInitialState) {
-  const Record record = NoisyLoop(3);
-  FitOptions options;
-  options.start = {{"sigma", kLaw.tangential_stiffness},
-                   {"alpha", kLaw.shape_exponent},
-                   {"slip_force", kLaw.slip_force}};
-  EXPECT_EQ(FitOne(record, options).initial_state, models::InitialState::kVirgin);
+  const auto truth = ParametersOf(kLaw);
+  EXPECT_EQ(FitOne(NoisyLoop(3), {.start = {truth.begin(), truth.end()}}).initial_state,
+            models::InitialState::kVirgin);
 }
 
 TEST(Starts, OfTheFirstBranchAloneAreThoseOfAVirginContact) {
-  FitOptions options;
-  options.preparation.samples = loop::CountRange{.first = 2, .last = 26};
-  EXPECT_EQ(FitOne(NoisyLoop(3), options).initial_state, models::InitialState::kVirgin);
+  EXPECT_EQ(
+      FitOne(NoisyLoop(3), {.preparation = {.samples = loop::CountRange{.first = 2, .last = 26}}})
+          .initial_state,
+      models::InitialState::kVirgin);
 }
 
 TEST(InitialState, ThatTheRecordDoesNotDecideIsInTheInterval) {
@@ -100,8 +93,6 @@ TEST(InitialState, ThatTheRecordDoesNotDecideIsInTheInterval) {
 // ---
 // A model with one term more contains the model without it.
 
-using namespace loop;
-
 /// A loop whose knee is rounded by a force that a square root of the speed makes, which neither a
 /// lag nor a viscous term describes: the likelihood of a lag has several minima.
 Record RoundedByTheSpeed(std::uint64_t seed, double strength) {
@@ -117,10 +108,8 @@ Record RoundedByTheSpeed(std::uint64_t seed, double strength) {
 }
 
 double RmsWith(const Record& record, const std::vector<std::string>& terms) {
-  FitOptions options;
-  options.terms = terms;
   const RecordView view(record);
-  Fitter fitter(options);
+  Fitter fitter({.terms = terms});
   const FitResult& fit = fitter.Fit(view, Depth::kEstimate);
   EXPECT_TRUE(fit.converged) << fit.solver.message;
   return fit.rms;

@@ -7,9 +7,6 @@
 namespace mindahl::identification::term_selection_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
 constexpr double kReach = 4e-6;  // 2 of gross slip
 constexpr double kCycles = 8.3;
@@ -201,9 +198,8 @@ TEST(TermSelection, BoundOfTheUserIsKept) {
   const Record record = Noisy(With(0.1, 0.0), 2);
   const ParameterEstimate free = *Select(record).fit.Find("slip_force");
   const double lowest = free.value + 0.5 * *free.standard_error;  // which noise does not exclude
-  FitOptions options;
-  options.bounds["slip_force"] = {lowest, 10 * kLaw.slip_force};
-  const TermSelection selection = Select(record, options);
+  const TermSelection selection =
+      Select(record, {.bounds = {{"slip_force", {lowest, 10 * kLaw.slip_force}}}});
   EXPECT_THAT(selection.added, ElementsAre("viscous"));
   EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
   EXPECT_GE(selection.fit.Find("slip_force")->value, lowest);

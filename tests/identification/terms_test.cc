@@ -11,8 +11,6 @@
 namespace mindahl::identification::terms_test {
 namespace {
 
-using loop::Record;
-
 constexpr TermUnits kUnits{.force = 20.0,
                            .length = 3e-6,
                            .half_duration = 5.0,

@@ -17,20 +17,13 @@
 namespace mindahl::identification::thresholds_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]
 /// What is tested lies this much to either side of a threshold.
 constexpr double kBelow = 0.75;
 constexpr double kAbove = 1.33;
 
-FitOptions With(const Thresholds& thresholds) {
-  FitOptions options;
-  options.thresholds = thresholds;
-  return options;
-}
+FitOptions With(const Thresholds& thresholds) { return {.thresholds = thresholds}; }
 
 // --- diagnosis: pure functions of a result made by hand
 

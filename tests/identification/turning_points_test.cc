@@ -7,9 +7,6 @@
 namespace mindahl::identification::turning_points_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kLaw{4e7, 0.4, 40.0};
 constexpr double kReach = 1.4e-6;  // [m]
 

@@ -31,10 +31,9 @@ PreparedRecords PrepareAll(const std::vector<Record>& records, const Preparation
 TEST(Preparation, OneMaskLeavesOutWhatWindowCyclesAndMasksDo) {
   const std::vector<Record> records = {Made()};
   const std::size_t size = records[0].size();
-  PreparationOptions options;
-  options.load_window = {9.0, 11.0};
-  options.cycles = {2, 9};
-  options.held_out = {std::vector<bool>(size, false)};
+  PreparationOptions options{.load_window = Interval{9.0, 11.0},
+                             .cycles = CountRange{2, 9},
+                             .held_out = {std::vector<bool>(size, false)}};
   options.held_out[0][290] = true;
   const PreparedRecords prepared = PrepareAll(records, options);
   const PreparedRecord& one = prepared.records[0];
@@ -54,17 +53,13 @@ TEST(Preparation, OneMaskLeavesOutWhatWindowCyclesAndMasksDo) {
 TEST(Preparation, RefusesALoadWindowThatHoldsNoSampleWithTheRangeOfTheLoad) {
   const std::vector<Record> records = {Made()};
   const auto message_of = [&](double lower, double upper) {
-    PreparationOptions options;
-    options.load_window = {lower, upper};
-    return MessageOf<InvalidArgument>([&] { PrepareAll(records, options); });
+    return MessageOf([&] { PrepareAll(records, {.load_window = Interval{lower, upper}}); });
   };
   EXPECT_EQ(message_of(10.5, 11.5),
             "--select load=10.5:11.5 holds no sample: the normal load runs from 10 to 12 N");
   EXPECT_THAT(message_of(13, 20), HasSubstr("holds no sample"));
   EXPECT_THAT(message_of(1, 9), HasSubstr("holds no sample"));
-  PreparationOptions at_the_end;
-  at_the_end.load_window = {1, 10};
-  EXPECT_GT(PrepareAll(records, at_the_end).counted(), 0U);
+  EXPECT_GT(PrepareAll(records, {.load_window = Interval{1, 10}}).counted(), 0U);
 }
 
 /// Places of the samples that count.
@@ -89,19 +84,12 @@ TEST(Preparation, CyclesAndSamplesCountFromOneAndTheRestMakesHistory) {
     EXPECT_EQ(prepared.records[0].reversals.size(), 6U) << "all of them";
     return Counting(prepared.records[0]);
   };
-  PreparationOptions options;
-  options.cycles = {1, 1};
-  EXPECT_EQ(counting(options), From(0, 74));
-  options.cycles = {2, 3};
-  EXPECT_EQ(counting(options), From(75, 274));
-  options.cycles = {4, 99};
-  EXPECT_EQ(counting(options), From(275, 300)) << "the last is a part of one";
-  options.cycles.reset();
-  options.samples = {101, 150};
-  EXPECT_EQ(counting(options), From(100, 149));
-  options.cycles = {2, 2};
-  options.samples = {1, 80};
-  EXPECT_EQ(counting(options), From(75, 79)) << "both";
+  EXPECT_EQ(counting({.cycles = CountRange{1, 1}}), From(0, 74));
+  EXPECT_EQ(counting({.cycles = CountRange{2, 3}}), From(75, 274));
+  EXPECT_EQ(counting({.cycles = CountRange{4, 99}}), From(275, 300)) << "the last is a part of one";
+  EXPECT_EQ(counting({.samples = CountRange{101, 150}}), From(100, 149));
+  EXPECT_EQ(counting({.cycles = CountRange{2, 2}, .samples = CountRange{1, 80}}), From(75, 79))
+      << "both";
 }
 
 std::string RefusalOf(const PreparationOptions& options) {
@@ -109,18 +97,13 @@ std::string RefusalOf(const PreparationOptions& options) {
 }
 
 TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
-  PreparationOptions cycles;
-  cycles.cycles = {5, 6};
-  EXPECT_EQ(RefusalOf(cycles),
+  EXPECT_EQ(RefusalOf({.cycles = CountRange{5, 6}}),
             "cycles 5:6 contain nothing of record 1: it has 4 cycles that are begun, 3 complete");
-  cycles.cycles = {0, 2};
-  EXPECT_EQ(RefusalOf(cycles),
+  EXPECT_EQ(RefusalOf({.cycles = CountRange{0, 2}}),
             "--select cycles: '0:2' is empty: the first number must not be the larger");
-  PreparationOptions samples;
-  samples.samples = {302, 400};
-  EXPECT_EQ(RefusalOf(samples), "samples 302:400 contain nothing of record 1: it has 301 samples");
-  samples.samples = {7, 6};
-  EXPECT_EQ(RefusalOf(samples),
+  EXPECT_EQ(RefusalOf({.samples = CountRange{302, 400}}),
+            "samples 302:400 contain nothing of record 1: it has 301 samples");
+  EXPECT_EQ(RefusalOf({.samples = CountRange{7, 6}}),
             "--select samples: '7:6' is empty: the first number must not be the larger");
 }
 
@@ -131,9 +114,7 @@ TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
   const PreparedRecords turned = PrepareAll({opposite}, {});
   EXPECT_EQ(turned.force_sense, -1);
   EXPECT_GT(MeasureFacts(turned.records[0], turned.force_sense).energy_per_cycle, 0.0);
-  PreparationOptions options;
-  options.force_sense = 1;
-  EXPECT_EQ(PrepareAll({opposite}, options).force_sense, 1);
+  EXPECT_EQ(PrepareAll({opposite}, {.force_sense = 1}).force_sense, 1);
   // Of several records, most.
   EXPECT_EQ(PrepareAll({opposite, Made(), opposite}, {}).force_sense, -1);
 }

@@ -9,9 +9,6 @@
 namespace mindahl::identification::noise_test {
 namespace {
 
-using namespace loop;
-using namespace models;
-
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // Tc/(σ(1 − α))
 
@@ -44,8 +41,6 @@ TEST(Noise, NinetyFivePercentIntervalsCoverAsOftenAsTheyState) {
   constexpr double kShortest = 0.84;
   constexpr double kLongest = 1.3;
   struct Tally {
-    const char* name;
-    double truth;
     int holding = 0;
     double squared_error = 0.0;
     double squared_standard_error = 0.0;
@@ -53,26 +48,25 @@ TEST(Noise, NinetyFivePercentIntervalsCoverAsOftenAsTheyState) {
   for (const double lambda : {0.9, 2.0}) {
     SCOPED_TRACE(lambda);
     Generator generator(20240607);
-    std::array<Tally, 3> tallies = {Tally{"sigma", kMindlin.tangential_stiffness},
-                                    Tally{"alpha", kMindlin.shape_exponent},
-                                    Tally{"slip_force", kMindlin.slip_force}};
+    std::map<std::string, Tally> tallies;
     const Record clean = LoopOf(kMindlin, Cycling(Wave::kSine, lambda * kGrossSlip, 2.0, 100));
     for (int loop = 0; loop < kLoops; ++loop) {
       const FitResult fit = FitOne(WithForceNoise(clean, 0.005 * kMindlin.slip_force, generator));
       ASSERT_TRUE(fit.converged);
-      for (Tally& tally : tallies) {
-        const ParameterEstimate& estimate = *fit.Find(tally.name);
-        ASSERT_TRUE(estimate.standard_error) << tally.name << " of loop " << loop;
-        tally.holding += Covers(estimate, tally.truth) ? 1 : 0;
-        tally.squared_error += (estimate.value - tally.truth) * (estimate.value - tally.truth);
+      for (const auto& [name, truth] : testing::ParametersOf(kMindlin)) {
+        const ParameterEstimate& estimate = *fit.Find(name);
+        ASSERT_TRUE(estimate.standard_error) << name << " of loop " << loop;
+        Tally& tally = tallies[name];
+        tally.holding += Covers(estimate, truth) ? 1 : 0;
+        tally.squared_error += (estimate.value - truth) * (estimate.value - truth);
         tally.squared_standard_error += *estimate.standard_error * *estimate.standard_error;
       }
     }
-    for (const Tally& tally : tallies) {
-      EXPECT_GE(tally.holding, kFewest) << tally.name;
+    for (const auto& [name, tally] : tallies) {
+      EXPECT_GE(tally.holding, kFewest) << name;
       const double ratio = std::sqrt(tally.squared_standard_error / tally.squared_error);
-      EXPECT_GT(ratio, kShortest) << tally.name;
-      EXPECT_LT(ratio, kLongest) << tally.name;
+      EXPECT_GT(ratio, kShortest) << name;
+      EXPECT_LT(ratio, kLongest) << name;
     }
   }
 }
@@ -202,11 +196,9 @@ TEST(Noise, SingularJacobiansEndInVerdictsAndNotInFailures) {
     for (const char* model : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
       for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
         SCOPED_TRACE(std::string(c.what) + ", " + model);
-        FitOptions options;
-        options.model = &Model(model);
-        options.initial_state = state;
-        options.preparation.force_sense = 1;
-        const FitResult fit = FitOne(c.record, options);
+        const FitResult fit = FitOne(
+            c.record,
+            {.model = &Model(model), .initial_state = state, .preparation = {.force_sense = 1}});
         ExpectFinite(fit);
         const bool all_known =
             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {

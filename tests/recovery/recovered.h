@@ -50,10 +50,7 @@ inline History Cycling(Wave wave, double amplitude, double cycles, int samples_p
 }
 
 inline loop::Record MakeRecord(History displacement, std::vector<double> force) {
-  loop::Record record;
-  record.displacement = std::move(displacement);
-  record.force = std::move(force);
-  return record;
+  return {.displacement = std::move(displacement), .force = std::move(force)};
 }
 
 /// A Masing contact from its unloaded state.
@@ -112,10 +109,8 @@ inline loop::Record WithForceNoise(loop::Record record, double standard_deviatio
 inline loop::Record SprungLoop(const models::BranchLaw& law, double stiffness) {
   const double reach = 1.5 * (GrossSlipDisplacement(law) + law.slip_force / stiffness);
   const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
-  std::vector<double> force(displacement.size());
-  const models::FrictionModel& model = Model("mindlin-dahl");
-  models::EvaluateForce(model, law, PathOf(model, displacement), displacement, force, {stiffness});
-  return MakeRecord(displacement, force);
+  return MakeRecord(displacement,
+                    Respond(Model("mindlin-dahl"), law, displacement, {}, {stiffness}));
 }
 
 inline identification::FitResult FitOne(const loop::Record& record,
@@ -134,19 +129,26 @@ inline bool Covers(const identification::ParameterEstimate& estimate, double tru
   return estimate.lower95.value_or(truth) <= truth && truth <= estimate.upper95.value_or(truth);
 }
 
+/// The name and the value of each parameter.
+inline std::array<std::pair<const char*, double>, 3> ParametersOf(const models::BranchLaw& law) {
+  return {{{"sigma", law.tangential_stiffness},
+           {"alpha", law.shape_exponent},
+           {"slip_force", law.slip_force}}};
+}
+
 /// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.
-inline double WorstError(const identification::FitResult& fit, const models::BranchLaw& truth) {
-  const double sigma = std::abs(fit.law.tangential_stiffness / truth.tangential_stiffness - 1);
+inline double WorstError(const models::BranchLaw& law, const models::BranchLaw& truth) {
+  const double sigma = std::abs(law.tangential_stiffness / truth.tangential_stiffness - 1);
   const double alpha =
-      std::abs(fit.law.shape_exponent - truth.shape_exponent) / std::max(truth.shape_exponent, 0.1);
-  const double slip_force = std::abs(fit.law.slip_force / truth.slip_force - 1);
+      std::abs(law.shape_exponent - truth.shape_exponent) / std::max(truth.shape_exponent, 0.1);
+  const double slip_force = std::abs(law.slip_force / truth.slip_force - 1);
   const double worst = std::max({sigma, alpha, slip_force});
   return std::isfinite(sigma + alpha + slip_force) ? worst : HUGE_VAL;
 }
 
 inline ::testing::AssertionResult Recovers(const identification::FitResult& fit,
                                            const models::BranchLaw& truth, double tolerance) {
-  const double worst = WorstError(fit, truth);
+  const double worst = WorstError(fit.law, truth);
   if (fit.converged && worst <= tolerance) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure()
          << (fit.converged ? "" : "not converged (" + fit.solver.message + "), ")

@@ -39,5 +39,12 @@ using ::testing::StartsWith;
 }  // namespace mindahl::testing
 
 namespace mindahl {
+namespace loop {}
+namespace models {}
 using namespace testing;
+/// Fits are of records, by models.
+namespace identification {
+using namespace loop;
+using namespace models;
+}  // namespace identification
 }  // namespace mindahl
