@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "support/histories.h"
 #include "support/prelude.h"
 
 namespace mindahl::campaign::evolution_test {
@@ -220,6 +221,266 @@ TEST(Evolutions, HoldEachQuantityOfACycleUnlessItIsOpen) {
   EXPECT_THAT(held({"slip_force_open"}), AllOf(SizeIs(7), Not(Contains(whole[1]))));
   fit["alpha_error"].reset();  // held: every cycle has one weight
   EXPECT_THAT(held({}), Contains("alpha 2.5 1"));
+}
+
+// ---
+// How a course is described.
+
+constexpr double kLevel = 60.0;
+constexpr double kNoise = 0.5;
+
+/// A truth with noise whose lag-one correlation is φ.
+Course CourseOf(std::size_t cycles, std::uint64_t seed,
+                const std::function<double(std::size_t)>& truth, double phi = 0.0,
+                double noise = kNoise) {
+  Generator generator(seed);
+  Course course;
+  double error = noise * Normal(generator);
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) {
+    course.Add(cycle, truth(cycle) + error);
+    error = phi * error + std::sqrt(1 - phi * phi) * noise * Normal(generator);
+  }
+  return course;
+}
+
+double Level(std::size_t /*cycle*/) { return kLevel; }
+
+TEST(Course, HoldsMeansInBinsOfEqualSize) {
+  Course course;
+  constexpr std::size_t kCycles = 10'000;
+  for (std::size_t cycle = 1; cycle <= kCycles; ++cycle) {
+    course.Add(cycle, 2.0 * static_cast<double>(cycle));
+  }
+  EXPECT_LE(course.bins().size(), Course::kMostBins);
+  EXPECT_GT(course.bins().size(), Course::kMostBins / 2);
+  EXPECT_EQ(course.first(), 2.0);
+  EXPECT_EQ(course.last(), 2.0 * kCycles);
+  std::size_t count = 0;
+  std::size_t next = 1;
+  for (const Course::Bin& bin : course.bins()) {
+    EXPECT_EQ(bin.first_cycle, next);
+    EXPECT_NEAR(bin.value, 2 * bin.cycle, 1e-9 * bin.value);
+    count += bin.count;
+    next = bin.last_cycle + 1;
+  }
+  EXPECT_EQ(count, kCycles);
+}
+
+TEST(Course, WeightsTheBinsThatItMerges) {
+  // More values than bins: pairs of 10 (weight 1) and 20 (weight 100) become one each.
+  Course course;
+  for (std::size_t cycle = 1; cycle <= Course::kMostBins + 1; ++cycle) {
+    const bool is_heavy = cycle % 2 == 0;
+    course.Add(cycle, is_heavy ? 20.0 : 10.0, is_heavy ? 100.0 : 1.0);
+  }
+  ASSERT_EQ(course.bins().size(), Course::kMostBins / 2 + 1);
+  for (std::size_t k = 0; k + 1 < course.bins().size(); ++k) {
+    EXPECT_NEAR(course.bins()[k].value, (10.0 + 100 * 20.0) / 101, 1e-12);
+    EXPECT_EQ(course.bins()[k].least, 10.0);
+    EXPECT_EQ(course.bins()[k].greatest, 20.0);
+  }
+}
+
+TEST(Describe, StatesTheFirstAndTheLastValueAsTheTableHasThem) {
+  EXPECT_FALSE(Describe(Course()));
+  Course falling;  // as a run-in: far from any line
+  for (std::size_t cycle = 1; cycle <= 30; ++cycle) {
+    falling.Add(10 * cycle, 17.6 + 5.5 * std::exp(-static_cast<double>(cycle)));
+  }
+  const CourseDescription description = *Describe(falling);
+  EXPECT_EQ(description.first, falling.bins().front().value);
+  EXPECT_EQ(description.last, falling.bins().back().value);
+  for (const Change& step : description.steps) {
+    EXPECT_LE(std::max(step.from, step.to), description.first);
+  }
+  for (const Change& trend : description.trends) {
+    EXPECT_LE(std::max(trend.from, trend.to), description.first);
+  }
+}
+
+TEST(Describe, HardlyEverFindsAChangeInNoise) {
+  constexpr int kCourses = 200;
+  for (const double phi : {0.0, 0.6}) {
+    int found = 0;
+    for (int seed = 1; seed <= kCourses; ++seed) {
+      found += Describe(CourseOf(200, static_cast<std::uint64_t>(seed), Level, phi))->changed();
+    }
+    EXPECT_LE(found, kCourses / 20) << phi;
+  }
+}
+
+TEST(Describe, FindsAStepWhereItIs) {
+  for (const std::size_t cycles : {100U, 400U, 3000U}) {
+    const std::size_t at = 2 * cycles / 3;
+    const CourseDescription description = *Describe(
+        CourseOf(cycles, 7, [&](std::size_t cycle) { return cycle < at ? kLevel : 1.1 * kLevel; }));
+    ASSERT_THAT(description.steps, SizeIs(1)) << cycles;
+    const Change& step = description.steps[0];
+    EXPECT_NEAR(static_cast<double>(step.first_cycle), static_cast<double>(at),
+                2 + static_cast<double>(cycles) / Course::kMostBins);
+    EXPECT_NEAR(step.to / step.from, 1.1, 0.01);
+    EXPECT_LT(step.p_value, 1e-6);
+    EXPECT_THAT(description.trends, IsEmpty());
+  }
+}
+
+TEST(Describe, FindsATrend) {
+  const CourseDescription description = *Describe(CourseOf(300, 3, [](std::size_t cycle) {
+    return kLevel * (1 - 0.2 * static_cast<double>(cycle) / 300);
+  }));
+  EXPECT_THAT(description.steps, IsEmpty());
+  ASSERT_THAT(description.trends, SizeIs(1));
+  EXPECT_EQ(description.trends[0].first_cycle, 1U);
+  EXPECT_EQ(description.trends[0].last_cycle, 300U);
+  EXPECT_NEAR(description.trends[0].to / description.trends[0].from, 0.8, 0.02);
+  EXPECT_FALSE(description.settled_at) << "it changes to the end";
+}
+
+TEST(Describe, SaysWhereARunInHasSettled) {
+  // Within 5 % of its change after three time constants.
+  const CourseDescription description = *Describe(CourseOf(
+      1000, 5,
+      [](std::size_t cycle) { return 0.6 - 0.25 * std::exp(-static_cast<double>(cycle) / 100); },
+      0.0, 0.002));
+  ASSERT_TRUE(description.settled_at);
+  EXPECT_NEAR(static_cast<double>(*description.settled_at), 300.0, 60.0);
+  EXPECT_FALSE(Describe(CourseOf(1000, 5, Level))->settled_at);
+}
+
+// A law of segments misses a curve by more than the scatter, the less of this the more.
+TEST(Describe, FindsARunInAndABumpWhateverTheScatter) {
+  for (const double noise : {0.0, 0.1, 1.0, 3.0}) {
+    for (const std::size_t cycles : {100U, 300U, 3000U}) {
+      const double count = static_cast<double>(cycles);
+      const CourseDescription run_in = *Describe(CourseOf(
+          cycles, 3,
+          [&](std::size_t cycle) {
+            return kLevel * (1.5 - 0.5 * std::exp(-10 * static_cast<double>(cycle) / count));
+          },
+          0.0, noise));
+      ASSERT_THAT(run_in.trends, Not(IsEmpty())) << noise << ' ' << cycles;
+      EXPECT_GT(run_in.trends.front().to, 1.3 * kLevel);
+      EXPECT_TRUE(run_in.settled_at || noise > 1);
+      const CourseDescription bump = *Describe(CourseOf(
+          cycles, 3,
+          [&](std::size_t cycle) {
+            return kLevel *
+                   (1 + 0.5 * std::sin(std::numbers::pi * static_cast<double>(cycle) / count));
+          },
+          0.0, noise));
+      ASSERT_THAT(bump.trends, SizeIs(2)) << noise << ' ' << cycles;
+      EXPECT_NEAR(bump.trends[0].to, 1.5 * kLevel, 0.1 * kLevel);
+      EXPECT_NEAR(bump.trends[1].from, 1.5 * kLevel, 0.1 * kLevel);
+      EXPECT_THAT(bump.steps, IsEmpty());
+    }
+  }
+}
+
+TEST(Describe, DoesNotMindOneCycleThatIsOff) {
+  for (const std::size_t off : {2U, 50U, 98U}) {
+    EXPECT_FALSE(Describe(CourseOf(100, 9,
+                                   [&](std::size_t cycle) {
+                                     return cycle == off ? kLevel + 20 * kNoise : kLevel;
+                                   }))
+                     ->changed())
+        << off;
+  }
+}
+
+TEST(Describe, DoesNotDependOnTheUnit) {
+  const auto truth = [](std::size_t cycle) { return cycle <= 70 ? kLevel : 0.8 * kLevel; };
+  const CourseDescription one = *Describe(CourseOf(150, 11, truth));
+  for (const double factor : {1e-12, 1e9}) {
+    const CourseDescription other = *Describe(CourseOf(
+        150, 11, [&](std::size_t cycle) { return factor * truth(cycle); }, 0.0, factor * kNoise));
+    ASSERT_EQ(other.steps.size(), one.steps.size());
+    EXPECT_EQ(other.steps[0].first_cycle, one.steps[0].first_cycle);
+    EXPECT_NEAR(other.steps[0].to / factor, one.steps[0].to, 1e-9 * kLevel);
+  }
+}
+
+TEST(Describe, OfValuesWithoutNoiseIsThatOfTheValues) {
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) course.Add(cycle, cycle <= 60 ? 5.0 : 4.0);
+  const CourseDescription description = *Describe(course);
+  ASSERT_THAT(description.steps, SizeIs(1));
+  EXPECT_EQ(description.steps[0].first_cycle, 61U);
+  EXPECT_NEAR(description.steps[0].from, 5.0, 1e-12);
+  EXPECT_NEAR(description.steps[0].to, 4.0, 1e-12);
+  EXPECT_THAT(description.trends, IsEmpty());
+  Course still;
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) still.Add(cycle, 5.0);
+  EXPECT_FALSE(Describe(still)->changed());
+}
+
+// ---
+// Tests the energy that a whole test dissipated.
+
+constexpr double kEnergy = 2e-5;  // J
+
+CycleFit Loop(std::size_t number, std::optional<double> energy, std::size_t samples = 201,
+              std::vector<std::string> flags = {}) {
+  CycleFit fit;
+  fit.number = number;
+  fit["energy"] = energy;
+  fit.samples = samples;
+  fit.flags = std::move(flags);
+  return fit;
+}
+
+DissipatedEnergy After(std::size_t loops, std::size_t together = 1) {
+  DissipatedEnergy energy{.together = together};
+  for (std::size_t k = 0; k < loops; ++k) energy.Add(Loop(1 + k * together, kEnergy));
+  return energy;
+}
+
+TEST(DissipatedEnergy, IsTheSumOfMeasuredCyclesGlitchesAmongThem) {
+  EXPECT_DOUBLE_EQ(After(5, 12).total, 60 * kEnergy);
+  DissipatedEnergy energy = After(3);
+  energy.Add(Loop(4, 0.95 * kEnergy, 201, {"glitches"}));
+  EXPECT_DOUBLE_EQ(energy.total, 3.95 * kEnergy);
+}
+
+TEST(DissipatedEnergy, CountsThePiecesOfACycleForOne) {
+  DissipatedEnergy energy = After(4);
+  energy.Add(Loop(5, std::nullopt, 71, {"not_closed", "no_loop"}));
+  energy.Add(Loop(6, 11 * kEnergy, 131, {"not_closed"}));
+  EXPECT_DOUBLE_EQ(energy.total, 5 * kEnergy);
+}
+
+TEST(DissipatedEnergy, ReplacesAsManyCyclesAsARowStandsFor) {
+  constexpr std::size_t kCyclesPerRow = 5;
+  DissipatedEnergy energy = After(3, kCyclesPerRow);
+  // Half the steps of a closed one: half of its energy, five times.
+  energy.Add(Loop(16, 11 * kEnergy, 101, {"not_closed"}));
+  EXPECT_DOUBLE_EQ(energy.total, kCyclesPerRow * 3.5 * kEnergy);
+}
+
+// Every 250th of 299 cycles, of one energy in the first and of twice that in the others.
+TEST(DissipatedEnergy, IsThatOfTheCyclesThatExist) {
+  DissipatedEnergy energy;
+  energy.Add(Loop(1, kEnergy));
+  EXPECT_DOUBLE_EQ(energy.total, kEnergy);
+  energy.Add(Loop(251, 2 * kEnergy));
+  EXPECT_DOUBLE_EQ(energy.total, 501 * kEnergy);
+  energy.Finish(299);
+  EXPECT_DOUBLE_EQ(energy.total, 597 * kEnergy);
+}
+
+TEST(DissipatedEnergy, ReplacesByTheMedianOfTheLastNine) {
+  DissipatedEnergy energy;
+  for (std::size_t k = 1; k <= 20; ++k) energy.Add(Loop(k, static_cast<double>(k) * kEnergy));
+  const double before = energy.total;
+  energy.Add(Loop(21, 500 * kEnergy, 201, {"not_closed"}));
+  EXPECT_DOUBLE_EQ(energy.total - before, 16 * kEnergy);
+}
+
+TEST(DissipatedEnergy, LeavesOutUnknownCycles) {
+  DissipatedEnergy energy;
+  energy.Add(Loop(1, 11 * kEnergy, 131, {"not_closed"}));
+  energy.Add(Loop(2, std::nullopt, 201, {"no_loop"}));
+  energy.Add(Loop(3, std::nullopt, 0, {"not_converged"}));
+  EXPECT_EQ(energy.total, 0.0);
 }
 
 }  // namespace

@@ -1,6 +1,11 @@
 #include "verdict.h"
 
+#include <set>
+
+#include "kind.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/loop/record.h"
+#include "other_laws.h"
 #include "support/prelude.h"
 
 namespace mindahl::reliability::verdict_test {
@@ -95,6 +100,92 @@ TEST(Verdict, AlarmsAtMoreThanWhatARecordLeavesOpen) {
   EXPECT_FALSE(CautionOf(fit).alarms);
   fit.findings.push_back({.code = "reversals_uncertain"});
   EXPECT_TRUE(CautionOf(fit).alarms);
+}
+
+// ---
+
+constexpr std::uint64_t kSeed = 7;
+
+TEST(Kinds, MakeConsistentRecordsAndAskForSomethingThatIsPossible) {
+  std::set<std::string_view> names;
+  for (const Kind& kind : Kinds()) {
+    SCOPED_TRACE(kind.name);
+    EXPECT_TRUE(names.insert(kind.name).second);
+    for (std::size_t level = 0; level < kLevels; ++level) {
+      const Loop loop = MakeLoop(kind, level, kSeed);
+      EXPECT_GE(loop.record.size(), 6U);
+      EXPECT_NO_THROW(loop::Validate(loop.record)) << "level " << level + 1;
+    }
+    const Expected expected = MakeLoop(kind, 0, kSeed).expected;
+    EXPECT_TRUE(expected.sigma || expected.slip_force);
+    for (const auto& truth : {expected.sigma, expected.alpha, expected.slip_force}) {
+      EXPECT_TRUE(!truth || truth->lowest <= truth->highest);
+    }
+  }
+}
+
+TEST(Kinds, MakeTheSameLoopOfTheSameSeedAndAnotherOfAnother) {
+  for (const Kind& kind : Kinds()) {
+    SCOPED_TRACE(kind.name);
+    const loop::Record record = MakeLoop(kind, 1, kSeed).record;
+    EXPECT_EQ(MakeLoop(kind, 1, kSeed).record.force, record.force);
+    EXPECT_NE(MakeLoop(kind, 1, kSeed + 1).record.force, record.force);
+    EXPECT_NE(MakeLoop(kind, 2, kSeed).record.force, record.force);
+  }
+}
+
+TEST(Kinds, OfEveryFamilyAreInBothHalves) {
+  for (const auto family : {NoiseKinds, ChannelKinds, LoggerKinds, RigKinds, ContactKinds,
+                            LoadKinds, SamplingKinds, ExcitationKinds}) {
+    const std::vector<Kind> kinds = family();
+    for (const Half half : {Half::kDevelopment, Half::kHeldOut}) {
+      EXPECT_NE(std::ranges::find(kinds, half, &Kind::half), kinds.end()) << kinds.front().name;
+    }
+  }
+}
+
+// ---
+// Loops of other laws than the fitted one: what is effective contains what is true of them.
+
+constexpr std::size_t kLoops = 12;
+constexpr std::uint64_t kFirstSeed = 1;
+
+TEST(Effective, SlipForceContainsThePlateauAndStiffnessThatAfterAReversal) {
+  Effective slip_force;
+  Effective stiffness;
+  for (const OtherLaw& law : OtherLaws()) {
+    SCOPED_TRACE(law.name);
+    const EffectiveTally tally = Measure(law, kLoops, kFirstSeed);
+    EXPECT_LE(tally.slip_force.narrow, 1U);
+    slip_force.loops += tally.slip_force.loops;
+    for (const auto& [sum, of_law] :
+         {std::pair{&slip_force, &tally.slip_force}, {&stiffness, &tally.stiffness}}) {
+      sum->given += of_law->given;
+      sum->held += of_law->held;
+    }
+  }
+  // All laws slide, most of the way from one plateau to the other; of 60 fits
+  // that are not adequate B(60, 0.95) is below 51 with a probability of 0.1 %.
+  EXPECT_GE(slip_force.loops, 5 * kLoops);
+  EXPECT_GE(20 * slip_force.given, 17 * slip_force.loops);
+  EXPECT_GE(20 * slip_force.held, 17 * slip_force.given);
+  EXPECT_GE(stiffness.given, 2 * kLoops)
+      << "some laws have a knee that Masing's with one exponent follows";
+  EXPECT_GE(20 * stiffness.held, 17 * stiffness.given);
+}
+
+TEST(Effective, EveryLawHasAPlateauAndMostAStiffness) {
+  std::size_t stiff = 0;
+  for (const OtherLaw& law : OtherLaws()) {
+    Draws draws(kFirstSeed);
+    const OtherLoop loop = law.make(draws);
+    EXPECT_GT(loop.plateau, 0.0) << law.name;
+    if (!loop.stiffness) continue;
+    ++stiff;
+    EXPECT_GT(loop.stiffness->lowest, 0.0) << law.name;
+    EXPECT_LE(loop.stiffness->lowest, loop.stiffness->highest) << law.name;
+  }
+  EXPECT_EQ(stiff, OtherLaws().size() - 2) << "all but those of which the force stands or jumps";
 }
 
 }  // namespace
