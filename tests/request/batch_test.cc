@@ -33,8 +33,7 @@ TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
 }
 
 TEST(FitFiles, GoesOnAfterAFileThatCannotBeRead) {
-  FitRequest request;
-  request.files = {"none_1.csv", "none_2.csv", "none_3.csv", "none_4.csv"};
+  const FitRequest request{.files = {"none_1.csv", "none_2.csv", "none_3.csv", "none_4.csv"}};
   const std::vector<BatchEntry> entries = FitFiles(request, Strictness::kNone, 2);
   ASSERT_EQ(entries.size(), 4U);
   for (std::size_t k = 0; k < 4; ++k) {

@@ -146,8 +146,7 @@ std::vector<Question> Questions() {
   forced.fit.preparation.excitation = loop::Channel::kForce;
   FitRequest robust;
   robust.fit.loss = identification::Loss::kHuber;
-  FitRequest compared;
-  compared.compare = true;
+  const FitRequest compared{.compare = true};
   std::vector<Question> questions = {
       {"plain", plain({}), one},
       {"dahl", plain(dahl), one},
@@ -207,9 +206,7 @@ std::vector<Question> Questions() {
                                                {"lag"},
                                                {"backlash"},
                                                {"asymmetry"}}) {
-    FitRequest request;
-    request.terms = terms;
-    questions.push_back({terms[0], plain(request), one});
+    questions.push_back({terms[0], plain({.terms = terms}), one});
   }
   return questions;
 }
