@@ -19,7 +19,6 @@ int main(int argc, char** argv) {
   }
   try {
     mindahl::report::ReportInput input;
-    input.files = {argv[1]};
     input.records = {mindahl::io::ReadRecord(argv[1])};
     const std::vector<mindahl::loop::Record> records = {input.records.front().record};
     input.fit = mindahl::identification::Fit(records, {.offsets = true},

@@ -14,7 +14,7 @@
 /// Pythonic - keywords, frames, results with attributes - is python/mindahl/*.py.
 namespace mindahl::python {
 
-using io::NamedRecord;
+using io::RecordFile;
 
 /// float64, contiguous; what is not is converted before it comes here.
 using Array = pybind11::array_t<double, pybind11::array::c_style>;

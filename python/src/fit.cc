@@ -22,16 +22,9 @@ using request::FitRequest;
 
 namespace {
 
-std::shared_ptr<Report> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
+std::shared_ptr<Report> Fit(std::vector<RecordFile> records, const FitRequest& request) {
   const Running running;
-  request.files.clear();
-  std::vector<io::RecordFile> files;
-  for (const NamedRecord& record : records) request.files.push_back(record.name);
-  request::Validate(request);
-  for (const NamedRecord& record : records) {
-    request::KeepTimeWindow(request, record.name, files.emplace_back(record.file));
-  }
-  return std::make_shared<Report>(request::FitRecords(request, std::move(files)));
+  return std::make_shared<Report>(request::FitRecords(request, std::move(records)));
 }
 
 std::string TextOf(const Report& report) {
@@ -47,7 +40,7 @@ py::list RecordsOf(const Report& report, const py::handle& owner) {
     const loop::Record& record = report.records[r].record;
     const identification::RecordFit& fit = report.failed() ? kNone : report.fit.records[r];
     py::dict arrays;
-    arrays["name"] = report.files[r];
+    arrays["name"] = report.records[r].name;
     arrays["displacement"] = ViewOf(record.displacement, owner);
     arrays["force"] = ViewOf(record.force, owner);
     arrays["time"] = ViewOf(record.time, owner);

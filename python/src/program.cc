@@ -66,7 +66,7 @@ std::vector<BatchEntry> EntriesOf(const std::vector<py::tuple>& states) {
 }
 
 /// @param stops  asked now and then whether the fit is to end; None: never
-py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request, int strict,
+py::tuple FitOne(const RecordFile& record, const request::FitRequest& request, int strict,
                  const py::object& stops) {
   BatchEntry entry;
   {
@@ -78,11 +78,7 @@ py::tuple FitOne(const NamedRecord& record, const request::FitRequest& request, 
       throw Interrupted();
     });
     entry = request::FitSource(request, record.name, Strictness{strict},
-                               [&](const request::FitRequest& own) {
-                                 std::vector<io::RecordFile> files = {record.file};
-                                 request::KeepTimeWindow(own, record.name, files.front());
-                                 return files;
-                               });
+                               [&](const request::FitRequest&) { return std::vector{record}; });
   }
   return StateOf(entry);
 }

@@ -36,34 +36,35 @@ io::RecordColumns ColumnsOf(const request::FitRequest& request) {
 }
 
 /// @param name  what the record, its notes and messages call the file
-NamedRecord ReadCsv(const std::string& path, const request::FitRequest& request,
-                    const std::string& name) {
+RecordFile ReadCsv(const std::string& path, const request::FitRequest& request,
+                   const std::string& name) {
   const py::gil_scoped_release others_may_run;
   const auto named = [&](const std::string& text) {
     return boost::replace_all_copy(text, path, name);
   };
   try {
-    NamedRecord record{name, io::ReadRecord(path, ColumnsOf(request))};
-    for (std::string& note : record.file.notes) note = named(note);
+    RecordFile record = io::ReadRecord(path, ColumnsOf(request));
+    record.name = name;
+    for (std::string& note : record.notes) note = named(note);
     return record;
   } catch (const InputError& error) {
     throw InputError(named(error.what()));
   }
 }
 
-NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
-                            const std::vector<Array>& arrays, const request::FitRequest& request) {
+RecordFile RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
+                           const std::vector<Array>& arrays, const request::FitRequest& request) {
   std::vector<io::TableColumn> table;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::span<const double> values = SpanOf(arrays.at(k));
     table.push_back({names[k], {values.begin(), values.end()}});
   }
-  return {name, io::RecordOf(io::TableOfColumns(std::move(table), name), ColumnsOf(request))};
+  return io::RecordOf(io::TableOfColumns(std::move(table), name), ColumnsOf(request));
 }
 
 py::dict CovariatesOf(const py::object& self) {
   py::dict columns;
-  for (const loop::Covariate& covariate : self.cast<const NamedRecord&>().file.record.covariates) {
+  for (const loop::Covariate& covariate : self.cast<const RecordFile&>().record.covariates) {
     columns[py::str(covariate.name)] = ViewOf(covariate.values, self);
   }
   return columns;
@@ -78,8 +79,7 @@ io::ChosenColumn ColumnOf(const py::handle& column) {
           column["unit"].cast<std::string>()};
 }
 
-py::dict ColumnsUsed(const NamedRecord& record) {
-  const io::RecordFile& file = record.file;
+py::dict ColumnsUsed(const RecordFile& file) {
   py::dict columns("displacement"_a = DictOf(file.displacement), "force"_a = DictOf(file.force));
   if (file.time) columns["time"] = DictOf(*file.time);
   if (file.normal_load) columns["normal_load"] = DictOf(*file.normal_load);
@@ -96,21 +96,20 @@ std::vector<double> ValuesOf(const py::handle& array) {
 }
 
 /// Returns the state of a record, for pickle and copy.
-py::tuple PickledRecord(const NamedRecord& record) {
-  const io::RecordFile& file = record.file;
+py::tuple PickledRecord(const RecordFile& file) {
   py::list values;
   for (const auto column : loop::kRecordColumns) values.append(CopyOf(file.record.*column));
   py::list others;
   for (const loop::Covariate& other : file.record.covariates) {
     others.append(py::make_tuple(other.name, other.unit, CopyOf(other.values)));
   }
-  return py::make_tuple(record.name, file.is_torsional, values, others, ColumnsUsed(record),
-                        file.lines, file.notes);
+  return py::make_tuple(file.name, file.is_torsional, values, others, ColumnsUsed(file), file.lines,
+                        file.notes);
 }
 
-NamedRecord UnpickledRecord(const py::tuple& state) {
-  NamedRecord made{state[0].cast<std::string>(), {}};
-  io::RecordFile& file = made.file;
+RecordFile UnpickledRecord(const py::tuple& state) {
+  RecordFile file;
+  file.name = state[0].cast<std::string>();
   file.is_torsional = state[1].cast<bool>();
   for (std::size_t k = 0; k < loop::kRecordColumns.size(); ++k) {
     file.record.*loop::kRecordColumns[k] = ValuesOf(state[2].cast<py::list>()[k]);
@@ -127,20 +126,20 @@ NamedRecord UnpickledRecord(const py::tuple& state) {
   if (columns.contains("normal_load")) file.normal_load = ColumnOf(columns["normal_load"]);
   file.lines = state[5].cast<std::vector<std::size_t>>();
   file.notes = state[6].cast<std::vector<std::string>>();
-  return made;
+  return file;
 }
 
 template <auto kColumn>
 py::object RecordColumn(const py::object& self) {
-  return ViewOf(self.cast<const NamedRecord&>().file.record.*kColumn, self);
+  return ViewOf(self.cast<const RecordFile&>().record.*kColumn, self);
 }
 
 }  // namespace
 
 void AddRecords(py::module_& module) {
-  py::class_<NamedRecord>(module, "Record",
-                          "A hysteresis record in SI units, as it was read; arrays are read-only.")
-      .def_readonly("name", &NamedRecord::name, "what messages and reports call it")
+  py::class_<RecordFile>(module, "Record",
+                         "A hysteresis record in SI units, as it was read; arrays are read-only.")
+      .def_readonly("name", &RecordFile::name, "what messages and reports call it")
       .def_property_readonly("displacement", &RecordColumn<&loop::Record::displacement>,
                              "[m]; of a torsional record the angle [rad]")
       .def_property_readonly("force", &RecordColumn<&loop::Record::force>,
@@ -153,12 +152,12 @@ void AddRecords(py::module_& module) {
       .def_property_readonly("columns", &ColumnsUsed,
                              "which column each quantity was read from: name, index, unit")
       .def_property_readonly(
-          "is_torsional", [](const NamedRecord& record) { return record.file.is_torsional; },
+          "is_torsional", [](const RecordFile& file) { return file.is_torsional; },
           "a torque against an angle?")
       .def_property_readonly(
-          "notes", [](const NamedRecord& record) { return record.file.notes; },
+          "notes", [](const RecordFile& file) { return file.notes; },
           "what was assumed, one sentence each")
-      .def("__len__", [](const NamedRecord& record) { return record.file.record.size(); })
+      .def("__len__", [](const RecordFile& file) { return file.record.size(); })
       .def(py::pickle(&PickledRecord, &UnpickledRecord));
   module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("request"), py::arg("name"));
   module.def("record_of_columns", &RecordOfColumns, py::arg("name"), py::arg("names"),

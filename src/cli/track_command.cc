@@ -318,8 +318,8 @@ class TrackRun {
   }
 
  private:
-  void BeginSource(const io::RecordFile& layout, const std::string& name) {
-    test_.files.push_back(name);
+  void BeginSource(const io::RecordFile& layout) {
+    test_.files.push_back(layout.name);
     if (!layout_) {
       layout_ = layout;
       layout_->record = {};
@@ -327,10 +327,10 @@ class TrackRun {
       test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     }
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
-    if (options_.fit.join) io::RequireJoinable(*layout_, test_.files.front(), layout, name);
+    if (options_.fit.join) io::RequireJoinable(*layout_, layout);
     if (layout.is_torsional == test_.is_torsional) return;
     throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", test_.files.front(),
-                                 test_.is_torsional ? "torque" : "force", name,
+                                 test_.is_torsional ? "torque" : "force", layout.name,
                                  layout.is_torsional ? "torque" : "force"));
   }
 
@@ -356,7 +356,7 @@ class TrackRun {
 
   void ReadFile(const std::string& file) {
     io::RecordStream stream(file, options_.fit.columns);
-    BeginSource(stream.layout(), file);
+    BeginSource(stream.layout());
     io::Samples piece;
     if (tracker_) {
       stream.Next(piece);

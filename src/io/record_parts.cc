@@ -10,19 +10,19 @@
 
 namespace mindahl::io {
 
-void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last) {
+void KeepTimeWindow(RecordFile& input, double first, double last) {
   const std::vector<double>& time = input.record.time;
   if (time.empty()) {
-    Refuse("{}: --time-window needs a time column: name it with --time", file);
+    Refuse("{}: --time-window needs a time column: name it with --time", input.name);
   }
   const auto begin = std::ranges::lower_bound(time, first);
   const auto end = std::ranges::upper_bound(time, last);
   if (begin >= end) {
-    Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", file, first,
-           last, time.front(), time.back());
+    Refuse("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s", input.name,
+           first, last, time.front(), time.back());
   }
-  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
-                                    end - begin, time.size(), first, last));
+  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s",
+                                    input.name, end - begin, time.size(), first, last));
   KeepSamples(input, static_cast<std::size_t>(begin - time.begin()),
               static_cast<std::size_t>(end - time.begin()));
 }
@@ -38,21 +38,20 @@ void KeepSamples(RecordFile& input, std::size_t first, std::size_t last) {
   keep(input.lines);
 }
 
-std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
+std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
-  if (pieces.empty()) return {{.name = file, .file = input}};
-  std::vector<NamedRecord> records;
+  if (pieces.empty()) return {input};
+  std::vector<RecordFile> records;
   std::size_t left_out = input.record.size();
   for (const loop::ConstantLoad& piece : pieces) {
     left_out -= piece.last - piece.first;
-    NamedRecord& added = records.emplace_back();
-    added.file = input;
-    KeepSamples(added.file, piece.first, piece.last);
-    added.file.notes.clear();
-    added.name =
-        fmt::format("{}:{}-{}", file, input.LineOf(piece.first), input.LineOf(piece.last - 1));
+    RecordFile& added = records.emplace_back(input);
+    KeepSamples(added, piece.first, piece.last);
+    added.notes.clear();
+    added.name = fmt::format("{}:{}-{}", input.name, input.LineOf(piece.first),
+                             input.LineOf(piece.last - 1));
   }
-  records.back().file.between_loads = left_out;
+  records.back().between_loads = left_out;
   return records;
 }
 
@@ -65,21 +64,20 @@ double JoinedTimes::Next(double time) {
   return time;
 }
 
-void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
-                     const std::string& next_name) {
+void RequireJoinable(const RecordFile& first, const RecordFile& next) {
   const auto require = [&](bool same, std::string_view what) {
     if (same) return;
     Refuse(
         "--join: one of {} and {} has {} and the other does not: pieces of one record must have "
         "the same columns",
-        first_name, next_name, what);
+        first.name, next.name, what);
   };
   require(next.time.has_value() == first.time.has_value(), "a time");
   require(next.normal_load.has_value() == first.normal_load.has_value(), "a normal load");
   require(next.is_torsional == first.is_torsional, "a torque");
 }
 
-RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names) {
+RecordFile Joined(std::vector<RecordFile> records) {
   RecordFile joined = std::move(records.front());
   joined.lines.clear();
   JoinedTimes times;
@@ -87,7 +85,7 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
   std::ranges::transform(joined.record.time, joined.record.time.begin(), shift);
   for (std::size_t k = 1; k < records.size(); ++k) {
     RecordFile& next = records[k];
-    RequireJoinable(joined, names.front(), next, names[k]);
+    RequireJoinable(joined, next);
     times.NextPiece();
     std::ranges::transform(next.record.time, next.record.time.begin(), shift);
     const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
@@ -106,6 +104,7 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
     }
     joined.notes.insert(joined.notes.end(), next.notes.begin(), next.notes.end());
   }
+  joined.name = fmt::format("{} … {}", joined.name, records.back().name);
   return joined;
 }
 

@@ -58,6 +58,7 @@ class RecordBuilder {
     if (rate && !asked.time.empty()) {
       Refuse("{}: --time and --sample-rate exclude each other", table.file);
     }
+    file_.name = table.file;
     file_.notes = table.notes;
     for (Quantity& quantity : AssignRoles(names, asked, file_.notes)) {
       const ChosenColumn column = Choose(names, quantity, asked.*RulesOf(quantity.role).given);
@@ -357,7 +358,9 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   if (!columns.with.empty()) {
     AddColumnsOf(table, ReadCsvTable(columns.with, columns.encoding), columns.time);
   }
-  return RecordOf(table, columns);
+  RecordFile file = RecordOf(table, columns);
+  file.name = path.string();
+  return file;
 }
 
 std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column) {

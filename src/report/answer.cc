@@ -160,7 +160,7 @@ class Writer {
     add(is_torsional ? "torque" : "force", first.force,
         fit_.force_sense < 0 ? ", opposite sign" : "");
     if (first.normal_load) add("load", *first.normal_load, "");
-    const std::string name = NameOf(report_.files);
+    const std::string name = NameOf(report_.files());
     if (columns.empty()) return Add("record", name);
     if (report_.sample_rate) {
       columns.push_back(fmt::format("time by --sample-rate {:g} Hz", *report_.sample_rate));

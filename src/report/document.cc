@@ -271,7 +271,7 @@ Json DocumentOf(const Report& report) {
       {"schema", "mindahl.fit/2"},
       {"version", Version()},
       {"input",
-       {{"files", report.files},
+       {{"files", report.files()},
         {"columns", Columns(report)},
         {"samples", Samples(report)},
         {"cycles", cycles},
@@ -338,7 +338,7 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
                          const char* why) {
       const auto line = [&](std::size_t sample) { return are_in_a_row ? file.LineOf(sample) : 0; };
       if (samples == 0) return;
-      parts.push_back({.file = report.files[r],
+      parts.push_back({.file = file.name,
                        .samples = samples,
                        .first = line(first),
                        .last = line(first + samples - 1),

@@ -25,7 +25,7 @@ std::string LabelOf(const Report& report, std::size_t r) {
   if (report.records.size() == 1) return "";
   const auto& load = report.fit.records[r].normal_load;
   if (report.fit.is_load_series() && load) return Quantity(*load, "N", 3);
-  return NameOf({&report.files[r], 1});
+  return NameOf({&report.records[r].name, 1});
 }
 
 bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
@@ -99,7 +99,7 @@ io::Plot ToPlot(const Report& report) {
   ScaleAxes(measured, along, units.displacement, is_torsional ? "torque" : "force", units.force);
   ScaleAxes(residual, along, units.displacement, "fitted − measured", units.response);
   measured.x_label.clear();  // the residual below has it
-  return {.title = fmt::format("{}: {}", NameOf(report.files), VerdictWord(report)),
+  return {.title = fmt::format("{}: {}", NameOf(report.files()), VerdictWord(report)),
           .panels = {std::move(measured), std::move(residual)}};
 }
 
@@ -189,7 +189,7 @@ std::string IntervalsHtml(const Report& report) {
 
 std::string ToPage(const Report& report, const Provenance& provenance) {
   const std::string word(VerdictWord(report));
-  const std::string title = fmt::format("{}: {}", NameOf(report.files), word);
+  const std::string title = fmt::format("{}: {}", NameOf(report.files()), word);
   if (report.failed()) {
     return PageHtml(
         title, VerdictHtml("bad", word, report.fit.solver.message) + ProvenanceHtml(provenance));

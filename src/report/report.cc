@@ -23,7 +23,6 @@ void Require(const ReportInput& input) {
   if (records == 0 || input.fit.model == nullptr) {
     throw InvalidArgument("there is nothing to report: the fit has no record or no model");
   }
-  RequireSameSize("names of files", input.files.size(), "records of the fit", records);
   RequireSameSize("records", input.records.size(), "records of the fit", records);
   for (std::size_t r = 0; r < records; ++r) {
     if (input.fit.parameters.empty()) continue;
@@ -161,8 +160,8 @@ std::string LoadsOfOtherFiles(const Report& report) {
   };
   double most = report.options.thresholds.other_test;
   std::string question;
-  for (std::size_t a = 0; a < report.files.size(); ++a) {
-    for (std::size_t b = 0; b < report.files.size(); ++b) {
+  for (std::size_t a = 0; a < report.records.size(); ++a) {
+    for (std::size_t b = 0; b < report.records.size(); ++b) {
       const RecordFit& less = report.fit.records[a];
       const RecordFit& more = report.fit.records[b];
       const double slips = std::max(1.0, fullness(more) / fullness(less));
@@ -171,8 +170,8 @@ std::string LoadsOfOtherFiles(const Report& report) {
       most = ratio;
       question = fmt::format(
           "do the loads belong to these files? half gap / N is {:.2g} in {} and {:.2g} in {}",
-          friction(less), NameOf({&report.files[a], 1}), friction(more),
-          NameOf({&report.files[b], 1}));
+          friction(less), NameOf({&report.records[a].name, 1}), friction(more),
+          NameOf({&report.records[b].name, 1}));
     }
   }
   return question;
@@ -192,6 +191,12 @@ std::string WhatToCheck(const Report& report) {
 }
 
 }  // namespace
+
+std::vector<std::string> Report::files() const {
+  std::vector<std::string> names;
+  for (const io::RecordFile& record : records) names.push_back(record.name);
+  return names;
+}
 
 const ContactQuantity* Report::Find(std::string_view quantity) const {
   const auto found = std::ranges::find(contact, quantity, &ContactQuantity::name);

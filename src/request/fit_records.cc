@@ -43,7 +43,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   const report::Units& units = report::UnitsOf(is_torsional);
   const bool is_forced = request.fit.response() == loop::Channel::kDisplacement;
   const auto place = [&](std::size_t r, std::size_t sample, const io::ChosenColumn& column) {
-    return fmt::format("{}:{}:{}", request.files[r], inputs[r].LineOf(sample), column.index);
+    return fmt::format("{}:{}:{}", inputs[r].name, inputs[r].LineOf(sample), column.index);
   };
   const auto half_range = [&](std::size_t r, const io::ChosenColumn& column,
                               const std::vector<double>& values, std::string_view what,
@@ -72,8 +72,8 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
     const Record& record = input.record;
     if (input.is_torsional != is_torsional) {
       throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
-                                   request.files[is_torsional ? r : 0],
-                                   request.files[is_torsional ? 0 : r]));
+                                   inputs[is_torsional ? r : 0].name,
+                                   inputs[is_torsional ? 0 : r].name));
     }
     const double own_travel =
         half_range(r, input.displacement, record.displacement, "displacement", units.displacement);
@@ -102,45 +102,35 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
 /// which samples of it count.
-/// @param names  written: those of the records
-std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
-                                   std::vector<std::string>& names) {
+std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs) {
   const loop::PreparationOptions& chosen = request.fit.preparation;
-  const bool splits =
-      request.contact.normal_loads.empty() && !chosen.load_window && !chosen.samples;
+  if (!request.contact.normal_loads.empty() || chosen.load_window || chosen.samples) return inputs;
   std::vector<RecordFile> records;
-  for (std::size_t r = 0; r < inputs.size(); ++r) {
-    std::vector<io::NamedRecord> pieces;
-    if (splits) pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
-    if (pieces.size() <= 1) pieces = {{.name = request.files[r], .file = std::move(inputs[r])}};
-    for (io::NamedRecord& record : pieces) {
-      names.push_back(std::move(record.name));
-      records.push_back(std::move(record.file));
-    }
+  for (const RecordFile& input : inputs) {
+    std::ranges::move(io::SplitAtLoadSteps(input), std::back_inserter(records));
   }
   return records;
 }
 
 /// Cuts each record to its test, where that is asked for and nothing says which samples count.
 /// @param options  changed: a contact that was cycled before is steady
-std::vector<report::LeftOut> KeepTests(const FitRequest& request,
-                                       std::span<const std::string> names,
-                                       std::vector<RecordFile>& records, FitOptions& options) {
+std::vector<report::LeftOut> KeepTests(const FitRequest& request, std::vector<RecordFile>& records,
+                                       FitOptions& options) {
   std::vector<report::LeftOut> left_out;
   const loop::PreparationOptions& given = options.preparation;
   const bool is_chosen = given.load_window || given.samples || given.cycles;
   if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return left_out;
   bool all_cycled = true;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::TestPart test = loop::FindTestPart(records[r].record);
+  for (RecordFile& record : records) {
+    const loop::TestPart test = loop::FindTestPart(record.record);
     for (const loop::LeftOut& part : test.left_out) {
-      left_out.push_back({.file = names[r],
+      left_out.push_back({.file = record.name,
                           .samples = part.last - part.first,
-                          .first = records[r].LineOf(part.first),
-                          .last = records[r].LineOf(part.last - 1),
+                          .first = record.LineOf(part.first),
+                          .last = record.LineOf(part.last - 1),
                           .why = std::string(part.reason)});
     }
-    io::KeepSamples(records[r], test.first, test.last);
+    io::KeepSamples(record, test.first, test.last);
     all_cycled = all_cycled && test.begins_cycled;
   }
   if (all_cycled && !options.initial_state && options.initial_states.empty()) {
@@ -150,29 +140,29 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request,
 }
 
 /// Turns the force of records whose sign is not that of the first, unless a sign is given.
-void AlignForceSigns(const loop::PreparationOptions& options, std::span<const std::string> names,
-                     std::vector<RecordFile>& records, std::vector<std::string>& notes) {
+void AlignForceSigns(const loop::PreparationOptions& options, std::vector<RecordFile>& records,
+                     std::vector<std::string>& notes) {
   if (options.force_sense || records.size() < 2) return;
   std::optional<int> first;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const loop::RecordView record(records[r].record);
+  for (RecordFile& file : records) {
+    const loop::RecordView record(file.record);
     const int sign = loop::Prepare({&record, 1}, options).force_sense;
     if (sign == first.value_or(sign)) {
       first = sign;
       continue;
     }
-    for (double& force : records[r].record.force) force = -force;
-    notes.push_back(fmt::format("{}: the force is turned, as its sign is not that of {}", names[r],
-                                names.front()));
+    for (double& force : file.record.force) force = -force;
+    notes.push_back(fmt::format("{}: the force is turned, as its sign is not that of {}", file.name,
+                                records.front().name));
   }
 }
 
-void RequireLoadsOfRecords(const FitRequest& request) {
+void RequireLoadsOf(std::size_t files, const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
-  if (loads <= 1 || loads == request.files.size()) return;
+  if (loads <= 1 || loads == files) return;
   throw InputError(
       fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a file", loads,
-                  request.files.size(), request.files.size() > 1 ? "s" : ""));
+                  files, files > 1 ? "s" : ""));
 }
 
 /// Fits the options' law with its terms, or where asked for with those that the records require.
@@ -346,13 +336,8 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
 
 void Validate(const FitRequest& request) {
   Validate(request.contact);
-  RequireLoadsOfRecords(request);
+  RequireLoadsOf(request.files.size(), request);
   MakeFitOptions(request);
-}
-
-void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
-  const std::optional<Interval>& window = request.time_window;
-  if (window) io::KeepTimeWindow(record, name, window->lower, window->upper);
 }
 
 bool Established(const FitResult& fit, Strictness strictness) {
@@ -385,38 +370,34 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
       }
       throw;
     }
-    KeepTimeWindow(request, file, inputs.back());
   }
   return inputs;
 }
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
   if (inputs.empty()) throw InputError("a fit needs a record: give one");
-  RequireSameSize("names", request.files.size(), "records", inputs.size());
-  if (request.join && inputs.size() > 1) {
-    FitRequest joined = request;
-    joined.join = false;
-    joined.files = {fmt::format("{} … {}", request.files.front(), request.files.back())};
-    std::vector<RecordFile> one;
-    one.push_back(io::Joined(std::move(inputs), request.files));
-    return FitRecords(joined, std::move(one));
-  }
-  RequireLoadsOfRecords(request);
+  Validate(request.contact);
   FitOptions options = MakeFitOptions(request);
+  if (const std::optional<Interval>& window = request.time_window) {
+    for (RecordFile& input : inputs) io::KeepTimeWindow(input, window->lower, window->upper);
+  }
+  if (request.join && inputs.size() > 1) inputs = {io::Joined(std::move(inputs))};
+  RequireLoadsOf(inputs.size(), request);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     throw InputError(
         "--normal-load and other options that describe a contact do not apply to a torque against "
         "an angle: leave them out");
   }
   RequireLoops(request, inputs);
+  std::vector<std::string> files;
   std::vector<std::string> notes;
   for (const RecordFile& input : inputs) {
+    files.push_back(input.name);
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   }
-  std::vector<std::string> names;
-  inputs = SplitLoads(request, std::move(inputs), names);
-  std::vector<report::LeftOut> left_out = KeepTests(request, names, inputs, options);
-  AlignForceSigns(options.preparation, names, inputs, notes);
+  inputs = SplitLoads(request, std::move(inputs));
+  std::vector<report::LeftOut> left_out = KeepTests(request, inputs, options);
+  AlignForceSigns(options.preparation, inputs, notes);
   std::vector<Record> records;
   records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
@@ -427,7 +408,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     if (request.compare) compared = identification::CompareModels(records, options);
     asked = FitAsked(request, options, records);
   } catch (const identification::TooFewSamples& error) {
-    throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
+    throw InputError(fmt::format("{}: {}", fmt::join(files, ", "), error.what()));
   }
   std::optional<report::NextStep> next;
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
@@ -438,8 +419,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     notes.emplace_back("the normal load is not positive in every file: it is not used");
   }
   return report::MakeReport(
-      {.files = std::move(names),
-       .records = std::move(inputs),
+      {.records = std::move(inputs),
        .fit = std::move(asked.fit),
        .options = asked.options,
        .known = known,

@@ -7,6 +7,7 @@ namespace {
 /// Four cycles of 40 samples at 20 N, four at 50 N; the lines of the file begin with a header.
 RecordFile TwoLoads() {
   RecordFile file;
+  file.name = "series.csv";
   file.notes = {"a note"};
   file.record.covariates = {{.name = "p", .unit = "bar", .values = {}}};
   for (std::size_t i = 0; i < 320; ++i) {
@@ -22,11 +23,11 @@ RecordFile TwoLoads() {
 }
 
 TEST(LoadPieces, HaveEveryColumnTheirLinesAndANameOfTheirOwn) {
-  const std::vector<NamedRecord> pieces = SplitAtLoadSteps(TwoLoads(), "series.csv");
+  const std::vector<RecordFile> pieces = SplitAtLoadSteps(TwoLoads());
   ASSERT_EQ(pieces.size(), 2U);
   EXPECT_EQ(pieces[0].name, "series.csv:2-161");
   EXPECT_EQ(pieces[1].name, "series.csv:192-321");  // the sine turns at samples 170 and 190
-  const RecordFile& second = pieces[1].file;
+  const RecordFile& second = pieces[1];
   EXPECT_THAT(second.notes, IsEmpty());
   ASSERT_EQ(second.record.size(), 130U);
   EXPECT_EQ(second.lines.front(), 192U);
@@ -37,59 +38,59 @@ TEST(LoadPieces, HaveEveryColumnTheirLinesAndANameOfTheirOwn) {
   EXPECT_EQ(second.record.covariates[0].values.front(), -190.0);
   EXPECT_EQ(second.record.covariates[0].unit, "bar");
   EXPECT_EQ(second.record.normal_load.front(), 50.0);
-  EXPECT_EQ(pieces[0].file.between_loads + second.between_loads, 30U);
+  EXPECT_EQ(pieces[0].between_loads + second.between_loads, 30U);
 }
 
 TEST(LoadPieces, OfOneLoadAreTheRecordItself) {
   RecordFile file = TwoLoads();
   std::ranges::fill(file.record.normal_load, 20.0);
-  const std::vector<NamedRecord> pieces = SplitAtLoadSteps(file, "loop.csv");
+  const std::vector<RecordFile> pieces = SplitAtLoadSteps(file);
   ASSERT_EQ(pieces.size(), 1U);
-  EXPECT_EQ(pieces[0].name, "loop.csv");
-  EXPECT_EQ(pieces[0].file.between_loads, 0U);
-  EXPECT_EQ(pieces[0].file.notes.size(), 1U);
-  EXPECT_EQ(pieces[0].file.record.size(), 320U);
+  EXPECT_EQ(pieces[0].name, "series.csv");
+  EXPECT_EQ(pieces[0].between_loads, 0U);
+  EXPECT_EQ(pieces[0].notes.size(), 1U);
+  EXPECT_EQ(pieces[0].record.size(), 320U);
 }
 
 TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   RecordFile file = TwoLoads();
   file.record.time.assign(file.lines.begin(), file.lines.end());
-  KeepTimeWindow(file, "loop.csv", 5, 6);
+  KeepTimeWindow(file, 5, 6);
   EXPECT_THAT(file.record.time, ElementsAre(5, 6));
   EXPECT_THAT(file.record.displacement, SizeIs(2));
   EXPECT_THAT(file.record.force, ElementsAre(3, 4));
   EXPECT_THAT(file.record.normal_load, ElementsAre(20, 20));
   EXPECT_THAT(file.record.covariates[0].values, ElementsAre(-3, -4));
-  EXPECT_EQ(file.notes.back(), "loop.csv: 2 of 320 samples lie in the time window 5:6 s");
-  const auto refusal = [&] {
-    return MessageOf<InputError>([&] { KeepTimeWindow(file, "loop.csv", 7, 8); });
-  };
+  EXPECT_EQ(file.notes.back(), "series.csv: 2 of 320 samples lie in the time window 5:6 s");
+  const auto refusal = [&] { return MessageOf<InputError>([&] { KeepTimeWindow(file, 7, 8); }); };
   EXPECT_THAT(refusal(), HasSubstr("7:8 holds no sample: the record runs from 5 to 6 s"));
   file.record.time.clear();
   EXPECT_THAT(refusal(), HasSubstr("needs a time column"));
 }
 
 TEST(Joined, JoinsPiecesWhoseClockBeginsAnew) {
-  const auto piece = [&](const std::string& rows) {
-    return Read("time [s],x [m],F [N],c\n" + rows);
+  const auto piece = [&](const std::string& name, const std::string& rows) {
+    RecordFile file = Read("time [s],x [m],F [N],c\n" + rows);
+    file.name = name;
+    return file;
   };
-  const RecordFile joined = Joined(
-      {piece("0,0,1,5\n1,1,2,6\n"), piece("0,2,3,7\n1,3,4,8\n"), piece("7,4,5,9\n8,5,6,1\n")},
-      {"a", "b", "c"});
+  const RecordFile joined =
+      Joined({piece("a", "0,0,1,5\n1,1,2,6\n"), piece("b", "0,2,3,7\n1,3,4,8\n"),
+              piece("c", "7,4,5,9\n8,5,6,1\n")});
+  EXPECT_EQ(joined.name, "a … c");
   EXPECT_THAT(joined.record.time, ElementsAre(0, 1, 2, 3, 9, 10))
       << "a clock that begins anew goes on by one step, and keeps its zero from there";
   EXPECT_THAT(joined.record.force, ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(5, 6, 7, 8, 9, 1));
   EXPECT_THAT(MessageOf<InputError>([&] {
-                Joined({piece("0,0,1,5\n1,1,2,6\n"), Read("x [m],F [N]\n0,1\n1,2\n")}, {"a", "d"});
+                Joined({piece("a", "0,0,1,5\n1,1,2,6\n"), Read("x [m],F [N]\n0,1\n1,2\n")});
               }),
-              HasSubstr("one of a and d has a time"));
+              AllOf(HasSubstr("one of a and "), HasSubstr("loop.csv has a time")));
 }
 
 TEST(Joined, PiecesKeepTheCovariatesThatAllHave) {
   const RecordFile joined =
-      Joined({Read("x [m],F [N],b,c\n0,1,5,7\n1,2,6,8\n"), Read("x [m],F [N],c\n2,3,9\n3,4,0\n")},
-             {"a", "b"});
+      Joined({Read("x [m],F [N],b,c\n0,1,5,7\n1,2,6,8\n"), Read("x [m],F [N],c\n2,3,9\n3,4,0\n")});
   ASSERT_EQ(joined.record.covariates.size(), 1u);
   EXPECT_EQ(joined.record.covariates.front().name, "c");
   EXPECT_THAT(joined.record.covariates.front().values, ElementsAre(7, 8, 9, 0));

@@ -79,9 +79,9 @@ TEST(MakeReport, DeterminesNothingFromNoMoreSamplesThanParameters) {
   EXPECT_TRUE(document["parameters"]["sigma"]["ci95"][0].is_null());
 }
 
-TEST(MakeReport, RefusesAnotherNumberOfNames) {
+TEST(MakeReport, RefusesAnotherNumberOfRecords) {
   ReportInput input = MadeInput();
-  input.files.emplace_back("one more");
+  input.records.push_back(input.records.front());
   EXPECT_THROW(MakeReport(std::move(input)), InvalidArgument);
 }
 
@@ -126,7 +126,7 @@ TEST(Page, OfAFitThatFailedSaysWhy) {
 
 TEST(Page, EscapesWhatItIsGiven) {
   ReportInput input = MadeInput();
-  input.files = {"<b>&.csv"};
+  input.records.front().name = "<b>&.csv";
   const std::string page = Page(std::move(input), {"mindahl fit '<b>&.csv'", {}, {}});
   EXPECT_THAT(page, HasSubstr("&lt;b&gt;&amp;.csv"));
   EXPECT_THAT(page, Not(HasSubstr("<b>&.csv")));

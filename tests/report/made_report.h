@@ -99,10 +99,10 @@ inline report::ReportInput MadeInput(const std::vector<loop::Record>& records, d
   report::ReportInput input;
   for (const loop::Record& record : records) {
     io::RecordFile file;
+    file.name = "loop_" + std::to_string(input.records.size() + 1) + ".csv";
     file.record = record;
     file.displacement.unit = "m";
     file.force.unit = "N";
-    input.files.push_back("loop_" + std::to_string(input.files.size() + 1) + ".csv");
     input.records.push_back(std::move(file));
   }
   input.fit = MadeFit(records, amplitude);

@@ -25,9 +25,9 @@ io::RecordFile LoopFile() {
   return file;
 }
 
-std::string RefusalOf(const std::vector<io::RecordFile>& files, FitRequest request = {}) {
+std::string RefusalOf(std::vector<io::RecordFile> files, const FitRequest& request = {}) {
   for (std::size_t k = 0; k < files.size(); ++k) {
-    request.files.push_back(std::string(1, static_cast<char>('a' + k)) + ".csv");
+    files[k].name = std::string(1, static_cast<char>('a' + k)) + ".csv";
   }
   return MessageOf<InputError>([&] { FitRecords(request, files); });
 }
@@ -69,8 +69,9 @@ TEST(FitRecords, RefusesAGateAsWideAsTheMotion) {
 
 TEST(FitRecords, TurnsTheForceOfAFileWhoseSignIsTheOther) {
   io::RecordFile opposite = LoopFile();
+  opposite.name = "b.csv";
   for (double& force : opposite.record.force) force = -force;
-  const report::Report made = FitRecords({.files = {"a.csv", "b.csv"}}, {LoopFile(), opposite});
+  const report::Report made = FitRecords({}, {LoopFile(), opposite});
   EXPECT_NEAR(made.fit.law.slip_force, 40.0, 0.5);
   EXPECT_THAT(made.notes, Contains(StartsWith("b.csv: the force is turned")));
 }
@@ -98,7 +99,6 @@ TEST(FitRecords, TakesTheMeanOfTheLoadsInTheWindowForTheContact) {
     file.record.normal_load.push_back(i == 7 ? 300.0 : i == 50 ? 1.0 : i % 2 == 0 ? 79.9 : 80.3);
   }
   FitRequest request;
-  request.files = {"a.csv"};
   request.fit.preparation.load_window = {70, 90};
   const report::Report report = FitRecords(request, {file});
   // 50 even samples of 79.9 and 49 odd ones of 80.3 are within it.
@@ -116,12 +116,13 @@ TEST(FitRecords, JoinsPiecesOfOneRecord) {
     (second.record.*column)
         .erase((second.record.*column).begin(), (second.record.*column).begin() + 41);
   }
-  FitRequest request{.files = {"a.csv", "b.csv"}, .join = true};
+  first.name = "a.csv";
+  second.name = "b.csv";
+  FitRequest request;
+  request.join = true;
   const report::Report joined = FitRecords(request, {first, second});
-  EXPECT_EQ(joined.files, std::vector<std::string>{"a.csv … b.csv"});
-  request.files = {"a.csv"};
-  request.join = false;
-  const report::Report one = FitRecords(request, {whole});
+  EXPECT_EQ(joined.files(), std::vector<std::string>{"a.csv … b.csv"});
+  const report::Report one = FitRecords({}, {whole});
   EXPECT_EQ(joined.fit.law.slip_force, one.fit.law.slip_force);
   EXPECT_EQ(joined.fit.rms, one.fit.rms);
 }
@@ -164,7 +165,6 @@ report::Report ReportOf(const Record& record) {
   file.record = record;
   file.displacement.unit = "m";
   file.force.unit = "N";
-  request.files = {"a.csv"};
   request.trim = true;
   return FitRecords(request, {file});
 }

@@ -117,10 +117,7 @@ void PrintTo(const Question& question, std::ostream* out) { *out << question.nam
 report::Report Ask(const Question& question, const UnitScale& scale) {
   FitRequest request = question.request(scale);
   std::vector<io::RecordFile> files;
-  for (const loop::Record& record : question.records()) {
-    request.files.push_back("loop" + std::to_string(files.size() + 1));
-    files.push_back(FileOf(record, scale));
-  }
+  for (const loop::Record& record : question.records()) files.push_back(FileOf(record, scale));
   return FitRecords(request, std::move(files));
 }
 

@@ -43,6 +43,7 @@ struct ChosenColumn {
 
 /// A record and where it came from.
 struct RecordFile {
+  std::string name{};  ///< in messages and reports: series.csv, of a piece series.csv:2-501
   loop::Record record;
   /// A torque [N m] against an angle [rad]: they are in the record's force and displacement.
   bool is_torsional = false;
@@ -159,13 +160,11 @@ class JoinedTimes {
 };
 
 /// @throws InputError where one of two pieces of a record has a column that the other has not
-void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
-                     const std::string& next_name);
+void RequireJoinable(const RecordFile& first, const RecordFile& next);
 
 /// Joins records, in their order, into one. Lines are left out; covariates are those of all.
-/// @param names  of their files, for messages
 /// @throws InputError where one has a time, a load or a torque and another has not
-RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names);
+RecordFile Joined(std::vector<RecordFile> records);
 
 /// Returns the displacements [m] or [rad] to impose, one a row, in order; in SI units the very
 /// doubles of the file.
@@ -176,22 +175,14 @@ std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string
 
 /// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
 /// note of how many.
-/// @param file  its name, for messages
 /// @throws InputError when the record has no time, or no sample lies there
-void KeepTimeWindow(RecordFile& input, const std::string& file, double first, double last);
+void KeepTimeWindow(RecordFile& input, double first, double last);
 
 /// Keeps the samples [first, last) of a record.
 void KeepSamples(RecordFile& input, std::size_t first, std::size_t last);
 
-/// One of several records of a file.
-struct NamedRecord {
-  std::string name;  ///< the file's, and of a piece its lines: series.csv:2-501
-  RecordFile file;
-};
-
 /// Returns a record whose normal load goes in steps (loop/segments.h) as one record for each
 /// load; else the record itself.
-/// @param file  its name
-std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file);
+std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input);
 
 }  // namespace mindahl::io

@@ -43,7 +43,6 @@ struct LeftOut {
 
 /// Holds the inputs of a report.
 struct ReportInput {
-  std::vector<std::string> files{};       ///< name of each record, as it is to be printed
   std::vector<io::RecordFile> records{};  ///< records that were fitted, as read
   identification::FitResult fit{};
   identification::FitOptions options = {};  ///< options of the fit, with what it chose
@@ -68,6 +67,8 @@ struct Report : ReportInput {
   /// Names a unit or a load that is most likely wrong, to look at first; "" where none is.
   std::string check;
 
+  /// Returns the names of the records.
+  [[nodiscard]] std::vector<std::string> files() const;
   /// True for a torque against an angle, which has no Hertz-Mindlin contact and no mapping.
   [[nodiscard]] bool is_torsional() const { return records.front().is_torsional; }
   /// True for a fit that failed and has no parameter, residual, loop, contact or mapping.
@@ -80,7 +81,7 @@ struct Report : ReportInput {
 
 /// Makes a report from a fit. A fit of no more samples than free parameters determines none of
 /// them.
-/// @param input  one name and one record for each record of the fit
+/// @param input  one record for each record of the fit
 /// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,
 ///   and as DescribeContact()
 Report MakeReport(ReportInput input);

@@ -76,18 +76,13 @@ void Validate(const FitRequest& request);
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
                                 identification::FitOptions& options);
 
-/// Keeps the samples in the request's time window, where it has one, with a note in the record.
-/// @param name  the record's, for messages
-/// @throws InputError as io::KeepTimeWindow()
-void KeepTimeWindow(const FitRequest& request, const std::string& name, io::RecordFile& record);
-
-/// Reads the request's files, within its limits and time window.
+/// Reads the request's files.
 /// @throws InputError naming file, line and column
 std::vector<io::RecordFile> ReadRecords(const FitRequest& request);
 
 /// Fits records together as one contact at Depth::kFull, and reports.
-/// @param records  within the time window, called as request.files; one whose normal load goes in
-///   steps becomes a record for each load
+/// @param records  those of the request's files; one whose normal load goes in steps becomes a
+///   record for each load
 /// @throws InvalidArgument or InputError naming record, line and column, or the option
 report::Report FitRecords(const FitRequest& request, std::vector<io::RecordFile> records);
 
