@@ -63,8 +63,8 @@ class CommandConfig : public CLI::ConfigTOML {
 
  private:
   [[noreturn]] void Refuse(const toml::source_region& place, std::string_view why) const {
-    throw InputError(fmt::format("--config: {}:{}: {}", app_.get_config_ptr()->as<std::string>(),
-                                 place.begin.line, why));
+    mindahl::Refuse("--config: {}:{}: {}", app_.get_config_ptr()->as<std::string>(),
+                    place.begin.line, why);
   }
 
   std::string ValueOf(const toml::node& node) const {

@@ -31,8 +31,8 @@ void RequireReportDirectory(const BatchCommandOptions& options) {
   std::error_code error;
   std::filesystem::create_directory(directory, error);
   if (!error && std::filesystem::is_directory(directory)) return;
-  throw InputError(fmt::format("--report: '{}' is no directory, and none can be made: {}",
-                               directory, error ? error.message() : "it is a file"));
+  Refuse("--report: '{}' is no directory, and none can be made: {}", directory,
+         error ? error.message() : "it is a file");
 }
 
 std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const CLI::App& command) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
@@ -18,9 +16,9 @@
 #include <vector>
 
 #include "cli/app.h"
+#include "core/refuse.h"
 #include "core/text.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/core/error.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/models/response.h"
 #include "mindahl/report/report.h"

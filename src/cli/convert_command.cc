@@ -32,12 +32,11 @@ struct ConvertOptions {
 /// Reads what `mindahl fit --json` wrote.
 Json ReadFit(const std::string& file) {
   std::ifstream stream(file);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", file));
+  if (!stream) Refuse("{}: cannot be read", file);
   Json fit = Json::parse(stream, nullptr, /*allow_exceptions=*/false);
   const Json schema = report::At(fit, "/schema");
   if (schema.is_string() && schema.get<std::string>().starts_with("mindahl.fit/")) return fit;
-  throw InputError(fmt::format(
-      "{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file));
+  Refuse("{}: is not the result of a fit: give what `mindahl fit --json {}` writes", file, file);
 }
 
 const models::FrictionModel& ModelOf(const ConvertOptions& request) {

@@ -123,8 +123,7 @@ void AddTolerance(const OptionGroup& group, double& tolerance, const std::string
   const auto read = [&tolerance](const std::string& text) {
     const std::optional<double> share = ParseShare(text);
     if (!share) {
-      throw InputError(
-          fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
+      Refuse("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text);
     }
     tolerance = *share;
   };

@@ -60,17 +60,16 @@ void RequireWritable(const std::string& option, const std::string& path) {
       ".ods",     ".h5", ".hdf5",    ".mat",   ".npz"};
   const std::string ending = LowerCase(fs::path(path).extension().string());
   if (std::ranges::find(kNotWritten, ending) != kNotWritten.end()) {
-    throw InputError(fmt::format("{}: '{}' would hold text, not what {} says: give it another name",
-                                 option, path, ending));
+    Refuse("{}: '{}' would hold text, not what {} says: give it another name", option, path,
+           ending);
   }
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: cannot write '{}': it is a directory", option, path));
+    Refuse("{}: cannot write '{}': it is a directory", option, path);
   }
   const fs::path parent = fs::path(path).parent_path();
   if (!parent.empty() && !fs::is_directory(parent, ignored)) {
-    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", option, path,
-                                 parent.string()));
+    Refuse("{}: cannot write '{}': there is no directory '{}'", option, path, parent.string());
   }
 }
 
@@ -97,14 +96,12 @@ void RequireOutputs(const CLI::App& command) {
     if (option == "--plot") io::RequirePlotName(path);
     for (const std::string& input : inputs) {
       if (is_stdout || !IsSameFile(path, input)) continue;
-      throw InputError(
-          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
-                      option, path, input));
+      Refuse("{}: '{}' is the input '{}', which it would replace: write to another file", option,
+             path, input);
     }
     for (const auto& [other, other_path] : checked) {
       if (!(is_stdout ? other_path == "-" : IsSameFile(other_path, path))) continue;
-      throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
-                                   other, option, path));
+      Refuse("{} and {} both write to '{}': give each a file of its own", other, option, path);
     }
     checked.emplace_back(option, path);
   }
@@ -131,9 +128,8 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (!IsSameFile(files[i], files[k])) continue;
-      throw InputError(
-          fmt::format("'{}' and '{}' are one file, whose samples would count twice: give it once",
-                      files[k], files[i]));
+      Refuse("'{}' and '{}' are one file, whose samples would count twice: give it once", files[k],
+             files[i]);
     }
   }
 }
@@ -141,7 +137,7 @@ void RequireDistinctFiles(std::span<const std::string> files) {
 void RequireNotThere(std::string_view option, const std::string& path, std::string_view remedy) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return;  // a device loses nothing
-  throw InputError(fmt::format("{}: {} exists: add {}", option, path, remedy));
+  Refuse("{}: {} exists: add {}", option, path, remedy);
 }
 
 report::Provenance ProvenanceOf(const CLI::App& command, const std::string& command_line,

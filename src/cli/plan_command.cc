@@ -83,8 +83,7 @@ identification::FitResult FitOfRecord(const PlanOptions& options,
     notes.emplace_back("--alpha is not used: the record has an alpha of its own");
   }
   if (!fit.converged) {
-    throw InputError(
-        fmt::format("--record: {}: the fit does not converge: see mindahl fit", options.record));
+    Refuse("--record: {}: the fit does not converge: see mindahl fit", options.record);
   }
   if (is_inadequate()) {
     notes.emplace_back(
@@ -105,8 +104,7 @@ Expectation Expect(const PlanOptions& options, const identification::FitOptions&
   RequireNonNegative("--displacement-noise [m]", displacement_noise);
   if (!options.record.empty()) {
     if (IsAnythingGiven(options.law)) {
-      throw InputError(
-          "--record excludes --sigma, --slip-force and other options that describe a contact");
+      Refuse("--record excludes --sigma, --slip-force and other options that describe a contact");
     }
     const identification::FitResult fit = FitOfRecord(options, fit_options, notes);
     expected = {fit.law, fit.rig, fit.force_noise, fit.records.front().displacement_noise};
@@ -121,7 +119,7 @@ Expectation Expect(const PlanOptions& options, const identification::FitOptions&
     }
   } else {
     if (!options.force_noise) {
-      throw InputError("--force-noise missing: give the standard deviation of the force [N]");
+      Refuse("--force-noise missing: give the standard deviation of the force [N]");
     }
     expected.law = ResolveLaw(options.law);
     notes = DoubtsAbout(options.law.contact);
@@ -131,7 +129,7 @@ Expectation Expect(const PlanOptions& options, const identification::FitOptions&
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
   const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
   if (fits_rig && std::isinf(expected.rig.stiffness)) {
-    throw InputError("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
+    Refuse("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
   }
   return expected;
 }
@@ -144,21 +142,21 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
     const auto precision =
         ParseShare(std::string_view(text).substr(std::min(equals + 1, text.size())));
     if (!precision) {
-      throw InputError(fmt::format(
+      Refuse(
           "--want: '{}' is no precision: must be NAME=ERROR with a standard error > 0 in the "
           "parameter's unit, or in percent of it, as alpha=0.01 or slip_force=1%",
-          text));
+          text);
     }
     if (identification::FindTerm(name) == nullptr) {
       std::vector<std::string> names;
       for (const auto& term : identification::Terms()) names.emplace_back(term.name);
-      throw InputError(
-          fmt::format("--want: '{}' is no parameter{} must be sigma, alpha, slip_force "
-                      "or a term that --with names",
-                      name, DidYouMean(name, names)));
+      Refuse(
+          "--want: '{}' is no parameter{} must be sigma, alpha, slip_force "
+          "or a term that --with names",
+          name, DidYouMean(name, names));
     }
     if (!wanted.emplace(name, Precision{*precision, text.ends_with('%')}).second) {
-      throw InputError(fmt::format("--want: {} is given twice: give it once", name));
+      Refuse("--want: {} is given twice: give it once", name);
     }
   }
   return wanted;
@@ -343,7 +341,7 @@ io::Plot ToPlot(const PlanOptions& options, const Plan& plan) {
     if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
   }
   if (plot.panels.empty()) {
-    throw InputError("--plot: no amplitude determines a parameter: there is nothing to draw");
+    Refuse("--plot: no amplitude determines a parameter: there is nothing to draw");
   }
   return plot;
 }

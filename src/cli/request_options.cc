@@ -55,16 +55,16 @@ UncertainValue ParseUncertainValue(std::string_view text, std::string_view optio
     *standard_error *= 0.01 * std::abs(*value);
   }
   if (standard_error && !(std::isfinite(*standard_error) && *standard_error >= 0)) {
-    throw InputError(
-        fmt::format("{}: the standard uncertainty in '{}' is {}: must be finite and >= 0; leave it "
-                    "out where the value is exact",
-                    option, text, *standard_error));
+    Refuse(
+        "{}: the standard uncertainty in '{}' is {}: must be finite and >= 0; leave it "
+        "out where the value is exact",
+        option, text, *standard_error);
   }
   if (!value || !standard_error) {
-    throw InputError(fmt::format(
+    Refuse(
         "{}: '{}' is not a number{}, nor one with its standard uncertainty: write 50, 50±0.5, "
         "50+-0.5, 50+/-0.5 or 50±1%",
-        option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit)));
+        option, text, unit == "-" ? "" : fmt::format(" or a quantity in {}", unit));
   }
   return {*value, *standard_error};
 }
@@ -152,9 +152,8 @@ struct Asked {
 
 double ParseNumber(std::string_view text, const Asked& asked) {
   if (const std::optional<double> value = ParseQuantity(text, asked.unit)) return *value;
-  throw InputError(fmt::format(
-      "{}: '{}' is not a number{}: write {}", asked.option, text,
-      asked.unit == "-" ? "" : fmt::format(" or a quantity in {}", asked.unit), asked.form));
+  Refuse("{}: '{}' is not a number{}: write {}", asked.option, text,
+         asked.unit == "-" ? "" : fmt::format(" or a quantity in {}", asked.unit), asked.form);
 }
 
 /// Returns "left<separator>right".
@@ -164,27 +163,25 @@ std::pair<std::string_view, std::string_view> Split(std::string_view text, char 
   if (at != std::string_view::npos && at > 0 && at + 1 < text.size()) {
     return {text.substr(0, at), text.substr(at + 1)};
   }
-  throw InputError(fmt::format("{}: '{}' is incomplete: write {}", asked.option, text, asked.form));
+  Refuse("{}: '{}' is incomplete: write {}", asked.option, text, asked.form);
 }
 
 [[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
-  throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
+  Refuse("{}: '{}' is given twice: give it once", option, name);
 }
 
 Interval ParseInterval(std::string_view text, const Asked& asked) {
   const auto [lower, upper] = Split(text, ':', asked);
   const Interval interval = {ParseNumber(lower, asked), ParseNumber(upper, asked)};
   if (interval.lower < interval.upper) return interval;
-  throw InputError(
-      fmt::format("{}: '{}' is empty: the first number must be the smaller", asked.option, text));
+  Refuse("{}: '{}' is empty: the first number must be the smaller", asked.option, text);
 }
 
 identification::Prior ParsePrior(std::string_view text, const Asked& asked) {
   const UncertainValue prior = ParseUncertainValue(text, asked.option, asked.unit);
   if (prior.standard_error > 0) return {prior.value, prior.standard_error};
-  throw InputError(
-      fmt::format("{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value",
-                  asked.option, text));
+  Refuse("{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value",
+         asked.option, text);
 }
 
 loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
@@ -192,8 +189,7 @@ loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
   const auto count = [&](std::string_view digits) {
     const auto number = NumberIn<std::size_t>(digits);
     if (number && *number >= 1) return *number;
-    throw InputError(fmt::format("{}: '{}' is not a whole number from 1 on: write {}", asked.option,
-                                 digits, asked.form));
+    Refuse("{}: '{}' is not a whole number from 1 on: write {}", asked.option, digits, asked.form);
   };
   return {.first = count(first), .last = count(last)};
 }
@@ -209,7 +205,7 @@ void ReadCovariate(const std::string& text, identification::FitOptions& fit) {
   constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
   const std::size_t at = text.rfind('=');
   if (text.empty() || at == 0 || at + 1 == text.size()) {
-    throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
+    Refuse("--covariate: '{}' is incomplete: write {}", text, kForm);
   }
   fit.covariates.push_back(text.substr(0, at));
   if (at == std::string::npos || text.substr(at + 1) == kFitIt) return;
@@ -462,8 +458,8 @@ void AddStrict(const OptionGroup& group, Strictness& strictness, const std::stri
   const auto read = [&strictness](const std::string& given) {
     const auto level = levels.find(given);
     if (level == levels.end()) {
-      throw InputError(fmt::format(
-          "--strict: '{}' is no verdict: give --strict for adequate, or --strict=doubtful", given));
+      Refuse("--strict: '{}' is no verdict: give --strict for adequate, or --strict=doubtful",
+             given);
     }
     strictness = level->second;
   };

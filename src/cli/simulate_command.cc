@@ -52,17 +52,17 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   models::ExcitationOptions excitation = options.excitation;
   excitation.waveform = *models::FindWaveform(options.waveform);
   if (options.lambda.has_value() == options.amplitude.has_value()) {
-    throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
+    Refuse("--lambda or --amplitude, one of the two, must be given (or --path)");
   }
   excitation.amplitude = options.amplitude.value_or(0.0);
   if (options.lambda) {
     RequirePositive("--lambda [-]", *options.lambda);
     const double gross_slip = GrossSlipDisplacement(law);
     if (!std::isfinite(gross_slip)) {
-      throw InputError(fmt::format(
+      Refuse(
           "--lambda needs a finite gross-slip displacement, which does not exist for alpha = {} >= "
           "1: give --amplitude",
-          law.shape_exponent));
+          law.shape_exponent);
     }
     excitation.amplitude = *options.lambda * gross_slip;
   }
@@ -70,9 +70,8 @@ models::Excitation MakeMotion(const SimulateOptions& options, const models::Bran
   if (excitation.waveform == models::Waveform::kGrowingSine) return motion;
   motion.envelope.clear();
   if (excitation.growth != models::ExcitationOptions().growth) {
-    throw InputError(
-        fmt::format("--growth has no effect with --waveform {}: give --waveform growing-sine",
-                    options.waveform));
+    Refuse("--growth has no effect with --waveform {}: give --waveform growing-sine",
+           options.waveform);
   }
   return motion;
 }
@@ -83,14 +82,12 @@ Approximation ResolveMethod(const SimulateOptions& options) {
        {std::tuple(options.steps && method.steps.empty(), "--steps", "iwan"),
         {options.tolerance && !method.adaptive, "--tolerance", "dopri5"}}) {
     if (!is_without_effect) continue;
-    throw InputError(
-        fmt::format("{} has no effect with --method {}: choose another method, as --method {}",
-                    option, method.name, other));
+    Refuse("{} has no effect with --method {}: choose another method, as --method {}", option,
+           method.name, other);
   }
   const bool is_simplified = models::FindSimplifiedLaw(options.model) != nullptr;
   if (is_simplified && method.name != "exact") {
-    throw InputError(fmt::format("--method {} cannot compute --model {}, a simplification",
-                                 method.name, options.model));
+    Refuse("--method {} cannot compute --model {}, a simplification", method.name, options.model);
   }
   Approximation approximation{options.model, options.method, {}};
   approximation.resolution.steps = options.steps.value_or(method.default_steps);

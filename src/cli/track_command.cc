@@ -210,9 +210,8 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
   std::error_code error;
   const auto status = std::filesystem::status(options.output, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InputError(
-        fmt::format("--output: {} is no file: rows are appended to the table, give the name of one",
-                    options.output));
+    Refuse("--output: {} is no file: rows are appended to the table, give the name of one",
+           options.output);
   }
   if (options.resume || options.overwrite) return;
   RequireNotThere("--output", options.output, "--resume to go on with it, or --overwrite");
@@ -250,13 +249,12 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
                           const std::function<void(const CycleFit&)>& visit) {
   constexpr std::string_view kRemedy = "give another --output, or --overwrite";
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
+  if (!file) Refuse("cannot read '{}': {}", path, std::strerror(errno));
   std::string line;
   std::getline(file, line);
   const std::string header = campaign::CycleTableHeader(is_torsional);
   if (line + '\n' != header) {
-    throw InputError(fmt::format(
-        "--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy));
+    Refuse("--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy);
   }
   KeptCycles kept{.bytes = header.size()};
   std::vector<CycleFit> batch;
@@ -266,8 +264,7 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
     try {
       batch.push_back(campaign::ReadCycleTableRow(line, is_torsional));
     } catch (const InputError& error) {
-      throw InputError(fmt::format("--resume: {}:{}: {}: {}", path, kept.fits + batch.size() + 2,
-                                   error.what(), kRemedy));
+      Refuse("--resume: {}:{}: {}: {}", path, kept.fits + batch.size() + 2, error.what(), kRemedy);
     }
     bytes += line.size() + 1;
     if (batch.size() < campaign::kBatch) continue;
@@ -299,18 +296,18 @@ class TrackRun {
         // NOLINTNEXTLINE(bugprone-empty-catch): the disk, as the first one says
       } catch (const InputError&) {
       }
-      throw InputError(fmt::format("{}; {} rows are kept in {}: repair the fault and add --resume",
-                                   error.what(), test_.fits, options_.output));
+      Refuse("{}; {} rows are kept in {}: repair the fault and add --resume", error.what(),
+             test_.fits, options_.output);
     }
     test_.cycles = tracker_->cycles();
     test_.log = tracker_->log();
     if (test_.cycles == 0) {
-      throw InputError(fmt::format(
+      Refuse(
           "{}: no whole cycle{}: the displacement turns {} times by more than {:.3g} m: choose "
           "another column with --displacement, or a smaller --reversal-gate",
           fmt::join(test_.files, ", "),
           options_.track.together > 1 ? ", or fewer than --average says" : "", test_.gate.count,
-          test_.gate.gate));
+          test_.gate.gate);
     }
     test_.energy.Finish(test_.cycles);
     campaign::Describe(test_.evolutions);
@@ -329,9 +326,9 @@ class TrackRun {
     test_.notes.insert(test_.notes.end(), layout.notes.begin(), layout.notes.end());
     if (options_.fit.join) io::RequireJoinable(*layout_, layout);
     if (layout.is_torsional == test_.is_torsional) return;
-    throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", test_.files.front(),
-                                 test_.is_torsional ? "torque" : "force", layout.name,
-                                 layout.is_torsional ? "torque" : "force"));
+    Refuse("{} holds a {} and {} a {}: track them apart", test_.files.front(),
+           test_.is_torsional ? "torque" : "force", layout.name,
+           layout.is_torsional ? "torque" : "force");
   }
 
   void BeginFits(const loop::RecordView& head, std::string_view source) {
@@ -402,11 +399,11 @@ class TrackRun {
   void OpenTable() {
     if (output_) return;
     if (!continues_table()) {
-      throw InputError(
-          fmt::format("--resume: {} was made from another record or with other options, or what "
-                      "was read before "
-                      "its row {} was another: give those, another --output, or --overwrite",
-                      options_.output, kept_->fits));
+      Refuse(
+          "--resume: {} was made from another record or with other options, or what "
+          "was read before "
+          "its row {} was another: give those, another --output, or --overwrite",
+          options_.output, kept_->fits);
     }
     output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
     if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));

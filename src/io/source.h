@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -9,9 +7,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 
 struct gzFile_s;  // NOLINT(readability-identifier-naming): zlib's
 
@@ -19,12 +16,6 @@ namespace mindahl::io {
 
 /// Bytes of the longest line that is read as a row of a record.
 inline constexpr std::size_t kLongestLine = 16U << 20U;
-
-/// @throws InputError of a text always
-template <typename... Parts>
-[[noreturn]] void Refuse(fmt::format_string<Parts...> text, Parts&&... parts) {
-  throw InputError(fmt::format(text, std::forward<Parts>(parts)...));
-}
 
 /// Returns what messages call the file.
 std::string NameOfInput(const std::filesystem::path& path);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/refuse.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/core/error.h"
 
 namespace mindahl::request {
 
@@ -62,7 +62,7 @@ contact::PredictedContact ResolveContact(const ContactOptions& options) {
   need(known.normal_load.has_value(), "--normal-load");
   if (known.contact_radius || known.tangential_compliance) {
     if (IsAnythingGiven(known.body_1) || IsAnythingGiven(known.body_2)) {
-      throw InputError(
+      Refuse(
           "a contact is described either by --contact-radius with --compliance or by the materials "
           "and radii of its bodies: give one of the two");
     }
@@ -76,10 +76,10 @@ contact::PredictedContact ResolveContact(const ContactOptions& options) {
     }
   }
   if (missing.empty()) return contact::PredictContact(known, options.friction_coefficient.value());
-  throw InputError(fmt::format(
+  Refuse(
       "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
       "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
-      fmt::join(missing, ", ")));
+      fmt::join(missing, ", "));
 }
 
 bool IsAnythingGiven(const LawRequest& request) {
@@ -92,7 +92,7 @@ BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
   const bool by_parameters = request.sigma || request.slip_force;
   const bool by_contact = IsAnythingGiven(request.contact);
   if (by_parameters && by_contact) {
-    throw InputError(
+    Refuse(
         "--sigma and --slip-force exclude --friction, --normal-load and other options that "
         "describe a contact: give one of the two");
   }
@@ -105,18 +105,17 @@ BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
   } else if (request.sigma && request.slip_force) {
     law = {.tangential_stiffness = *request.sigma, .slip_force = *request.slip_force};
   } else {
-    throw InputError(fmt::format(
+    Refuse(
         "{} missing: give --sigma and --slip-force, or a contact (--friction, --normal-load, "
         "--contact-radius, --compliance or materials and radii)",
-        request.sigma ? "--slip-force" : "--sigma"));
+        request.sigma ? "--slip-force" : "--sigma");
   }
   if (request.alpha) law.shape_exponent = *request.alpha;
   Validate(law);
   if (!prescribed_exponent) return law;
   if (request.alpha && *request.alpha != *prescribed_exponent) {
-    throw InputError(fmt::format(
-        "--alpha {} contradicts --model {}, whose alpha is {}: use --model mindlin-dahl",
-        *request.alpha, model, *prescribed_exponent));
+    Refuse("--alpha {} contradicts --model {}, whose alpha is {}: use --model mindlin-dahl",
+           *request.alpha, model, *prescribed_exponent);
   }
   law.shape_exponent = *prescribed_exponent;
   return law;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_comparison.h"
 #include "mindahl/identification/term_selection.h"
@@ -52,18 +52,18 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
     const double half = *greatest / 2 - *least / 2;
     if (half == 0 || (half >= kSmallest && half <= kLargest)) return half;
     const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
-    throw InputError(fmt::format(
+    Refuse(
         "{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
         "choose other units",
-        place(r, static_cast<std::size_t>(widest - values.begin()), column), what, half, unit));
+        place(r, static_cast<std::size_t>(widest - values.begin()), column), what, half, unit);
   };
   const auto refuse_constant = [&](std::size_t r, const io::ChosenColumn& column, double value,
                                    std::string_view what, std::string_view unit,
                                    std::string_view need) {
-    throw InputError(
-        fmt::format("{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
-                    "choose another column with --{}",
-                    place(r, 0, column), what, value, unit, need, what));
+    Refuse(
+        "{}: the {} never changes, it is {} {} in every row: a fit needs a {} contact; "
+        "choose another column with --{}",
+        place(r, 0, column), what, value, unit, need, what);
   };
   double travel = 0.0;
   double force = 0.0;
@@ -71,9 +71,8 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
     const RecordFile& input = inputs[r];
     const Record& record = input.record;
     if (input.is_torsional != is_torsional) {
-      throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
-                                   inputs[is_torsional ? r : 0].name,
-                                   inputs[is_torsional ? 0 : r].name));
+      Refuse("{} holds a force and {} a torque: fit them apart", inputs[is_torsional ? r : 0].name,
+             inputs[is_torsional ? 0 : r].name);
     }
     const double own_travel =
         half_range(r, input.displacement, record.displacement, "displacement", units.displacement);
@@ -94,10 +93,10 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   const double range = 2 * (is_forced ? force : travel);
   if (!gate || *gate < range) return;
   const std::string_view unit = is_forced ? units.force : units.displacement;
-  throw InputError(fmt::format(
+  Refuse(
       "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
       "give a smaller gate, in {}",
-      *gate, is_forced ? "force" : "motion", range, unit, unit));
+      *gate, is_forced ? "force" : "motion", range, unit, unit);
 }
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
@@ -160,9 +159,8 @@ void AlignForceSigns(const loop::PreparationOptions& options, std::vector<Record
 void RequireLoadsOf(std::size_t files, const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == files) return;
-  throw InputError(
-      fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a file", loads,
-                  files, files > 1 ? "s" : ""));
+  Refuse("--normal-load: {} loads for {} file{}: give one for all or one a file", loads, files,
+         files > 1 ? "s" : "");
 }
 
 /// Fits the options' law with its terms, or where asked for with those that the records require.
@@ -365,8 +363,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
       const std::string text = error.what();
       for (const std::string& name : NamedTerms(request)) {
         if (text.find(fmt::format("--covariate {}:", name)) == std::string::npos) continue;
-        throw InputError(
-            fmt::format("--terms: '{}' is no term, so it is taken for a column: {}", name, text));
+        Refuse("--terms: '{}' is no term, so it is taken for a column: {}", name, text);
       }
       throw;
     }
@@ -375,7 +372,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
 }
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs) {
-  if (inputs.empty()) throw InputError("a fit needs a record: give one");
+  if (inputs.empty()) Refuse("a fit needs a record: give one");
   Validate(request.contact);
   FitOptions options = MakeFitOptions(request);
   if (const std::optional<Interval>& window = request.time_window) {
@@ -384,7 +381,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (request.join && inputs.size() > 1) inputs = {io::Joined(std::move(inputs))};
   RequireLoadsOf(inputs.size(), request);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
-    throw InputError(
+    Refuse(
         "--normal-load and other options that describe a contact do not apply to a torque against "
         "an angle: leave them out");
   }
@@ -408,7 +405,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     if (request.compare) compared = identification::CompareModels(records, options);
     asked = FitAsked(request, options, records);
   } catch (const identification::TooFewSamples& error) {
-    throw InputError(fmt::format("{}: {}", fmt::join(files, ", "), error.what()));
+    Refuse("{}: {}", fmt::join(files, ", "), error.what());
   }
   std::optional<report::NextStep> next;
   if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/nearest_name.h"
-#include "mindahl/core/error.h"
+#include "core/refuse.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
 
 [[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
-  throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
+  Refuse("{}: '{}' is given twice: give it once", option, name);
 }
 
 /// Fits the terms of a group that are not given.
@@ -48,10 +48,10 @@ void AddColumn(const std::string& name, FitOptions& fit) {
   std::vector<std::string> names;
   for (const auto& group : identification::TermGroups()) names.emplace_back(group.name);
   if (const auto nearest = NearestName(name, names)) {
-    throw InputError(
-        fmt::format("--terms: '{}' is no term: did you mean '{}'? A column is named by "
-                    "--covariate {}",
-                    name, *nearest, name));
+    Refuse(
+        "--terms: '{}' is no term: did you mean '{}'? A column is named by "
+        "--covariate {}",
+        name, *nearest, name);
   }
   fit.covariates.push_back(name);
 }
@@ -64,7 +64,7 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
     if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
     given.push_back(name);
     if (name == kAutomatic || name == kNoTerms) {
-      throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
+      Refuse("--terms: '{}' stands alone: write auto, none or names", name);
     }
     if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
@@ -79,8 +79,7 @@ void ApplyTerms(const FitRequest& request, FitOptions& fit) {
 /// A start, a bound or a prior of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, const FitOptions& fit) {
   const auto refuse = [&](std::string_view why) {
-    throw InputError(
-        fmt::format("{}: {} is not fitted, so this has no effect: {}", option, name, why));
+    Refuse("{}: {} is not fitted, so this has no effect: {}", option, name, why);
   };
   if (fit.fixed.contains(name)) refuse("it is held at a value that is given; give one of the two");
   if (name == "alpha" && fit.model != nullptr && fit.model->shape_exponent) {
@@ -127,10 +126,10 @@ FitOptions MakeFitOptions(const FitRequest& request) {
   if (fit.model == nullptr) fit.model = FitOptions().model;
   if (fit.response() == loop::Channel::kDisplacement &&
       (ChoosesTerms(request) || request.compare)) {
-    throw InputError(
-        fmt::format("{} cannot be combined with --noise-in displacement: it needs a fit of the "
-                    "force; leave one of the two out",
-                    request.compare ? "--compare" : "--terms auto"));
+    Refuse(
+        "{} cannot be combined with --noise-in displacement: it needs a fit of the "
+        "force; leave one of the two out",
+        request.compare ? "--compare" : "--terms auto");
   }
   for (const contact::UncertainValue& load : request.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
@@ -154,9 +153,8 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
         {request.fit.response() == loop::Channel::kDisplacement, "--noise-in displacement"},
         {is_asymmetric, "--terms asymmetry"}}) {
     if (!is_given) continue;
-    throw InputError(fmt::format(
-        "{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
-        option));
+    Refuse("{} is not available in track: fit a part of the record with fit --select cycles=LO:HI",
+           option);
   }
   return fit;
 }
