@@ -228,6 +228,19 @@ void ReadRig(const std::string& text, identification::FitOptions& fit) {
   fit.priors[kName] = {stated.value, stated.standard_error};
 }
 
+/// Reads "none" or "auto" alone, or names of terms.
+void ReadTerms(const std::vector<std::string>& names, FitRequest& request) {
+  for (const std::string_view alone : {"none", "auto"}) {
+    if (std::ranges::find(names, alone) == names.end()) continue;
+    if (names.size() > 1) {
+      Refuse("--terms: '{}' stands alone: write auto, none or names", alone);
+    }
+    request.chooses_terms = alone == "auto";
+    return;
+  }
+  request.terms = names;
+}
+
 /// Reads "cycles=2:9" and the like, of `--select`; or, of its older names, "2:9" alone.
 void ReadSelection(std::string_view what, std::string_view range, const std::string& option,
                    FitRequest& request) {
@@ -386,7 +399,11 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           "number; repeatable",
           "COL[=C|fit]")
       ->allow_extra_args(false);
-  group.Add("--terms", options.terms, DescribeTerms(), "none|auto|NAME,...")
+  group
+      .AddRead<std::vector<std::string>>(
+          "--terms",
+          [&options](const std::vector<std::string>& names) { ReadTerms(names, options); },
+          DescribeTerms(), "none|auto|NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   const auto add_assignments = [&](const char* option, auto& target, const char* type,

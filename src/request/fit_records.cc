@@ -192,8 +192,7 @@ bool WithdrawPreference(FitResult& fit) {
 /// by Dahl's own. Terms are chosen for the law that is better without them.
 TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
                        std::span<const Record> records) {
-  const bool chooses_terms = ChoosesTerms(request);
-  if (request.fit.model != nullptr) return FitLaw(options, records, chooses_terms);
+  if (request.fit.model != nullptr) return FitLaw(options, records, request.chooses_terms);
   TermSelection asked = FitLaw(options, records, /*chooses_terms=*/false);
   const auto& choice = asked.fit.law_choice;
   if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
@@ -207,10 +206,10 @@ TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
     // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
   }
-  if (!chooses_terms) return asked;
+  if (!request.chooses_terms) return asked;
   FitOptions of_law = options;
   of_law.model = asked.options.model;
-  asked = FitLaw(of_law, records, chooses_terms);
+  asked = FitLaw(of_law, records, /*chooses_terms=*/true);
   // The law was chosen before the terms: of the other one with them nothing is said.
   if (WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
@@ -320,7 +319,7 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
 
 std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
                                 FitOptions& options) {
-  if (!ChoosesTerms(request)) return "";
+  if (!request.chooses_terms) return "";
   FitOptions of_head = options;
   // The head is fitted like its cycles: an asymmetry is then an offset of each.
   of_head.initial_state = models::InitialState::kSteady;
@@ -361,7 +360,7 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request) {
       inputs.push_back(io::ReadRecord(file, columns));
     } catch (const InputError& error) {
       const std::string text = error.what();
-      for (const std::string& name : NamedTerms(request)) {
+      for (const std::string& name : request.terms) {
         if (text.find(fmt::format("--covariate {}:", name)) == std::string::npos) continue;
         Refuse("--terms: '{}' is no term, so it is taken for a column: {}", name, text);
       }
@@ -408,7 +407,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     Refuse("{}: {}", fmt::join(files, ", "), error.what());
   }
   std::optional<report::NextStep> next;
-  if (!ChoosesTerms(request)) next = FindNextStep(request, asked.options, records, asked.fit);
+  if (!request.chooses_terms) next = FindNextStep(request, asked.options, records, asked.fit);
   contact::KnownContact known = request.contact.known;
   if (!known.normal_load && asked.fit.normal_load) {
     known.normal_load = *asked.fit.normal_load;
@@ -423,7 +422,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
        .left_out = std::move(left_out),
        .notes = std::move(notes),
        .compared = std::move(compared),
-       .terms = ChoosesTerms(request) ? std::optional(std::move(asked)) : std::nullopt,
+       .terms = request.chooses_terms ? std::optional(std::move(asked)) : std::nullopt,
        .sample_rate = request.columns.sample_rate,
        .next = std::move(next)});
 }

@@ -60,12 +60,9 @@ void AddColumn(const std::string& name, FitOptions& fit) {
 void ApplyTerms(const FitRequest& request, FitOptions& fit) {
   const bool is_of_force = fit.response() == loop::Channel::kForce;
   std::vector<std::string_view> given;
-  for (const std::string& name : NamedTerms(request)) {
+  for (const std::string& name : request.terms) {
     if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
     given.push_back(name);
-    if (name == kAutomatic || name == kNoTerms) {
-      Refuse("--terms: '{}' stands alone: write auto, none or names", name);
-    }
     if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {
@@ -107,25 +104,16 @@ void RequireFitted(std::string_view option, const std::string& name, const FitOp
 }  // namespace
 
 std::vector<std::string_view> ModelNames() {
-  std::vector<std::string_view> names = {kAutomatic};
+  std::vector<std::string_view> names = {"auto"};
   for (const models::FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
   return names;
-}
-
-bool ChoosesTerms(const FitRequest& request) {
-  return request.terms.size() == 1 && request.terms.front() == kAutomatic;
-}
-
-std::vector<std::string> NamedTerms(const FitRequest& request) {
-  const bool is_none = request.terms.size() == 1 && request.terms.front() == kNoTerms;
-  return is_none || ChoosesTerms(request) ? std::vector<std::string>() : request.terms;
 }
 
 FitOptions MakeFitOptions(const FitRequest& request) {
   FitOptions fit = request.fit;
   if (fit.model == nullptr) fit.model = FitOptions().model;
   if (fit.response() == loop::Channel::kDisplacement &&
-      (ChoosesTerms(request) || request.compare)) {
+      (request.chooses_terms || request.compare)) {
     Refuse(
         "{} cannot be combined with --noise-in displacement: it needs a fit of the "
         "force; leave one of the two out",

@@ -104,6 +104,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"fit @ --select cycle=1:2", "did you mean 'cycles'?"},
     {"fit @ --select foo=1:2",
      "--select: 'foo' is unknown: must be one of cycles, samples, time, load"},
+    {"fit @ --terms viscous,auto", "--terms: 'auto' stands alone"},
     {"fit @ --terms foo", "--terms: 'foo' is no term, so it is taken for a column"},
     {"fit @ --select load=5", "--select load: '5' is incomplete: write LO:HI in newtons"},
     {"fit @ --select load=1:2",

@@ -17,10 +17,7 @@ TEST(FitRequest, KnowsTheMeanOfSeveralNormalLoads) {
   EXPECT_FALSE(IsAnythingGiven(options));
 }
 
-TEST(FitRecords, NeedsARecordAndANameForEach) {
-  EXPECT_THROW(FitRecords({}, {}), InputError);
-  EXPECT_THROW(FitRecords({}, {io::RecordFile{}}), InvalidArgument);
-}
+TEST(FitRecords, NeedsARecord) { EXPECT_THROW(FitRecords({}, {}), InputError); }
 
 TEST(FitRequest, BecomesOptionsWithItsLoadsTermsAndColumns) {
   FitRequest request;
@@ -89,8 +86,6 @@ TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
     return FitRequest{.terms = terms};
   };
   EXPECT_THAT(MakeFitOptions(with({})).terms, IsEmpty());
-  EXPECT_THAT(MakeFitOptions(with({"none"})).terms, IsEmpty());
-  EXPECT_THAT(MakeFitOptions(with({"auto"})).terms, IsEmpty());
   EXPECT_THAT(MakeFitOptions(with({"viscous", "slip_position"})).terms,
               ElementsAre("viscous", "slip_slope", "plateau_slope"));
   EXPECT_THAT(MakeFitOptions(with({"lag", "oil pressure"})).covariates,
@@ -98,7 +93,6 @@ TEST(FitRequest, TakesTermsByTheirNamesAndColumnsByTheirs) {
   for (const auto& [terms, said] :
        {std::pair<std::vector<std::string>, const char*>({"viscous", "viscous"},
                                                          "'viscous' is given twice"),
-        {{"viscous", "auto"}, "'auto' stands alone"},
         {{"viscos"}, "'viscos' is no term: did you mean 'viscous'?"},
         {{"displacement_drift"}, "has no place in a fit of the force"}}) {
     EXPECT_THAT(RefusalOf(with(terms)), HasSubstr(said));
@@ -123,7 +117,7 @@ TEST(FitRequest, RefusesForADisplacementWhatNeedsAForce) {
   const std::vector<std::pair<const char*, Change>> refused = {
       {"rig_stiffness has no place", [](FitRequest& r) { r.fit.terms = {"rig_stiffness"}; }},
       {"a covariate has no place", [](FitRequest& r) { r.fit.covariates = {"p"}; }},
-      {"--terms auto cannot", [](FitRequest& r) { r.terms = {"auto"}; }},
+      {"--terms auto cannot", [](FitRequest& r) { r.chooses_terms = true; }},
       {"lag has no place", [](FitRequest& r) { r.terms = {"lag"}; }},
       {"--compare cannot", [](FitRequest& r) { r.compare = true; }},
       {"noise of the force", [](FitRequest& r) { r.fit.force_noise = 0.5; }},

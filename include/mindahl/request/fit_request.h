@@ -17,12 +17,7 @@ namespace mindahl::request {
 /// same rules and the same messages for the command line and for Python. Messages name the command
 /// line's options.
 
-/// --model auto, --terms auto
-inline constexpr std::string_view kAutomatic = "auto";
-/// --terms none
-inline constexpr std::string_view kNoTerms = "none";
-
-/// Models that can be fitted, kAutomatic first.
+/// Models that can be fitted, "auto" first.
 std::vector<std::string_view> ModelNames();
 
 /// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
@@ -34,18 +29,12 @@ struct FitRequest {
   std::optional<identification::Interval> time_window{};  // [s]
   /// Holds the options as given, without what the members below add; no model: --model auto.
   identification::FitOptions fit{.model = nullptr};
-  bool compare = false;  // all models, with and without a rig
-  /// kNoTerms or kAutomatic alone, or names of groups of terms and of columns; empty: none.
-  std::vector<std::string> terms{};
+  bool compare = false;              // all models, with and without a rig
+  std::vector<std::string> terms{};  ///< names of groups of terms and of columns
+  bool chooses_terms = false;        ///< fits the terms that the record requires, none by name
   bool trim = true;
   ContactOptions contact{};
 };
-
-/// True if the terms are those that the record requires.
-bool ChoosesTerms(const FitRequest& request);
-
-/// Returns the groups of terms that are named; none where terms are chosen or none.
-std::vector<std::string> NamedTerms(const FitRequest& request);
 
 /// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
 /// contradict each other
