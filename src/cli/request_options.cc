@@ -166,10 +166,6 @@ std::pair<std::string_view, std::string_view> Split(std::string_view text, char 
   Refuse("{}: '{}' is incomplete: write {}", asked.option, text, asked.form);
 }
 
-[[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
-  Refuse("{}: '{}' is given twice: give it once", option, name);
-}
-
 Interval ParseInterval(std::string_view text, const Asked& asked) {
   const auto [lower, upper] = Split(text, ':', asked);
   const Interval interval = {ParseNumber(lower, asked), ParseNumber(upper, asked)};
@@ -197,7 +193,9 @@ loop::CountRange ParseCountRange(std::string_view text, const Asked& asked) {
 /// Holds a parameter at a value, unless another option did.
 void Hold(std::string_view option, const std::string& name, double value,
           identification::FitOptions& fit) {
-  if (!fit.fixed.emplace(name, value).second) ThrowTwice(option, name);
+  if (!fit.fixed.emplace(name, value).second) {
+    Refuse("{}: '{}' is given twice: give it once", option, name);
+  }
 }
 
 /// Reads COL, COL=fit or COL=C.
@@ -414,7 +412,9 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           for (const std::string& text : texts) {
             const auto [name, value] = Split(text, '=', {option, form});
             const Asked asked{option, form, UnitOf(name)};
-            if (!target.emplace(name, parse(value, asked)).second) ThrowTwice(option, name);
+            if (!target.emplace(name, parse(value, asked)).second) {
+              Refuse("{}: '{}' is given twice: give it once", option, name);
+            }
           }
         },
         help, type);

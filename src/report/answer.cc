@@ -39,12 +39,6 @@ bool IsMoot(const Report& report, const ParameterEstimate& estimate) {
   return IsInadequate(report) && (!estimate.is_known() || !report.check.empty());
 }
 
-/// True if what the law misses is the same at one place of every stroke.
-bool IsAlikeInStrokes(const FitResult& fit) {
-  constexpr double kMostOfIt = 0.5;
-  return fit.WidestRecord().structure.repeatable_share > kMostOfIt;
-}
-
 bool IsOfLaw(std::string_view parameter) {
   return parameter == "sigma" || parameter == "alpha" || parameter == "slip_force";
 }
@@ -393,7 +387,8 @@ std::string MisfitStatement(const Report& report) {
   if (adequacy.misfit_over_half_gap) {
     text += ", " + MisfitShare(report, *adequacy.misfit_over_half_gap);
   }
-  if (IsAlikeInStrokes(fit)) text += ", alike in every stroke";
+  constexpr double kMostOfIt = 0.5;  // is the same at one place of every stroke
+  if (fit.WidestRecord().structure.repeatable_share > kMostOfIt) text += ", alike in every stroke";
   if (adequacy.verdict == AdequacyVerdict::kDoubtful) {
     const bool is_included =
         std::ranges::any_of(fit.parameters, &ParameterEstimate::includes_discrepancy);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <regex>
@@ -14,10 +13,6 @@
 namespace mindahl::report {
 
 namespace {
-
-bool StartsWithDigit(std::string_view text) {
-  return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
-}
 
 constexpr int kWidth = 560;  // [px] of a figure
 
@@ -92,8 +87,8 @@ std::string TableHtml(std::string_view caption, const std::vector<std::string>& 
                 : fmt::format("><a href=\"{}\">{}</a></th>", line.address, Prose(line.head));
     for (const std::string& cell : line.cells) {
       // Letters break anywhere, numbers nowhere.
-      html += fmt::format("<td class=\"{}\">{}</td>", StartsWithDigit(cell) ? "number" : "words",
-                          Prose(cell));
+      const bool is_number = cell.find_first_of("0123456789") == 0;
+      html += fmt::format("<td class=\"{}\">{}</td>", is_number ? "number" : "words", Prose(cell));
     }
     html += "</tr>\n";
   }

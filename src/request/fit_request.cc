@@ -21,10 +21,6 @@ namespace {
 /// The drift of a displacement that is fitted, where it alone is a term.
 constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
 
-[[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
-  Refuse("{}: '{}' is given twice: give it once", option, name);
-}
-
 /// Fits the terms of a group that are not given.
 void AddGroup(const identification::TermGroup& group, FitOptions& fit) {
   for (const std::string_view name : group.terms) {
@@ -59,10 +55,10 @@ void AddColumn(const std::string& name, FitOptions& fit) {
 /// Applies --terms: groups of terms, and columns.
 void ApplyTerms(const FitRequest& request, FitOptions& fit) {
   const bool is_of_force = fit.response() == loop::Channel::kForce;
-  std::vector<std::string_view> given;
   for (const std::string& name : request.terms) {
-    if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
-    given.push_back(name);
+    if (std::ranges::count(request.terms, name) > 1) {
+      Refuse("--terms: '{}' is given twice: give it once", name);
+    }
     if (!is_of_force || name == kDriftOfDisplacement) {
       fit.terms.push_back(name);
     } else if (const auto* group = identification::FindTermGroup(name)) {
