@@ -33,7 +33,7 @@ struct NameEvidence {
 
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
-  std::string name;
+  std::string name = {};
   std::string unit = {};        // as written; empty when the header names none
   std::string other_unit = {};  // a second one, which contradicts it
   NameEvidence evidence = {};

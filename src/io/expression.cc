@@ -96,7 +96,7 @@ class ExpressionReader {
       std::vector<std::string> known;
       known.reserve(names_.size());
       for (std::size_t column = 0; column < names_.size(); ++column) {
-        known.push_back(ForMessage(names_[column].name.name));
+        known.push_back(ForMessage(names_[column].name));
       }
       Throw(fmt::format("no column is called '{}' (for the {}){} {}", name, RulesOf(role_).name,
                         DidYouMean(name, known), names_.Listing()));

@@ -47,17 +47,15 @@ ColumnNames::Column ObservedIn(const std::vector<double>& values) {
     rise = std::max(rise, value - least);
     fall = std::max(fall, greatest - value);
   }
-  return {
-      .name = {},
-      .is_numeric = !values.empty() && 2 * numbers >= values.size(),
-      .is_constant = rise == 0 && fall == 0,
-      .least = least,
-      .greatest = greatest,
-      .trend = fall == 0   ? int{rise > 0}
-               : rise == 0 ? -1
-                           : 0,
-      .goes_to_and_fro = greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least),
-      .first = first};
+  ColumnNames::Column column;
+  column.is_numeric = !values.empty() && 2 * numbers >= values.size();
+  column.least = least;
+  column.greatest = greatest;
+  column.trend = int{rise > 0 && fall == 0} - int{fall > 0 && rise == 0};
+  column.goes_to_and_fro =
+      greatest > least && std::min(rise, fall) > kGoodPart * (greatest - least);
+  column.first = first;
+  return column;
 }
 
 /// True for whole numbers that stay or grow by one from row to row.
@@ -84,7 +82,7 @@ int EvidenceFor(const ColumnNames::Column& column, Role role) {
   constexpr int kStep = 5;       // of a rank
   constexpr int kLesser = 30;    // what is commanded or raw
   constexpr int kContrary = 60;  // a unit of the role, but a word of another
-  const NameEvidence& evidence = column.name.evidence;
+  const NameEvidence& evidence = column.evidence;
   const bool has_word = !evidence.word.empty();
   const bool is_named = evidence.names(role);
   // A force in newton, unless there is a better one.
@@ -194,7 +192,7 @@ class RoleAssigner {
     if (!IsMissing(role)) return;
     if (const auto found = names_.Best(role, taken)) return Take(*found, role);
     for (std::size_t named = 0; named < taken.size() && role == Role::kTime; ++named) {
-      if (taken[named] || !names_[named].name.evidence.names(role)) continue;
+      if (taken[named] || !names_[named].evidence.names(role)) continue;
       notes_.push_back(fmt::format("{}: time {} has no numbers in a unit of time: left out", file_,
                                    names_.Label(named)));
     }
@@ -206,11 +204,11 @@ class RoleAssigner {
   /// Takes a "load" as the normal one beside what is a friction force by its name.
   void TakeLoad(const std::vector<bool>& taken) {
     if (!IsMissing(Role::kNormalLoad) || IsMissing(Role::kForce)) return;
-    const NameEvidence& force = names_[ColumnOf(Role::kForce)].name.evidence;
+    const NameEvidence& force = names_[ColumnOf(Role::kForce)].evidence;
     if (!force.names(Role::kForce) || force.rank > 0) return;
     for (std::size_t column = 0; column < taken.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const NameEvidence& load = of.name.evidence;
+      const NameEvidence& load = of.evidence;
       const bool is_load = load.names(Role::kForce) && load.rank == 2 && !load.is_angular &&
                            load.other_words == 0 &&
                            (of.unit.empty() || of.dimension == Dimension::kForce);
@@ -222,7 +220,7 @@ class RoleAssigner {
   void AddNanoseconds() {
     if (IsMissing(Role::kTime)) return;
     const std::size_t seconds = ColumnOf(Role::kTime);
-    const std::string stamp = LowerCase(names_[seconds].name.name);
+    const std::string stamp = LowerCase(names_[seconds].name);
     if (!stamp.ends_with("sec") && !stamp.ends_with("secs")) return;
     for (const std::string_view prefix : {"nano", "n"}) {
       const std::string name = std::string(stamp).insert(stamp.rfind("sec"), prefix);
@@ -322,7 +320,7 @@ class RoleAssigner {
     std::vector<std::size_t> left;
     for (std::size_t column = 0; column < taken_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const bool is_unknown = of.unit.empty() && of.name.evidence.word.empty();
+      const bool is_unknown = of.unit.empty() && of.evidence.word.empty();
       if (!taken_[column] && is_unknown && !of.is_clock && of.is_numeric) left.push_back(column);
     }
     return left;
@@ -337,7 +335,7 @@ class RoleAssigner {
     std::string why;
     if (left.size() > missing.size()) {
       std::erase_if(left, [&](std::size_t column) {
-        return names_[column].is_constant || names_[column].trend != 0;
+        return names_[column].trend != 0 || !(names_[column].greatest > names_[column].least);
       });
       why = ", of those that neither stay nor only grow";
     }
@@ -353,7 +351,7 @@ class RoleAssigner {
 
   /// Refuses a coefficient of friction, one by its name or else by its numbers, as the force.
   [[noreturn]] void ThrowCoefficient(std::size_t column, double greatest = 0) const {
-    const bool is_named = names_[column].name.evidence.names(Role::kFrictionCoefficient);
+    const bool is_named = names_[column].evidence.names(Role::kFrictionCoefficient);
     Refuse(
         "{}:{}: {} {}: choose the force with --force, or multiply by the normal load, where that "
         "is 50 N by --force '#{}*50 [N]'{}",
@@ -374,7 +372,7 @@ class RoleAssigner {
     std::optional<std::size_t> coefficient;
     for (std::size_t column = 0; column < names_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
-      const NameEvidence& evidence = of.name.evidence;
+      const NameEvidence& evidence = of.evidence;
       if (column == force || !of.is_numeric || evidence.is_lesser) continue;
       const bool has_unit = !of.unit.empty() && of.unit != "-";
       const bool may_be = (evidence.word == "friction" || evidence.word == "f") && !has_unit &&
@@ -405,7 +403,7 @@ class RoleAssigner {
   /// Names what else may be the displacement where an extensometer is.
   void NoteTravelOfMachine() {
     const std::size_t taken = ColumnOf(Role::kDisplacement);
-    const std::string_view word = names_[taken].name.evidence.word;
+    const std::string_view word = names_[taken].evidence.word;
     if (word != "extensometer" && word != "*wegaufnehmer") return;
     for (std::size_t column = 0; column < names_.size(); ++column) {
       const ColumnNames::Column& of = names_[column];
@@ -431,9 +429,9 @@ class RoleAssigner {
     constexpr double kGreatest = 2;
     const bool is_low = of.GreatestMagnitude() < kGreatest;
     const bool may_be =
-        of.name.evidence.word == "friction" && of.unit.empty() && is_low &&
+        of.evidence.word == "friction" && of.unit.empty() && is_low &&
         std::ranges::any_of(std::views::iota(std::size_t{0}, names_.size()), is_load);
-    if (of.name.evidence.names(Role::kFrictionCoefficient) || may_be) {
+    if (of.evidence.names(Role::kFrictionCoefficient) || may_be) {
       ThrowCoefficient(column, kGreatest);
     }
   }
@@ -441,7 +439,7 @@ class RoleAssigner {
   [[noreturn]] void ThrowNoColumn(Role role) const {
     const RoleRules& rules = RulesOf(role);
     for (std::size_t column = 0; column < names_.size(); ++column) {
-      if (role == Role::kForce && names_[column].name.evidence.names(Role::kFrictionCoefficient)) {
+      if (role == Role::kForce && names_[column].evidence.names(Role::kFrictionCoefficient)) {
         ThrowCoefficient(column);
       }
       const TableColumn& of = names_.table().columns[column];
@@ -466,7 +464,7 @@ class RoleAssigner {
   void RequireMoving(Role role, Role other) {
     const std::size_t column = ColumnOf(role);
     const ColumnNames::Column& of = names_[column];
-    const bool needs_unit = role == Role::kForce || of.name.evidence.word == "X";
+    const bool needs_unit = role == Role::kForce || of.evidence.word == "X";
     if (!Of(role).given_unit.empty() || EvidenceFor(of, role) >= (needs_unit ? 100 : 1) ||
         of.trend == 0 || !names_[ColumnOf(other)].goes_to_and_fro) {
       return;
@@ -530,7 +528,7 @@ std::optional<bool> ColumnNames::Column::IsAngular(std::string_view given_unit) 
   const auto of_unit = given_unit.empty() ? dimension : DimensionOf(given_unit);
   if (of_unit == Dimension::kAngle || of_unit == Dimension::kTorque) return true;
   if (of_unit == Dimension::kLength || of_unit == Dimension::kForce) return false;
-  return name.evidence.is_angular ? std::optional(true) : std::nullopt;
+  return evidence.is_angular ? std::optional(true) : std::nullopt;
 }
 
 ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
@@ -538,15 +536,15 @@ ColumnNames::ColumnNames(const CsvTable& table) : table_(table) {
   for (const TableColumn& column : table.columns) {
     columns_.push_back(ObservedIn(column.values));
     Column& added = columns_.back();
-    added.name = SplitColumnName(column.name);
+    static_cast<ColumnName&>(added) = SplitColumnName(column.name);
     const std::string_view of_row = WithoutBrackets(column.unit);
-    added.unit = added.name.unit.empty() ? of_row : added.name.unit;
-    added.other_unit = !of_row.empty() && of_row != added.unit ? of_row : added.name.other_unit;
+    if (added.unit.empty()) added.unit = of_row;
+    if (!of_row.empty() && of_row != added.unit) added.other_unit = of_row;
     added.dimension = DimensionOf(added.unit);
     added.is_clock = column.is_clock;
     // "N" counts cycles or rows.
-    const bool is_n = added.name.evidence.word == "N" && added.unit.empty() && added.trend > 0;
-    if (is_n && IsCounter(column.values)) added.name.evidence.role = Role::kOther;
+    const bool is_n = added.evidence.word == "N" && added.unit.empty() && added.trend > 0;
+    if (is_n && IsCounter(column.values)) added.evidence.role = Role::kOther;
   }
 }
 
@@ -556,7 +554,7 @@ std::optional<std::size_t> ColumnNames::Named(std::string_view name, Role role) 
     const std::string& full = table_.columns[column].name;
     if (full.empty()) return false;
     if (strictness == 0) return full == name;
-    return LowerCase(strictness == 1 ? full : columns_[column].name.name) == lower;
+    return LowerCase(strictness == 1 ? full : columns_[column].name) == lower;
   };
   for (int strictness = 0; strictness < 3; ++strictness) {
     std::vector<std::size_t> found;
@@ -597,15 +595,14 @@ std::string ColumnNames::UnitOf(std::size_t column, Role role) const {
   if (other_unit.empty()) return unit;
   Refuse("{}: {} has the unit '{}' in its name and '{}' {}: choose its unit with {} '{} [{}]'",
          Header(), Label(column), unit, other_unit,
-         columns_[column].name.other_unit.empty() ? "below it" : "too", RulesOf(role).option,
-         column + 1, unit);
+         WithoutBrackets(table_.columns[column].unit) == other_unit ? "below it" : "too",
+         RulesOf(role).option, column + 1, unit);
 }
 
 std::string ColumnNames::NameOf(std::size_t column) const {
-  const std::string& name = columns_[column].name.name;
-  const auto same = [&](const Column& other) { return other.name.name == name; };
-  return !name.empty() && std::ranges::count_if(columns_, same) == 1 ? name
-                                                                     : std::to_string(column + 1);
+  const std::string& name = columns_[column].name;
+  const bool is_one = !name.empty() && std::ranges::count(columns_, name, &Column::name) == 1;
+  return is_one ? name : std::to_string(column + 1);
 }
 
 std::string ColumnNames::Label(std::size_t column) const {
@@ -689,7 +686,7 @@ void ColumnNames::FindUnitOf(Quantity& quantity, bool is_torsional,
     }
     quantity.has_no_unit = true;
     if (quantity.role == Role::kTime && !quantity.is_scaled) {
-      const std::string implied = ImpliedTimeUnit(of.name.evidence.word, of.first);
+      const std::string implied = ImpliedTimeUnit(of.evidence.word, of.first);
       if (!implied.empty()) assumed = implied;
     }
     notes.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} '{} [{}]' says so",

@@ -60,15 +60,11 @@ struct Quantity {
 /// The names and numbers of a table's columns, for choices and messages.
 class ColumnNames {
  public:
-  /// A column, with what is evidence of its role.
-  struct Column {
-    ColumnName name;
-    std::string unit = {};        // in the name, or else of the units row
-    std::string other_unit = {};  // that of the units row, or of the name, where it has another
+  /// A column, with what is evidence of its role; its unit may be of the units row.
+  struct Column : ColumnName {
     std::optional<Dimension> dimension = {};
     bool is_numeric = false;             ///< half of its rows or more have a number
     bool is_clock = false;               ///< its numbers are times of day
-    bool is_constant = false;            ///< all numbers are the same
     double least = 0.0, greatest = 0.0;  // numbers; infinite the other way without any
     int trend = 0;  ///< 1 where it only grows, as a clock or a counter does; -1 where it only falls
     /// Both rises and falls by a good part of its range: noise does not, nor does a friction force
