@@ -18,15 +18,9 @@ namespace {
 
 /// Returns "a 0.251 mm (0.250 … 0.252)"; empty where it does not follow.
 std::string QuantityText(const ContactQuantity& quantity) {
-  if (quantity.value) {
-    return fmt::format(
-        "{} {}", quantity.symbol,
-        QuantityWithInterval(*quantity.value, quantity.lower, quantity.upper, quantity.unit));
-  }
-  const std::optional<double>& limit = quantity.lower ? quantity.lower : quantity.upper;
-  if (!limit) return "";
-  return fmt::format("{} {} {}", quantity.symbol, quantity.lower ? ">" : "<",
-                     Quantity(*limit, quantity.unit, 3));
+  const std::string text =
+      QuantityWithInterval(quantity.value, quantity.lower, quantity.upper, quantity.unit);
+  return text.empty() ? "" : fmt::format("{} {}", quantity.symbol, text);
 }
 
 bool IsInadequate(const Report& report) {
@@ -113,9 +107,7 @@ class Writer {
 
   /// Returns a parameter, with why it has no value where that is so.
   std::string TextOf(std::string_view symbol, const ParameterEstimate& estimate) {
-    const Shown shown = WhatIsShown(estimate);
-    const bool has_value = shown == Shown::kValue || shown == Shown::kHeld;
-    const std::string why = has_value ? "" : WhyNot(estimate.name);
+    const std::string why = WhatIsShown(estimate).value ? "" : WhyNot(estimate.name);
     return ParameterText(symbol, estimate) + (why.empty() ? "" : ": " + why);
   }
 
@@ -283,7 +275,7 @@ class Writer {
     std::vector<std::string> other;
     const auto add = [&](const char* symbol, const char* parameter, double value) {
       const ParameterEstimate& estimate = *fit_.Find(parameter);
-      if (WhatIsShown(estimate) != Shown::kValue) return;
+      if (!WhatIsShown(estimate).is_estimate()) return;
       other.push_back(fmt::format("{} {}", symbol, Quantity(value, estimate.unit, 3)));
     };
     add("σ", "sigma", choice->law.tangential_stiffness);
@@ -396,7 +388,7 @@ std::string MisfitStatement(const Report& report) {
            (is_included ? "; the intervals include it" : "");
   }
   const bool is_any_known = std::ranges::any_of(fit.parameters, [&](const auto& estimate) {
-    return IsOfLaw(estimate.name) && WhatIsShown(estimate) == Shown::kValue &&
+    return IsOfLaw(estimate.name) && WhatIsShown(estimate).is_estimate() &&
            !IsMoot(report, estimate);
   });
   return text + ": the law does not describe the record" +
@@ -417,7 +409,7 @@ std::vector<Line> DetailLines(const Report& report) {
                                         CellText(document["initial_state"]))});
   const std::vector<const ParameterEstimate*> terms = AddedTerms(report);
   for (const ParameterEstimate& estimate : fit.parameters) {
-    const bool is_nothing = WhatIsShown(estimate) == Shown::kHeld && estimate.value == 0;
+    const bool is_nothing = WhatIsShown(estimate).is_held && estimate.value == 0;
     const bool is_said = std::ranges::find(terms, &estimate) != terms.end();
     if (IsOfLaw(estimate.name) || !estimate.is_known() || is_nothing || is_said) continue;
     lines.push_back({"parameter", ParameterText(estimate.name, estimate)});

@@ -174,16 +174,16 @@ std::vector<ContactQuantity> DescribeContact(const FitResult& fit, const KnownCo
       }
     } else if (dependence.exponent != 0 && !parameter.is_known()) {
       quantity.why = fmt::format("needs an identifiable {}", row.parameter);
-      if (row.name == "friction_coefficient" && WhatIsShown(parameter) == Shown::kLowerLimit) {
-        quantity.lower = found->value * *parameter.lower95 / parameter.value;
+      const std::optional<double> limit = WhatIsShown(parameter).lower;
+      if (row.name == "friction_coefficient" && limit) {
+        quantity.lower = found->value * *limit / parameter.value;
       }
     } else {
       Fill(fit, *found, dependence, {&parameter}, quantity);
       const Shown shown = WhatIsShown(parameter);
-      if (dependence.exponent != 0 &&
-          (shown == Shown::kLowerLimit || shown == Shown::kUpperLimit)) {
+      if (dependence.exponent != 0 && shown.is_limit()) {
         quantity.value.reset();
-        const bool has_lower = (shown == Shown::kLowerLimit) == (dependence.exponent > 0);
+        const bool has_lower = shown.lower.has_value() == (dependence.exponent > 0);
         (has_lower ? quantity.upper : quantity.lower).reset();
         quantity.why = fmt::format("{} is at its bound: it has a limit only", row.parameter);
       }

@@ -164,9 +164,9 @@ std::string IntervalsHtml(const Report& report) {
   const auto add_parameter = [&](const char* symbol, const char* name,
                                  std::optional<double> mark = {}) {
     const ParameterEstimate& estimate = *report.fit.Find(name);
-    if (WhatIsShown(estimate) != Shown::kValue) return;
-    add(symbol, estimate.value, estimate.lower95, estimate.upper95, estimate.unit,
-        JudgementOf(estimate), mark);
+    const Shown shown = WhatIsShown(estimate);
+    if (!shown.is_estimate()) return;
+    add(symbol, *shown.value, shown.lower, shown.upper, estimate.unit, JudgementOf(estimate), mark);
   };
   const ContactQuantity* friction = report.Find("friction_coefficient");
   if (friction != nullptr && friction->value) {

@@ -34,36 +34,27 @@ std::string_view JudgementOf(std::string_view verdict) {
 }
 
 std::string_view JudgementOf(const ParameterEstimate& estimate) {
-  if (WhatIsShown(estimate) == Shown::kHeld) return kPlain;
-  if (WhatIsShown(estimate) == Shown::kNothing) return kBad;
+  const Shown shown = WhatIsShown(estimate);
+  if (shown.is_held) return kPlain;
+  if (!shown.value && !shown.is_limit()) return kBad;
   return estimate.identifiability == Identifiability::kIdentifiable ? kGood : kPoor;
 }
 
 Shown WhatIsShown(const ParameterEstimate& estimate) {
-  if (estimate.status == ParameterStatus::kFixed) return Shown::kHeld;
-  const bool is_bounded = estimate.identifiability == Identifiability::kBoundedBelow;
-  if (is_bounded) return estimate.lower95 ? Shown::kLowerLimit : Shown::kNothing;
-  if (!estimate.is_known()) return Shown::kNothing;
-  if (estimate.status == ParameterStatus::kAtLowerBound) {
-    return estimate.upper95 ? Shown::kUpperLimit : Shown::kNothing;
-  }
-  if (estimate.status == ParameterStatus::kAtUpperBound && !estimate.upper95) {
-    return estimate.lower95 ? Shown::kLowerLimit : Shown::kNothing;
-  }
-  return Shown::kValue;
+  const std::optional<double>& lower = estimate.lower95;
+  const std::optional<double>& upper = estimate.upper95;
+  if (estimate.status == ParameterStatus::kFixed) return {estimate.value, {}, {}, true};
+  if (estimate.identifiability == Identifiability::kBoundedBelow) return {{}, lower, {}};
+  if (!estimate.is_known()) return {};
+  if (estimate.status == ParameterStatus::kAtLowerBound) return {{}, {}, upper};
+  if (estimate.status == ParameterStatus::kAtUpperBound && !upper) return {{}, lower, {}};
+  return {estimate.value, lower, upper};
 }
 
 std::string ValueText(const ParameterEstimate& estimate) {
-  const Shown shown = WhatIsShown(estimate);
-  const std::string_view unit = estimate.unit;
-  constexpr int kDigits = 4;
-  if (shown == Shown::kValue) {
-    return QuantityWithInterval(estimate.value, estimate.lower95, estimate.upper95, unit);
-  }
-  if (shown == Shown::kHeld) return Quantity(estimate.value, unit) + " (held)";
-  if (shown == Shown::kLowerLimit) return "> " + Quantity(*estimate.lower95, unit, kDigits);
-  if (shown == Shown::kUpperLimit) return "< " + Quantity(*estimate.upper95, unit, kDigits);
-  return "not determined";
+  const auto [value, lower, upper, is_held] = WhatIsShown(estimate);
+  const std::string text = QuantityWithInterval(value, lower, upper, estimate.unit);
+  return text.empty() ? "not determined" : is_held ? text + " (held)" : text;
 }
 
 std::string ParameterText(std::string_view symbol, const ParameterEstimate& estimate) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,14 +59,16 @@ std::string_view JudgementOf(std::string_view verdict);
 /// Returns kGood only of what may be quoted as it stands.
 std::string_view JudgementOf(const ParameterEstimate& estimate);
 
-/// Says how much of a parameter is shown: no number that the record does not determine, nor where
-/// the search stopped at a limit.
-enum class Shown {
-  kValue,       ///< the estimate with its interval
-  kHeld,        ///< the value that it was given
-  kLowerLimit,  ///< the lower end of the interval alone
-  kUpperLimit,  ///< the upper end alone
-  kNothing,
+/// Holds what is shown of a parameter: no number that the record does not determine, nor where the
+/// search stopped at a limit. It is the estimate with its interval, one end of it alone, the value
+/// that was given, or nothing.
+struct Shown {
+  std::optional<double> value, lower, upper;
+  bool is_held = false;
+
+  /// True for an estimate with its interval.
+  [[nodiscard]] bool is_estimate() const { return value && !is_held; }
+  [[nodiscard]] bool is_limit() const { return !value && (lower || upper); }
 };
 Shown WhatIsShown(const ParameterEstimate& estimate);
 

@@ -120,17 +120,21 @@ std::string QuantityWithError(double value, std::optional<double> error, std::st
   return Joined(number, scaled);
 }
 
-std::string QuantityWithInterval(double value, std::optional<double> lower,
+std::string QuantityWithInterval(std::optional<double> value, std::optional<double> lower,
                                  std::optional<double> upper, std::string_view unit) {
-  const ScaledUnit scaled = UnitFor(unit, value);
-  if (!lower && !upper) return Quantity(value, unit);
+  constexpr int kDigitsOfLimit = 4;
+  if (!value && lower) return "> " + Quantity(*lower, unit, kDigitsOfLimit);
+  if (!value && upper) return "< " + Quantity(*upper, unit, kDigitsOfLimit);
+  if (!value) return "";
+  if (!lower && !upper) return Quantity(*value, unit);
+  const ScaledUnit scaled = UnitFor(unit, *value);
   // Two digits of half the interval.
-  const double half = (upper.value_or(value) - lower.value_or(value)) / (lower && upper ? 2 : 1);
+  const double half = (upper.value_or(*value) - lower.value_or(*value)) / (lower && upper ? 2 : 1);
   const auto rounded = [&](double end) {
     return RoundedTo(half / scaled.factor, end / scaled.factor);
   };
   const auto end = [&](const std::optional<double>& at) { return at ? rounded(*at) : "open"; };
-  return fmt::format("{} ({} … {})", Joined(rounded(value), scaled), end(lower), end(upper));
+  return fmt::format("{} ({} … {})", Joined(rounded(*value), scaled), end(lower), end(upper));
 }
 
 std::string UnitIn(const Units& units, std::string_view unit) {

@@ -63,8 +63,8 @@ std::string RoundedTo(double error, double value);
 std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit);
 
 /// Returns "48.14 N/µm (48.07 … 48.22)"; "open" for an end that there is not, no brackets without
-/// both.
-std::string QuantityWithInterval(double value, std::optional<double> lower,
+/// both. Without a value the limit alone, "> 12 N" or "< 12 N"; "" without that too.
+std::string QuantityWithInterval(std::optional<double> value, std::optional<double> lower,
                                  std::optional<double> upper, std::string_view unit);
 
 }  // namespace mindahl::report
