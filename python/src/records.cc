@@ -81,8 +81,8 @@ io::ChosenColumn ColumnOf(const py::handle& column) {
 
 py::dict ColumnsUsed(const RecordFile& file) {
   py::dict columns("displacement"_a = DictOf(file.displacement), "force"_a = DictOf(file.force));
-  if (file.time) columns["time"] = DictOf(*file.time);
-  if (file.normal_load) columns["normal_load"] = DictOf(*file.normal_load);
+  if (file.time) columns["time"] = DictOf(file.time);
+  if (file.normal_load) columns["normal_load"] = DictOf(file.normal_load);
   return columns;
 }
 

@@ -43,8 +43,7 @@ struct SimulateOptions {
 models::Excitation MakeMotion(const SimulateOptions& options, const models::BranchLaw& law) {
   models::Excitation motion;
   if (!options.path.empty()) {
-    motion.displacement =
-        io::ImposedDisplacement(io::ReadCsvTable(options.path), options.displacement);
+    motion.displacement = io::ImposedDisplacement(options.path, options.displacement);
     motion.time.resize(motion.displacement.size());
     std::iota(motion.time.begin(), motion.time.end(), 0.0);
     return motion;

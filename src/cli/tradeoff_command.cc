@@ -114,8 +114,7 @@ std::vector<MeasuredExcitation> MeasureScenes(const TradeoffOptions& request,
                                               const BranchLaw& law) {
   std::vector<MeasuredExcitation> measured;
   if (!request.path.empty()) {
-    const std::vector<double> displacement =
-        io::ImposedDisplacement(io::ReadCsvTable(request.path), request.column);
+    const std::vector<double> displacement = io::ImposedDisplacement(request.path, request.column);
     measured.push_back(
         Measure("path", request.path, {.displacement = displacement}, law, request.tolerance));
     return measured;

@@ -72,8 +72,8 @@ void RequireJoinable(const RecordFile& first, const RecordFile& next) {
         "the same columns",
         first.name, next.name, what);
   };
-  require(next.time.has_value() == first.time.has_value(), "a time");
-  require(next.normal_load.has_value() == first.normal_load.has_value(), "a normal load");
+  require(bool(next.time) == bool(first.time), "a time");
+  require(bool(next.normal_load) == bool(first.normal_load), "a normal load");
   require(next.is_torsional == first.is_torsional, "a torque");
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -61,11 +60,8 @@ class RecordBuilder {
     file_.name = table.file;
     file_.notes = table.notes;
     for (Quantity& quantity : AssignRoles(names, asked, file_.notes)) {
-      const ChosenColumn column = Choose(names, quantity, asked.*RulesOf(quantity.role).given);
-      if (quantity.role == Role::kDisplacement) file_.displacement = column;
-      if (quantity.role == Role::kForce) file_.force = column;
-      if (quantity.role == Role::kTime) file_.time = column;
-      if (quantity.role == Role::kNormalLoad) file_.normal_load = column;
+      const RoleRules& role = RulesOf(quantity.role);
+      file_.*role.chosen = Choose(names, quantity, asked.*role.given);
       quantities_.push_back(std::move(quantity));
     }
     file_.is_torsional = quantities_.front().unit.dimension == Dimension::kAngle;
@@ -86,15 +82,15 @@ class RecordBuilder {
   /// that is used are left out, up to one in a hundred, or all where broken rows are skipped.
   /// @returns the fault of that row, or of too many that are left out; "" where there is none
   std::string Add(const CsvTable& table, Samples& samples) {
-    const std::array columns = {&samples.displacement, &samples.force, &samples.time,
-                                &samples.normal_load};
+    std::vector<std::vector<double>*> columns;  // of the quantities
+    for (const Quantity& quantity : quantities_) {
+      columns.push_back(&(samples.*RulesOf(quantity.role).values));
+    }
     const bool has_interval = !file_.time && interval_ > 0;
     const auto resize = [&](std::size_t size) {
       samples.lines.resize(size);
       if (has_interval) samples.time.resize(size);
-      for (const Quantity& quantity : quantities_) {
-        columns[static_cast<std::size_t>(quantity.role)]->resize(size);
-      }
+      for (std::vector<double>* column : columns) column->resize(size);
     };
     std::size_t kept = samples.lines.size();
     resize(kept + table.rows());
@@ -106,8 +102,9 @@ class RecordBuilder {
         ++block;
       }
       bool is_whole = true;
-      for (const Quantity& quantity : quantities_) {
-        double& value = (*columns[static_cast<std::size_t>(quantity.role)])[kept];
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        const Quantity& quantity = quantities_[k];
+        double& value = (*columns[k])[kept];
         value = quantity.ValueIn(table, row);
         if (quantity.role != Role::kTime) value = quantity.unit.ToSi(value);
         is_whole = is_whole && std::isfinite(value);
@@ -238,9 +235,8 @@ void AddCovariates(const ColumnNames& names, const std::vector<std::string>& cho
     }
     if (!add(column, choice, true)) static_cast<void>(table.Numbers(column));  // throws
   }
-  for (const auto& used :
-       {std::optional(file.displacement), std::optional(file.force), file.time, file.normal_load}) {
-    if (used) is_read[used->index - 1] = true;
+  for (const auto& used : {file.displacement, file.force, file.time, file.normal_load}) {
+    if (used) is_read[used.index - 1] = true;
   }
   const std::size_t most = choices.size() + kMostOtherColumns;
   for (std::size_t column = 0; column < names.size(); ++column) {
@@ -259,9 +255,9 @@ void LeaveOutTaredLoad(const std::string& name, RecordFile& file) {
   file.notes.push_back(
       fmt::format("{}: normal load '{}' (column {}) is about zero, as of a tared "
                   "load cell: left out",
-                  name, file.normal_load->name, file.normal_load->index));
+                  name, file.normal_load.name, file.normal_load.index));
   load.clear();
-  file.normal_load.reset();
+  file.normal_load = {};
 }
 
 /// Returns the time of a table, by which another is joined to it, where it has one.
@@ -363,7 +359,9 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   return file;
 }
 
-std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column) {
+std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
+                                        const std::string& column) {
+  const CsvTable table = ReadCsvTable(path);
   const ColumnNames names(table);
   Quantity displacement = names.Read(column, Role::kDisplacement);
   if (displacement.terms.empty()) {

@@ -19,13 +19,15 @@ namespace {
 // The rows are in the order of Role.
 constexpr std::array kRules = {
     RoleRules{"displacement", "--displacement", Dimension::kLength, Dimension::kAngle,
-              &RecordColumns::displacement},
-    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque, &RecordColumns::force},
-    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime, &RecordColumns::time},
+              &RecordColumns::displacement, &RecordFile::displacement, &loop::Record::displacement},
+    RoleRules{"force", "--force", Dimension::kForce, Dimension::kTorque, &RecordColumns::force,
+              &RecordFile::force, &loop::Record::force},
+    RoleRules{"time", "--time", Dimension::kTime, Dimension::kTime, &RecordColumns::time,
+              &RecordFile::time, &loop::Record::time},
     // A joint carries a torque.
     RoleRules{"normal load", "--normal-load-column", Dimension::kForce, Dimension::kTorque,
-              &RecordColumns::normal_load},
-    RoleRules{"covariate", "--covariate", {}, {}, nullptr},
+              &RecordColumns::normal_load, &RecordFile::normal_load, &loop::Record::normal_load},
+    RoleRules{"covariate", "--covariate", {}, {}, nullptr, nullptr, nullptr},
 };
 constexpr std::array kRolesOfRecord = {Role::kDisplacement, Role::kForce, Role::kTime,
                                        Role::kNormalLoad};
@@ -641,7 +643,7 @@ std::string ColumnNames::Header() const {
 
 void ColumnNames::FindUnitOf(Quantity& quantity, bool is_torsional,
                              std::vector<std::string>& notes) const {
-  const auto& [name, option, linear, angular, given] = RulesOf(quantity.role);
+  const auto& [name, option, linear, angular, given, chosen, values] = RulesOf(quantity.role);
   const Dimension dimension = is_torsional ? angular : linear;
   const std::size_t first = quantity.first_column();
   const Column& of = columns_[first];

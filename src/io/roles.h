@@ -15,12 +15,14 @@
 
 namespace mindahl::io {
 
-/// Holds what is asked of the columns of a role.
+/// Holds what is asked of the columns of a role, and where they are in a record.
 struct RoleRules {
   std::string_view name;  ///< "normal load"
   std::string_view option;
   Dimension linear, angular;  // of its units
   std::string RecordColumns::*given;
+  ChosenColumn RecordFile::*chosen;
+  std::vector<double> loop::Record::*values;
 };
 const RoleRules& RulesOf(Role role);
 

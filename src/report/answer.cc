@@ -134,7 +134,7 @@ class Writer {
     const io::RecordFile& first = report_.records.front();
     std::vector<std::string> columns;
     const auto add = [&](const char* role, const io::ChosenColumn& column, const char* remark) {
-      if (column.index == 0) return;
+      if (!column) return;
       const bool has_unit =
           !column.has_no_unit && column.name.find(column.unit) != std::string::npos;
       columns.push_back(fmt::format(
@@ -145,7 +145,7 @@ class Writer {
     add(is_torsional ? "angle" : "displacement", first.displacement, "");
     add(is_torsional ? "torque" : "force", first.force,
         fit_.force_sense < 0 ? ", opposite sign" : "");
-    if (first.normal_load) add("load", *first.normal_load, "");
+    add("load", first.normal_load, "");
     const std::string name = NameOf(report_.files());
     if (columns.empty()) return Add("record", name);
     if (report_.sample_rate) {

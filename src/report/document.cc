@@ -17,17 +17,17 @@ namespace mindahl::report {
 
 namespace {
 
-Json ColumnJson(const io::ChosenColumn* column) {
-  if (column == nullptr || column->index == 0) return nullptr;
-  return {{"name", column->name}, {"index", column->index}, {"unit", column->unit}};
+Json ColumnJson(const io::ChosenColumn& column) {
+  if (!column) return nullptr;
+  return {{"name", column.name}, {"index", column.index}, {"unit", column.unit}};
 }
 
 Json Columns(const Report& report) {
   const io::RecordFile& first = report.records.front();
-  return {{"displacement", ColumnJson(&first.displacement)},
-          {"force", ColumnJson(&first.force)},
-          {"time", ColumnJson(first.time ? &*first.time : nullptr)},
-          {"normal_load", ColumnJson(first.normal_load ? &*first.normal_load : nullptr)}};
+  return {{"displacement", ColumnJson(first.displacement)},
+          {"force", ColumnJson(first.force)},
+          {"time", ColumnJson(first.time)},
+          {"normal_load", ColumnJson(first.normal_load)}};
 }
 
 Json Samples(const Report& report) {

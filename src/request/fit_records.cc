@@ -80,7 +80,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
       refuse_constant(r, input.displacement, record.displacement.front(), "displacement",
                       units.displacement, "moving");
     }
-    if (input.time && !record.time.empty()) half_range(r, *input.time, record.time, "time", "s");
+    if (input.time && !record.time.empty()) half_range(r, input.time, record.time, "time", "s");
     travel = std::max(travel, own_travel);
     force = std::max(force, half_range(r, input.force, record.force, "force", units.force));
   }

@@ -49,8 +49,8 @@ TEST(RecordReader, RecognizesEachQuantityByItsHeader) {
     const RecordFile file = Read(header[0] + "\n1.5,2.5,3.5,4.5\n");
     EXPECT_EQ(file.displacement.index, std::stoul(header[1]));
     EXPECT_EQ(file.force.index, std::stoul(header[2]));
-    EXPECT_EQ(file.time ? file.time->index : 0, std::stoul(header[3]));
-    EXPECT_EQ(file.normal_load ? file.normal_load->index : 0, std::stoul(header[4]));
+    EXPECT_EQ(file.time.index, std::stoul(header[3]));
+    EXPECT_EQ(file.normal_load.index, std::stoul(header[4]));
     EXPECT_EQ(file.record.time.empty(), !file.time);
     EXPECT_EQ(file.record.normal_load.empty(), !file.normal_load);
   }
@@ -66,8 +66,8 @@ TEST(RecordReader, FindsChosenColumnByNumberNameCaseAndNameWithoutUnit) {
   const RecordFile file = Read("1.5,2.5,3.5,4.5\n", Choose("", "", "4 [ms]", "3 [kN]"));
   EXPECT_EQ(file.record.time, (Numbers{4.5e-3}));
   EXPECT_EQ(file.record.normal_load, (Numbers{3500}));
-  EXPECT_EQ(file.time->unit, "ms");
-  EXPECT_EQ(file.normal_load->unit, "kN");
+  EXPECT_EQ(file.time.unit, "ms");
+  EXPECT_EQ(file.normal_load.unit, "kN");
 }
 
 // Texts of a force of 2.5 kN, and the unit and the value [m] of the displacement.
@@ -288,7 +288,7 @@ TEST(Covariates, ThatCannotBeAreRefusedByName) {
 TEST(ImposedDisplacement, IsTheFirstOrTheOneThatIsChosenInItsUnit) {
   const auto column = [](const std::string& text, const std::string& choice = {}) {
     const TemporaryDirectory directory;
-    return ImposedDisplacement(ReadCsvTable(directory.Write("path.csv", text)), choice);
+    return ImposedDisplacement(directory.Write("path.csv", text), choice);
   };
   EXPECT_EQ(column("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
             (Numbers{0.1, 0.1, -0.30000000000000004, 0}));

@@ -33,12 +33,14 @@ struct RecordColumns {
   bool skip_broken_rows = false;  ///< rows that would be refused are left out
 };
 
-/// A column as it was read.
+/// A column as it was read; false where there is none.
 struct ChosenColumn {
   std::string name;          ///< header cell as written, or the sum; "" in a file without names
   std::size_t index = 0;     ///< 1-based; of a sum the first
   std::string unit;          ///< symbol the numbers were taken to be in
   bool has_no_unit = false;  ///< the file and the request name none: the unit is assumed
+
+  explicit operator bool() const { return index > 0; }
 };
 
 /// A record and where it came from.
@@ -48,10 +50,7 @@ struct RecordFile {
   /// A torque [N m] against an angle [rad]: they are in the record's force and displacement.
   bool is_torsional = false;
   std::vector<std::size_t> lines;  ///< line in the file of each sample, 1-based
-  ChosenColumn displacement;
-  ChosenColumn force;
-  std::optional<ChosenColumn> time;
-  std::optional<ChosenColumn> normal_load;
+  ChosenColumn displacement, force, time, normal_load;
   std::vector<std::string> notes;  ///< assumptions of the reader, one sentence each
   LeftOutRows left_out = {};
   /// Samples of the file that are in none of the records into which SplitAtLoadSteps() splits it;
@@ -171,7 +170,8 @@ RecordFile Joined(std::vector<RecordFile> records);
 /// @param column  by default the first, or, where that is another channel by its name, the one of a
 ///   recognised name; unit as for ReadRecord(), without one SI
 /// @throws InputError as ReadRecord()
-std::vector<double> ImposedDisplacement(const CsvTable& table, const std::string& column = {});
+std::vector<double> ImposedDisplacement(const std::filesystem::path& path,
+                                        const std::string& column = {});
 
 /// Keeps the samples of a record whose time [s] lies from `first` to `last`, both included, with a
 /// note of how many.
