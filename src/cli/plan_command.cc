@@ -38,6 +38,10 @@ struct PlanOptions {
   std::vector<std::string> want;
   std::string json;
   std::string plot;
+
+  [[nodiscard]] bool fits_rig() const {
+    return std::ranges::find(with, "rig_stiffness") != with.end();
+  }
 };
 
 struct Plan {
@@ -56,8 +60,7 @@ identification::FitResult FitOfRecord(const PlanOptions& options,
                                       std::vector<std::string>& notes) {
   const io::RecordFile file = io::ReadRecord(options.record, options.columns);
   notes = file.notes;
-  const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
-  if (options.rig_stiffness && !fits_rig) {
+  if (options.rig_stiffness && !options.fits_rig()) {
     RequirePositive("--rig-stiffness [N/m]", *options.rig_stiffness);
     fit_options.fixed["rig_stiffness"] = *options.rig_stiffness;
   }
@@ -127,8 +130,7 @@ Expectation Expect(const PlanOptions& options, const identification::FitOptions&
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (displacement_noise > 0) expected.displacement_noise = displacement_noise;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
-  const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
-  if (fits_rig && std::isinf(expected.rig.stiffness)) {
+  if (options.fits_rig() && std::isinf(expected.rig.stiffness)) {
     Refuse("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
   }
   return expected;

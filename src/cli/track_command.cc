@@ -236,7 +236,7 @@ std::uint64_t SeedOf(const CLI::App& command) {
   return seed;
 }
 
-/// Holds what a resumed run keeps of the table on disk: its whole batches.
+/// Holds what a resumed run keeps of the table on disk: its whole batches, if it has any.
 struct KeptCycles {
   std::size_t fits = 0;
   std::uintmax_t bytes = 0;    // size of the header and these
@@ -256,9 +256,9 @@ KeptCycles ReadKeptCycles(const std::string& path, bool is_torsional,
   if (line + '\n' != header) {
     Refuse("--resume: {} is no table of such cycles, its first line is another: {}", path, kRemedy);
   }
-  KeptCycles kept{.bytes = header.size()};
+  KeptCycles kept;
   std::vector<CycleFit> batch;
-  std::uintmax_t bytes = kept.bytes;
+  std::uintmax_t bytes = header.size();
   // A line without a line feed was being written when a run was killed, and is no row.
   while (std::getline(file, line) && !file.eof()) {
     try {
@@ -319,7 +319,6 @@ class TrackRun {
     test_.files.push_back(layout.name);
     if (!layout_) {
       layout_ = layout;
-      layout_->record = {};
       test_.is_torsional = layout.is_torsional;
       test_.evolutions = campaign::BeginEvolutions(test_.is_torsional);
     }
@@ -390,9 +389,8 @@ class TrackRun {
       test_.energy.Add(fit);
       test_.Add(fit);
     });
-    test_.resumed = kept_->fits;
-    if (kept_->fits == 0) kept_.reset();
-    made.skipped = test_.resumed;
+    test_.resumed = kept_.fits;
+    made.skipped = kept_.fits;
   }
 
   /// Opens the table behind what is kept of it.
@@ -403,10 +401,10 @@ class TrackRun {
           "--resume: {} was made from another record or with other options, or what "
           "was read before "
           "its row {} was another: give those, another --output, or --overwrite",
-          options_.output, kept_->fits);
+          options_.output, kept_.fits);
     }
-    output_.emplace(options_.output, kept_ ? kept_->bytes : 0);
-    if (!kept_) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
+    output_.emplace(options_.output, kept_.bytes);
+    if (kept_.fits == 0) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
   }
 
   /// Appends the rows of a batch.
@@ -428,13 +426,13 @@ class TrackRun {
     for (const std::string& file : options_.fit.files) ReadFile(file);
     if (options_.fit.join) test_.unused_samples += tracker_->NextFile();
     tracker_->Finish();
-    if (kept_) OpenTable();  // also of a record that ends with it, or before
+    if (kept_.fits > 0) OpenTable();  // also of a record that ends with it, or before
     if (output_) output_->Finish();
   }
 
   /// True if the table on disk, where there is one to go on with, is of this record and options.
   [[nodiscard]] bool continues_table() const {
-    return !kept_ || tracker_->skipped_up_to() == kept_->checksum;
+    return kept_.fits == 0 || tracker_->skipped_up_to() == kept_.checksum;
   }
 
   const TrackCommandOptions& options_;
@@ -443,7 +441,7 @@ class TrackRun {
   io::JoinedTimes times_;
   std::optional<io::RecordFile> layout_;
   std::optional<campaign::Tracker> tracker_;
-  std::optional<KeptCycles> kept_;
+  KeptCycles kept_;
   std::optional<io::AppendedFile> output_;
   bool has_write_failed_ = false;  // or is at work
 };
