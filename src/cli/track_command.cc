@@ -373,7 +373,7 @@ class TrackRun {
       test_.unused_samples += tracker_->NextFile();
       times_ = {};
     }
-    const io::LeftOutRows& left_out = stream.left_out();
+    const io::LeftOutRows& left_out = stream.layout().left_out;
     if (left_out.count == 0) return;
     if (options_.fit.columns.skip_broken_rows) test_.broken_rows += left_out.count;
     test_.notes.push_back(left_out.InWords());

@@ -73,7 +73,7 @@ class RecordBuilder {
     }
   }
 
-  /// Returns the columns, units and notes, without samples.
+  /// Returns the columns, units, notes and the rows left out so far, without samples.
   [[nodiscard]] RecordFile& file() { return file_; }
   /// Returns the columns that are used, from 0, each once.
   [[nodiscard]] const std::vector<std::size_t>& wanted() const { return wanted_; }
@@ -94,6 +94,7 @@ class RecordBuilder {
     };
     std::size_t kept = samples.lines.size();
     resize(kept + table.rows());
+    LeftOutRows& left_out = file_.left_out;
     std::string refusal;
     auto block = table.blocks.begin();
     for (std::size_t row = 0; row < table.rows() && refusal.empty(); ++row, ++rows_) {
@@ -118,20 +119,18 @@ class RecordBuilder {
       const std::string fault = FaultOf(table, row, is_missing);
       if (!is_missing && !skip_broken_) {
         refusal = fault;
-      } else if (left_out_.count++ == 0) {
-        left_out_.fault = fault;
+      } else if (left_out.count++ == 0) {
+        left_out.fault = fault;
       }
     }
     resize(kept);
     // One in a hundred, rounded up from a hundred on.
     constexpr std::size_t kOneIn = 100;
     const std::size_t most = rows_ < kOneIn ? 0 : (rows_ + kOneIn - 1) / kOneIn;
-    if (!refusal.empty() || skip_broken_ || left_out_.count <= most) return refusal;
+    if (!refusal.empty() || skip_broken_ || left_out.count <= most) return refusal;
     return fmt::format("{}; {} of {} rows are so: --broken-rows skip leaves them out",
-                       left_out_.fault, left_out_.count, rows_);
+                       left_out.fault, left_out.count, rows_);
   }
-
-  [[nodiscard]] const LeftOutRows& left_out() const { return left_out_; }
 
  private:
   /// @param text  by which it was chosen
@@ -192,7 +191,6 @@ class RecordBuilder {
   std::vector<Quantity> quantities_;
   std::vector<std::size_t> wanted_;
   bool skip_broken_;
-  LeftOutRows left_out_;
   std::size_t rows_ = 0;   // seen so far
   double interval_ = 0.0;  // [s] between rows, in place of a column of times
   JoinedTimes times_;      // of the blocks, in their unit
@@ -338,7 +336,6 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   Samples samples;
   std::string fault = builder.Add(table, samples);
   RecordFile& file = builder.file();
-  file.left_out = builder.left_out();
   if (fault.empty() && samples.lines.empty()) fault = file.left_out.fault;
   if (!fault.empty()) throw InputError(fault);
   if (file.left_out.count > 0) file.notes.push_back(file.left_out.InWords());
@@ -430,9 +427,5 @@ bool RecordStream::Next(Samples& samples) {
   }
   return true;
 }
-
-const LeftOutRows& RecordStream::left_out() const { return state_->builder.left_out(); }
-
-std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
 
 }  // namespace mindahl::io

@@ -64,8 +64,8 @@ TEST(RecordStream, SkipsBrokenRowsAndCountsThem) {
   EXPECT_EQ(samples.displacement, (std::vector<double>{0, 1, 5, -2}));
   EXPECT_EQ(samples.lines, (std::vector<std::size_t>{2, 4, 6, 9}));
   EXPECT_FALSE(stream.Next(samples));
-  EXPECT_EQ(stream.left_out().count, 4u);
-  EXPECT_EQ(stream.left_out().fault,
+  EXPECT_EQ(stream.layout().left_out.count, 4u);
+  EXPECT_EQ(stream.layout().left_out.fault,
             fmt::format("{}:3:2: 'oops' is not a number: write it like -1.5e-3, or remove the row",
                         path.string()));
 }
@@ -87,8 +87,9 @@ TEST(RecordStream, SkipsARowFarBeyondTheFirstPieceThatTheColumnsOfTheFirstDoNotA
     std::size_t rows = 0;
     while (stream.Next(samples)) rows += samples.size();
     EXPECT_EQ(rows, kRows + 1) << header;
-    EXPECT_EQ(stream.left_out().count, 1u);
-    EXPECT_THAT(stream.left_out().fault, HasSubstr(fmt::format("loop.csv:{}{}", kRows + 2, fault)));
+    EXPECT_EQ(stream.layout().left_out.count, 1u);
+    EXPECT_THAT(stream.layout().left_out.fault,
+                HasSubstr(fmt::format("loop.csv:{}{}", kRows + 2, fault)));
   }
 }
 

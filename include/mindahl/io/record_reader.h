@@ -121,7 +121,7 @@ class RecordStream {
   RecordStream(const RecordStream&) = delete;
   RecordStream& operator=(const RecordStream&) = delete;
 
-  /// Returns the columns, units and notes; without samples.
+  /// Returns the columns, units, notes and the rows left out so far; without samples.
   [[nodiscard]] const RecordFile& layout() const;
 
   /// Replaces the samples by the next, as many as a mebibyte holds, or as there are before a row
@@ -130,12 +130,6 @@ class RecordStream {
   /// @throws InputError naming file, line and column of such a row, and where the file cannot be
   ///   read
   bool Next(Samples& samples);
-
-  /// Returns the rows left out so far.
-  [[nodiscard]] const LeftOutRows& left_out() const;
-
-  /// Returns the number of bytes read so far.
-  [[nodiscard]] std::uintmax_t bytes() const;
 
  private:
   struct State;
