@@ -163,19 +163,6 @@ void RequireLoadsOf(std::size_t files, const FitRequest& request) {
          files > 1 ? "s" : "");
 }
 
-/// Fits the options' law with its terms, or where asked for with those that the records require.
-TermSelection FitLaw(const FitOptions& options, std::span<const Record> records,
-                     bool chooses_terms) {
-  if (!chooses_terms) {
-    TermSelection law_alone;
-    law_alone.options = options;
-    law_alone.fit = identification::Fit(records, options);
-    return law_alone;
-  }
-  const std::vector<loop::RecordView> views(records.begin(), records.end());
-  return identification::SelectTerms(views, options);
-}
-
 /// Takes back a preference for the law that the program did not choose.
 /// @returns true where there was one
 bool WithdrawPreference(FitResult& fit) {
@@ -192,49 +179,31 @@ bool WithdrawPreference(FitResult& fit) {
 /// by Dahl's own. Terms are chosen for the law that is better without them.
 TermSelection FitAsked(const FitRequest& request, const FitOptions& options,
                        std::span<const Record> records) {
-  if (request.fit.model != nullptr) return FitLaw(options, records, request.chooses_terms);
-  TermSelection asked = FitLaw(options, records, /*chooses_terms=*/false);
+  const bool chooses_law = request.fit.model == nullptr;
+  TermSelection asked;
+  asked.options = options;
+  if (chooses_law || !request.chooses_terms) asked.fit = identification::Fit(records, options);
   const auto& choice = asked.fit.law_choice;
-  if (choice ? choice->prefers_alternative() : !asked.fit.converged) {
+  if (chooses_law && (choice ? choice->prefers_alternative() : !asked.fit.converged)) {
     FitOptions of_other = options;
     of_other.model = models::FindFrictionModel("dahl");
-    TermSelection other = FitLaw(of_other, records, /*chooses_terms=*/false);
-    const auto& confirmed = other.fit.law_choice;
+    FitResult other = identification::Fit(records, of_other);
+    const auto& confirmed = other.law_choice;
     const bool is_preferred =
         !confirmed || (confirmed->decided && !confirmed->prefers_alternative());
-    if (other.fit.converged && (is_preferred || !asked.fit.converged)) asked = std::move(other);
+    if (other.converged && (is_preferred || !asked.fit.converged)) {
+      asked.options = std::move(of_other);
+      asked.fit = std::move(other);
+    }
     // If each law fits better than the solution that was found for the other, neither is preferred.
     WithdrawPreference(asked.fit);
   }
   if (!request.chooses_terms) return asked;
-  FitOptions of_law = options;
-  of_law.model = asked.options.model;
-  asked = FitLaw(of_law, records, /*chooses_terms=*/true);
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  asked = identification::SelectTerms(views, asked.options);
   // The law was chosen before the terms: of the other one with them nothing is said.
-  if (WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
+  if (chooses_law && WithdrawPreference(asked.fit)) asked.fit.law_choice.reset();
   return asked;
-}
-
-/// Adds a term to a request for the law alone.
-/// @param name  as LikelyTerms() gives it
-/// @returns the option that does the same
-std::string AddTermTo(FitRequest& request, const std::string& name,
-                      std::span<const Record> records) {
-  if (name == "rig_stiffness") {
-    request.fit.terms = {name};
-    return "--rig-stiffness fit";
-  }
-  if (identification::FindTermGroup(name) != nullptr) {
-    request.terms = {name};
-    return "--terms " + name;
-  }
-  const auto& columns = records.front().covariates;
-  const std::string column = std::ranges::find(columns, name, [](const loop::Covariate& covariate) {
-                               return identification::NameOfCovariate(covariate.name);
-                             })->name;
-  request.fit.covariates = {column};
-  const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
-  return fmt::format("--covariate {}{}{}", quote, column, quote);
 }
 
 /// True if a term takes the slip force's place: it is known no more, or leaves what its interval
@@ -277,29 +246,39 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
   }
   const std::vector<loop::RecordView> views(records.begin(), records.end());
   for (const std::string& name : identification::LikelyTerms(views, options, fit, kMostTried)) {
-    FitRequest with = request;
-    report::NextStep step{.text = name,
-                          .options = AddTermTo(with, name, records),
-                          .misfit_before = *before,
-                          .misfit_after = *before};
-    if (const auto* group = identification::FindTermGroup(name)) step.text = group->meaning;
-    const bool by_column = !with.fit.covariates.empty();
-    if (by_column) step.text = "column " + with.fit.covariates.front();
+    report::NextStep step;
+    step.misfit_before = *before;
+    const bool is_rig = name == "rig_stiffness";
+    const auto* group = identification::FindTermGroup(name);
+    FitOptions tried = options;
+    if (group != nullptr) {
+      for (const std::string_view term : group->terms) {
+        if (!options.fixed.contains(std::string(term))) tried.terms.emplace_back(term);
+      }
+      step.text = group->meaning;
+      step.options = is_rig ? "--rig-stiffness fit" : "--terms " + name;
+    } else {
+      const auto& columns = records.front().covariates;
+      const std::string& column =
+          std::ranges::find(columns, name, [](const loop::Covariate& covariate) {
+            return identification::NameOfCovariate(covariate.name);
+          })->name;
+      tried.covariates = {column};
+      step.text = "column " + column;
+      const char* const quote = column.find(' ') == std::string::npos ? "" : "'";
+      step.options = fmt::format("--covariate {}{}{}", quote, column, quote);
+    }
     // With the term another law may be the better one, and miss otherwise.
     if (request.fit.model == nullptr) {
       step.options += fmt::format(" --model {}", options.model->name);
     }
     try {
-      FitOptions tried = MakeFitOptions(with);
-      tried.preparation = options.preparation;
-      tried.initial_state = options.initial_state;
-      tried.model = options.model;
       const FitResult found = identification::Fit(records, tried, Depth::kIntervals);
       if (!found.converged || !found.adequacy.misfit_over_half_gap) continue;
       step.misfit_after = *found.adequacy.misfit_over_half_gap;
       const double most = (1 - options.thresholds.advised_gain) * *before;
       if (!(step.misfit_after <= most) ||
-          LosesSlipForce(fit, found, by_column, options.thresholds)) {
+          LosesSlipForce(fit, found, group == nullptr, options.thresholds)) {
         continue;
       }
       if (IsRivalled(fit, found)) return std::nullopt;
@@ -308,7 +287,6 @@ std::optional<report::NextStep> FindNextStep(const FitRequest& request, const Fi
       continue;  // the record does not determine it
     }
     // A rig that cannot be told from the law is to be measured.
-    const bool is_rig = name == "rig_stiffness";
     if (is_rig && fit.FindFinding("shape_or_rig") != nullptr) return std::nullopt;
     return step;
   }
