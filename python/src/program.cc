@@ -77,8 +77,8 @@ py::tuple FitOne(const RecordFile& record, const request::FitRequest& request, i
       PyErr_SetNone(PyExc_KeyboardInterrupt);
       throw Interrupted();
     });
-    entry = request::FitSource(request, record.name, Strictness{strict},
-                               [&](const request::FitRequest&) { return std::vector{record}; });
+    entry = request::FitSource(record.name, Strictness{strict},
+                               [&] { return request::FitRecords(request, {record}); });
   }
   return StateOf(entry);
 }

@@ -9,7 +9,6 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <future>
 #include <map>
@@ -216,17 +215,15 @@ std::string Address(std::string_view name) {
 
 }  // namespace
 
-BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
-                     const ReadSource& read, const WritePage& write_page, std::size_t k) {
+BatchEntry FitSource(const std::string& name, Strictness strictness,
+                     const std::function<report::Report()>& fit, const WritePage& write_page,
+                     std::size_t k) {
   BatchEntry entry;
   entry.file = name;
-  FitRequest own = request;
-  own.files = {name};
   std::string& fault = entry.fault;
   try {
-    if (std::filesystem::is_regular_file(name)) entry.sha256 = io::Sha256OfFile(name).value_or("");
-    Validate(own);
-    const report::Report report = FitRecords(own, read(own));
+    entry.sha256 = io::Sha256OfFile(name).value_or("");
+    const report::Report report = fit();
     entry.notes = report.notes;
     entry.fit = ToJson(report);
     entry.done = Established(report.fit, strictness);
@@ -261,7 +258,10 @@ std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictnes
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t k = next++; k < entries.size(); k = next++) {
-      entries[k] = FitSource(request, request.files[k], strictness, &ReadRecords, write_page, k);
+      FitRequest own = request;
+      own.files = {request.files[k]};
+      const auto fit = [&own] { return FitRecords(own, ReadRecords(own)); };
+      entries[k] = FitSource(own.files.front(), strictness, fit, write_page, k);
     }
   };
   std::vector<std::future<void>> workers;

@@ -22,9 +22,9 @@ std::vector<io::RecordFile> CleanRecord() {
 }
 
 TEST(FitSource, IsNotDoneWhereItsPageCannotBeWritten) {
-  const auto read = [](const FitRequest&) { return CleanRecord(); };
-  EXPECT_TRUE(FitSource({}, "loop", Strictness::kNone, read).done);
-  const BatchEntry entry = FitSource({}, "loop", Strictness::kNone, read,
+  const auto fit = [] { return FitRecords({}, CleanRecord()); };
+  EXPECT_TRUE(FitSource("loop", Strictness::kNone, fit).done);
+  const BatchEntry entry = FitSource("loop", Strictness::kNone, fit,
                                      [](const report::Report&, std::size_t) -> std::string {
                                        throw InputError("the disk is full");
                                      });

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/io/record_reader.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 
@@ -25,16 +24,14 @@ struct BatchEntry {
   std::vector<std::string> parameters;  ///< σ, α and Tc in words; empty where there is no fit
 };
 
-/// Reads the records of one source.
-using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&)>;
-
 /// Writes the page of the k-th source and returns its name; an empty function writes no pages.
 using WritePage = std::function<std::string(const report::Report&, std::size_t k)>;
 
 /// Fits one source on its own. A fault of the source is one of the entry.
-/// @param request  of all sources, of which `files` is not looked at
-BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
-                     const ReadSource& read, const WritePage& write_page = {}, std::size_t k = 0);
+/// @param fit  reads and fits it
+BatchEntry FitSource(const std::string& name, Strictness strictness,
+                     const std::function<report::Report()>& fit, const WritePage& write_page = {},
+                     std::size_t k = 0);
 
 /// Fits each of the request's files on its own, in their order whatever the number of threads.
 /// @throws InputError or InvalidArgument for options that break a rule whatever the files are
