@@ -42,16 +42,13 @@ std::vector<RecordFile> SplitAtLoadSteps(const RecordFile& input) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
   if (pieces.empty()) return {input};
   std::vector<RecordFile> records;
-  std::size_t left_out = input.record.size();
   for (const loop::ConstantLoad& piece : pieces) {
-    left_out -= piece.last - piece.first;
     RecordFile& added = records.emplace_back(input);
     KeepSamples(added, piece.first, piece.last);
     added.notes.clear();
     added.name = fmt::format("{}:{}-{}", input.name, input.LineOf(piece.first),
                              input.LineOf(piece.last - 1));
   }
-  records.back().between_loads = left_out;
   return records;
 }
 

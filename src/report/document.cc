@@ -32,9 +32,7 @@ Json Columns(const Report& report) {
 
 Json Samples(const Report& report) {
   std::size_t samples = 0;
-  for (const io::RecordFile& file : report.records) {
-    samples += file.record.size() + file.between_loads;
-  }
+  for (const io::RecordFile& file : report.records) samples += file.record.size();
   for (const LeftOut& part : report.left_out) samples += part.samples;
   return samples;
 }
@@ -351,7 +349,6 @@ std::vector<LeftOut> DescribeLeftOut(const Report& report) {
     add(faults, fit.glitches.first, faults == 1, "faults");
     add(rest, static_cast<std::size_t>(first - fit.counts.begin()),
         faults == 0 && static_cast<std::size_t>(last - first) == rest, "selection");
-    add(file.between_loads, 0, /*are_in_a_row=*/false, "another load");
   }
   return parts;
 }

@@ -101,24 +101,32 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
 
 /// Returns one record for each constant load of a file, unless it is said what the loads are, or
 /// which samples of it count.
-std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs) {
+/// @param left_out  gets the samples between the loads
+std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
+                                   std::vector<report::LeftOut>& left_out) {
   const loop::PreparationOptions& chosen = request.fit.preparation;
   if (!request.contact.normal_loads.empty() || chosen.load_window || chosen.samples) return inputs;
   std::vector<RecordFile> records;
   for (const RecordFile& input : inputs) {
-    std::ranges::move(io::SplitAtLoadSteps(input), std::back_inserter(records));
+    std::size_t between = input.record.size();
+    for (RecordFile& piece : io::SplitAtLoadSteps(input)) {
+      between -= piece.record.size();
+      records.push_back(std::move(piece));
+    }
+    if (between == 0) continue;
+    left_out.push_back({.file = records.back().name, .samples = between, .why = "another load"});
   }
   return records;
 }
 
 /// Cuts each record to its test, where that is asked for and nothing says which samples count.
 /// @param options  changed: a contact that was cycled before is steady
-std::vector<report::LeftOut> KeepTests(const FitRequest& request, std::vector<RecordFile>& records,
-                                       FitOptions& options) {
-  std::vector<report::LeftOut> left_out;
+/// @param left_out  gets the samples that are cut off
+void KeepTests(const FitRequest& request, std::vector<RecordFile>& records, FitOptions& options,
+               std::vector<report::LeftOut>& left_out) {
   const loop::PreparationOptions& given = options.preparation;
   const bool is_chosen = given.load_window || given.samples || given.cycles;
-  if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return left_out;
+  if (!request.trim || is_chosen || options.response() != loop::Channel::kForce) return;
   bool all_cycled = true;
   for (RecordFile& record : records) {
     const loop::TestPart test = loop::FindTestPart(record.record);
@@ -135,7 +143,6 @@ std::vector<report::LeftOut> KeepTests(const FitRequest& request, std::vector<Re
   if (all_cycled && !options.initial_state && options.initial_states.empty()) {
     options.initial_state = models::InitialState::kSteady;
   }
-  return left_out;
 }
 
 /// Turns the force of records whose sign is not that of the first, unless a sign is given.
@@ -369,8 +376,9 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
     files.push_back(input.name);
     notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   }
-  inputs = SplitLoads(request, std::move(inputs));
-  std::vector<report::LeftOut> left_out = KeepTests(request, inputs, options);
+  std::vector<report::LeftOut> left_out;
+  inputs = SplitLoads(request, std::move(inputs), left_out);
+  KeepTests(request, inputs, options, left_out);
   AlignForceSigns(options.preparation, inputs, notes);
   std::vector<Record> records;
   records.reserve(inputs.size());

@@ -38,7 +38,6 @@ TEST(LoadPieces, HaveEveryColumnTheirLinesAndANameOfTheirOwn) {
   EXPECT_EQ(second.record.covariates[0].values.front(), -190.0);
   EXPECT_EQ(second.record.covariates[0].unit, "bar");
   EXPECT_EQ(second.record.normal_load.front(), 50.0);
-  EXPECT_EQ(pieces[0].between_loads + second.between_loads, 30U);
 }
 
 TEST(LoadPieces, OfOneLoadAreTheRecordItself) {
@@ -47,7 +46,6 @@ TEST(LoadPieces, OfOneLoadAreTheRecordItself) {
   const std::vector<RecordFile> pieces = SplitAtLoadSteps(file);
   ASSERT_EQ(pieces.size(), 1U);
   EXPECT_EQ(pieces[0].name, "series.csv");
-  EXPECT_EQ(pieces[0].between_loads, 0U);
   EXPECT_EQ(pieces[0].notes.size(), 1U);
   EXPECT_EQ(pieces[0].record.size(), 320U);
 }

@@ -53,9 +53,6 @@ struct RecordFile {
   ChosenColumn displacement, force, time, normal_load;
   std::vector<std::string> notes;  ///< assumptions of the reader, one sentence each
   LeftOutRows left_out = {};
-  /// Samples of the file that are in none of the records into which SplitAtLoadSteps() splits it;
-  /// with the last of these.
-  std::size_t between_loads = 0;
 
   /// Returns the line of a sample; its number from 1 where the record does not know its lines.
   [[nodiscard]] std::size_t LineOf(std::size_t sample) const {
