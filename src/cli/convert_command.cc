@@ -103,14 +103,6 @@ std::string Percent(double error) {
   return std::abs(error) < kRounding ? "0 %" : fmt::format("{:.3g} %", 100 * error);
 }
 
-/// States the errors at the amplitude; an energy has none where the contact loses nothing.
-std::string ErrorAtAmplitude(const LoopError& error, double amplitude) {
-  return fmt::format("at {:.6g} m the force is within {} of T*, the energy {}", amplitude,
-                     Percent(error.force),
-                     std::isfinite(error.energy) ? "off by " + Percent(error.energy)
-                                                 : "lost where the contact loses none");
-}
-
 void RunConvert(ConvertOptions request, Console& console) {
   const TargetRow& target = *std::ranges::find(convert::Targets(), request.to, &TargetRow::name);
   std::vector<std::string> left_out;
@@ -143,11 +135,14 @@ void RunConvert(ConvertOptions request, Console& console) {
     }
   }
   const LoopError& error = made.at_amplitude;
-  const std::string error_text =
-      ErrorAtAmplitude(error, amplitude) +
-      (left_out.empty()
-           ? ""
-           : fmt::format(", of the law alone: without the fit's {}", fmt::join(left_out, ", ")));
+  std::string error_text = fmt::format(
+      "at {:.6g} m the force is within {} of T*, the energy {}", amplitude, Percent(error.force),
+      std::isfinite(error.energy) ? "off by " + Percent(error.energy)
+                                  : "lost where the contact loses none");
+  if (!left_out.empty()) {
+    error_text +=
+        fmt::format(", of the law alone: without the fit's {}", fmt::join(left_out, ", "));
+  }
   const auto& within = made.within;
   constexpr int kDigits = 8;
   const std::string text =

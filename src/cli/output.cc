@@ -35,17 +35,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Writing to a device, a terminal or a pipe replaces nothing.
-bool CanBeReplaced(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return !fs::exists(status) || fs::is_regular_file(status);
-}
-
-/// One file under one name or two, of which neither need be there yet.
+/// One file under one name or two, of which neither need be there yet; a device, a terminal or a
+/// pipe is none, as writing to it replaces nothing.
 bool IsSameFile(const fs::path& first, const fs::path& second) {
   std::error_code error;
-  if (fs::equivalent(first, second, error)) return CanBeReplaced(first);
+  if (fs::equivalent(first, second, error)) return fs::is_regular_file(first, error);
   if (fs::exists(first, error) || fs::exists(second, error)) return false;
   const auto place = [&](const fs::path& path) {
     const fs::path parent = path.parent_path();
